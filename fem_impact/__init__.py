@@ -1,0 +1,1 @@
+"""Where the energy of a dropped rod goes: explicit finite elements beside rigid theory."""

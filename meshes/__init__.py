@@ -1,0 +1,1 @@
+"""Structured hexahedral meshes of rods and barrier blocks."""

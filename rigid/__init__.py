@@ -1,0 +1,1 @@
+"""Rigid impulse-momentum theory of a projectile on a massive barrier."""
