@@ -1,1 +1,23 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
+
+from meshes.block import block
+from meshes.errors import MeshError
+from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
+from meshes.quality import Quality, quality, volume
+from meshes.refine import levels_for, refine
+from meshes.zone import Zone
+
+__all__ = [
+    "OUTER",
+    "SKIN",
+    "SYMMETRY",
+    "HexMesh",
+    "MeshError",
+    "Quality",
+    "Zone",
+    "block",
+    "levels_for",
+    "quality",
+    "refine",
+    "volume",
+]

@@ -1,0 +1,77 @@
+"""A rectangular block under a flat top, for a barrier."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.errors import MeshError
+from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, from_cells
+from meshes.quality import require_positive
+from meshes.refine import refine
+from meshes.topology import CORNERS
+from meshes.zone import Zone
+
+__all__ = ["block", "box_cells"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+def block(
+    low: Sequence[float] | FloatArray,
+    high: Sequence[float] | FloatArray,
+    size: float,
+    zone: Zone | None = None,
+    levels: int = 0,
+    *,
+    buffer: int = 2,
+) -> HexMesh:
+    """Mesh a block with equal box cells, refined around a zone.
+
+    Parameters
+    ----------
+    low, high : (3,) float64, m
+        Corners in (t, b, n); low[1] and high[2] are 0: the symmetry plane and the top.
+    size : float, m
+        Wanted edge of the base cells; the counts are rounded, so edges differ a little from it.
+    zone, levels, buffer
+        See `refine`.
+
+    Raises
+    ------
+    MeshError
+        If the block is empty or does not end at the two planes.
+    """
+    lo, hi = np.asarray(low, np.float64), np.asarray(high, np.float64)
+    _check(lo, hi, size)
+    counts = np.maximum(1, np.rint((hi - lo) / size)).astype(np.int64)
+    axes = [np.linspace(lo[i], hi[i], counts[i] + 1) for i in range(3)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    base = from_cells(grid, box_cells(counts), _tag)
+    mesh = base if zone is None else refine(base, zone, levels, buffer=buffer)
+    require_positive(mesh)
+    return mesh
+
+
+def box_cells(counts: IntArray) -> IntArray:
+    """(m, 8) cells of a box grid whose nodes run fastest in the last direction."""
+    starts = np.stack(np.meshgrid(*[np.arange(c) for c in counts], indexing="ij"), axis=-1).reshape(-1, 1, 3)
+    stride = np.array([(counts[1] + 1) * (counts[2] + 1), counts[2] + 1, 1])
+    return np.asarray((starts + CORNERS[None]) @ stride, dtype=np.int64)
+
+
+def _check(low: FloatArray, high: FloatArray, size: float) -> None:
+    if low.shape != (3,) or high.shape != (3,) or np.any(high <= low):
+        raise MeshError(f"block needs three extents with low < high, not {low.tolist()} to {high.tolist()} m")
+    if not size > 0.0:
+        raise MeshError(f"block size must be positive, not {size} m")
+    if low[1] != 0.0 or high[2] != 0.0:
+        raise MeshError(f"block must start at b = 0 and end at n = 0, not b = {low[1]} and n = {high[2]} m")
+
+
+def _tag(corners: FloatArray) -> IntArray:
+    """SYMMETRY at b = 0, SKIN at n = 0, OUTER elsewhere."""
+    symmetric = (corners[:, :, 1] == 0.0).all(axis=1)
+    top = (corners[:, :, 2] == 0.0).all(axis=1)
+    return np.where(symmetric, SYMMETRY, np.where(top, SKIN, OUTER))

@@ -1,0 +1,111 @@
+"""The mesh record shared by all builders, and how it is made from plain cells."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from meshes.errors import MeshError
+from meshes.topology import FACES
+
+__all__ = ["OUTER", "SKIN", "SYMMETRY", "HexMesh", "face_keys", "from_cells", "match_faces", "outer_faces"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+SKIN = 0
+SYMMETRY = 1
+OUTER = 2
+
+
+@dataclass(frozen=True, slots=True)
+class HexMesh:
+    """A mesh of trilinear hexahedra, locally refined with ties at the level changes.
+
+    Attributes
+    ----------
+    points : (n, 3) float64, m
+        All nodes, hanging ones included.
+    cells : (m, 8) int64
+        Nodes in VTK hexahedron order, positive volume.
+    level : (m,) int8
+        Refinement level, 0 for a base cell.
+    tie : (n, n) csr_matrix
+        Row i holds the weights of node i in the free nodes (identity for a free node); rows sum to 1.
+    faces : (k, 4) int64
+        Outer faces, outward normal by the right-hand rule.
+    face_tag : (k,) int8
+        SKIN, SYMMETRY (plane y = b = 0) or OUTER (artificial boundary of a block).
+    """
+
+    points: FloatArray
+    cells: IntArray
+    level: npt.NDArray[np.int8]
+    tie: sp.csr_matrix
+    faces: IntArray
+    face_tag: npt.NDArray[np.int8]
+
+    @property
+    def is_hanging(self) -> npt.NDArray[np.bool_]:
+        """(n,) True where a node follows others by its tie."""
+        return np.asarray(self.tie.diagonal() == 0.0)
+
+    def faces_with(self, tag: int) -> IntArray:
+        """(k', 4) outer faces of one tag."""
+        return np.asarray(self.faces[self.face_tag == tag])
+
+
+def face_keys(quads: IntArray) -> IntArray:
+    """One number a quadrilateral, the same for every rotation and sense: its lowest node and the opposite."""
+    first = quads.argmin(axis=1)
+    rows = np.arange(len(quads))
+    return np.asarray((quads[rows, first] << 31) | quads[rows, (first + 2) % 4])
+
+
+def outer_faces(cells: IntArray) -> tuple[IntArray, IntArray]:
+    """Cell and local face of every face that only one cell has.
+
+    Returns
+    -------
+    owner, local : (k,) int64
+    """
+    keys = face_keys(cells[:, FACES].reshape(-1, 4))
+    _, first, count = np.unique(keys, return_index=True, return_counts=True)
+    place = np.sort(first[count == 1])
+    return place // 6, place % 6
+
+
+def match_faces(mesh: HexMesh) -> npt.NDArray[np.int8]:
+    """(m, 6) tag of every face of every cell, -1 inside."""
+    keys = face_keys(mesh.cells[:, FACES].reshape(-1, 4))
+    known = face_keys(mesh.faces)
+    order = np.argsort(known)
+    at = np.minimum(np.searchsorted(known[order], keys), len(known) - 1)
+    found = known[order][at] == keys
+    return np.where(found, mesh.face_tag[order][at], -1).astype(np.int8).reshape(-1, 6)
+
+
+def from_cells(points: FloatArray, cells: IntArray, tag: Callable[[FloatArray], IntArray]) -> HexMesh:
+    """Make an unrefined mesh, its outer faces found and tagged.
+
+    Parameters
+    ----------
+    points : (n, 3) float64, m
+    cells : (m, 8) int64
+    tag : callable
+        From the corners of the outer faces, (k, 4, 3), to their tags, (k,).
+
+    Raises
+    ------
+    MeshError
+        If a cell names a node that does not exist.
+    """
+    if cells.min() < 0 or cells.max() >= len(points):
+        raise MeshError(f"cells name node {cells.max()} but there are {len(points)}: check the numbering")
+    owner, local = outer_faces(cells)
+    quads = cells[owner[:, None], FACES[local]]
+    tags = np.asarray(tag(points[quads]), dtype=np.int8)
+    tie = sp.identity(len(points), format="csr")
+    return HexMesh(points, cells, np.zeros(len(cells), np.int8), sp.csr_matrix(tie), quads, tags)

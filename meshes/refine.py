@@ -1,0 +1,141 @@
+"""Local refinement of a mesh around a zone, 2:1 balanced, with ties at the level changes."""
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.errors import MeshError
+from meshes.hexmesh import HexMesh
+from meshes.split import Forest, Snap
+from meshes.ties import hanging_births, tie_matrix
+from meshes.topology import FACES
+from meshes.zone import Zone
+
+__all__ = ["levels_for", "reach", "refine"]
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+def levels_for(base_size: float, target_size: float) -> int:
+    """Halvings that bring `base_size` to `target_size` (m) as nearly as they can, never above 1.2 times it.
+
+    Examples
+    --------
+    >>> levels_for(2.4e-3, 0.3e-3), levels_for(2.4e-3, 0.35e-3), levels_for(1e-3, 2e-3)
+    (3, 3, 0)
+    """
+    if base_size <= 0.0 or target_size <= 0.0:
+        raise MeshError(f"sizes must be positive, not {base_size} m and {target_size} m")
+    return max(0, int(np.ceil(np.log2(base_size / (1.2 * target_size)))))
+
+
+def reach(size: FloatArray | float, level: int, levels: int, buffer: int = 2) -> FloatArray:
+    """How far from the zone cells are split into `level`, so that `buffer` cells lie around the next finer.
+
+    Parameters
+    ----------
+    size : (m,) float64 or float, m
+        Size of the cells to be split.
+    level, levels : int
+        Level that the split makes; the finest level.
+    buffer : int
+        Whole cells kept between two level changes.
+
+    Returns
+    -------
+    (m,) float64, m
+    """
+    made = 0.5 * np.asarray(size)
+    return np.asarray((buffer + 1) * made * (2.0 - 2.0 ** (level - levels + 1)))
+
+
+def refine(
+    mesh: HexMesh,
+    zone: Zone,
+    levels: int,
+    snap: Snap | None = None,
+    *,
+    buffer: int = 2,
+    frozen: BoolArray | None = None,
+) -> HexMesh:
+    """Split the cells in and around a zone.
+
+    Nodes and leaves that are not split keep their numbers and order; new ones follow. A new node of a
+    SKIN face whose every cell is split is put onto the exact surface by `snap`; a hanging node lies
+    exactly on the coarse face, with the same weights in its tie, so linear fields pass the change.
+
+    Parameters
+    ----------
+    mesh : HexMesh
+        Unrefined.
+    zone : Zone
+    levels : int
+        Splits of a cell that touches the zone.
+    snap : callable, optional
+        (k, 3) m to (k, 3) m.
+    buffer : int
+        Whole cells kept between two level changes.
+    frozen : (m,) bool, optional
+        Cells that must not be split.
+
+    Raises
+    ------
+    MeshError
+        If the mesh is refined already or a frozen cell would have to be split.
+    """
+    if mesh.level.any():
+        raise MeshError("the mesh is refined already: refine the base mesh once, with all its levels")
+    if levels < 0:
+        raise MeshError(f"levels must not be negative, not {levels}")
+    fixed = np.zeros(len(mesh.cells), np.bool_) if frozen is None else frozen
+    forest = Forest.plant(mesh, snap, fixed)
+    for level in range(1, levels + 1):
+        forest.split(_marks(forest, zone, level, levels, buffer))
+    return _harvest(forest)
+
+
+def _marks(forest: Forest, zone: Zone, level: int, levels: int, buffer: int) -> BoolArray:
+    """(m,) leaves to split for one level, balance kept."""
+    corners = forest.points[forest.cells]
+    size = _size(corners)
+    near = zone.gap(corners, 1e-6 * size) <= reach(size, level, levels, buffer)
+    marked = _balanced(forest, near & (forest.level == level - 1))
+    if np.any(marked & forest.frozen):
+        where = corners[marked & forest.frozen].mean(axis=(0, 1))
+        raise MeshError(
+            f"refinement reaches cells that must stay whole, about {where.tolist()} m: "
+            "take fewer levels, a smaller zone or a longer body"
+        )
+    return marked
+
+
+def _size(corners: FloatArray) -> FloatArray:
+    """(m,) edge of the cube with the diagonals of a cell (their mean), m."""
+    diagonals = corners[:, [0, 1, 2, 3]] - corners[:, [6, 7, 4, 5]]
+    return np.asarray(np.linalg.norm(diagonals, axis=2).mean(axis=1) / np.sqrt(3.0))
+
+
+def _balanced(forest: Forest, marked: BoolArray) -> BoolArray:
+    """Grow the marks until no split leaves a neighbour (face, edge or corner) two levels behind."""
+    extended = np.concatenate([forest.cells, forest.known_mids()], axis=1)
+    while True:
+        split_level = np.full(len(forest.points) + 1, -1, np.int64)
+        np.maximum.at(split_level, forest.cells[marked], forest.level[marked][:, None])
+        split_level[-1] = -1
+        grown = marked | (split_level[extended].max(axis=1) > forest.level)
+        if (grown == marked).all():
+            return marked
+        marked = grown
+
+
+def _harvest(forest: Forest) -> HexMesh:
+    """Decide which nodes hang, put all into their final place and close the record."""
+    hanging = hanging_births(forest)
+    hangs = np.zeros(len(forest.points), np.bool_)
+    for nodes, _ in hanging:
+        hangs[nodes] = True
+    forest.place_all(hangs)
+    outer = forest.tags >= 0
+    tie = tie_matrix(len(forest.points), hanging)
+    faces, tags = forest.cells[:, FACES][outer], forest.tags[outer]
+    return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags)

@@ -1,0 +1,185 @@
+"""Splitting cells 2 x 2 x 2 with shared nodes, and the places of the new nodes."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.hexmesh import SKIN, HexMesh, face_keys, match_faces
+from meshes.topology import CHILD_KEEPS_FACE, CHILDREN, EDGES, FACE_EDGES, FACES
+
+__all__ = ["Birth", "Forest", "KeyMap", "Snap", "edge_keys", "place"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+#: Moves points onto the exact surface: (k, 3) m to (k, 3) m.
+Snap = Callable[[FloatArray], FloatArray]
+
+
+def edge_keys(pairs: IntArray) -> IntArray:
+    """One number an edge, the same for both senses."""
+    return np.asarray((pairs.min(axis=-1) << 31) | pairs.max(axis=-1))
+
+
+class KeyMap:
+    """Node of an edge or face, by key; grows, never forgets, so neighbours split later share nodes."""
+
+    def __init__(self) -> None:
+        self.keys: IntArray = np.empty(0, np.int64)
+        self.nodes: IntArray = np.empty(0, np.int64)
+
+    def find(self, keys: IntArray) -> IntArray:
+        """Nodes of keys, -1 where unknown; any shape."""
+        if not len(self.keys):
+            return np.full(keys.shape, -1, np.int64)
+        at = np.minimum(np.searchsorted(self.keys, keys), len(self.keys) - 1)
+        return np.where(self.keys[at] == keys, self.nodes[at], -1)
+
+    def add(self, keys: IntArray, start: int) -> IntArray:
+        """Give numbers to the keys not known yet from `start`; return where each first stood (flat)."""
+        fresh, first = np.unique(keys, return_index=True)
+        new = self.find(fresh) < 0
+        fresh, first = fresh[new], first[new]
+        keys_all = np.concatenate([self.keys, fresh])
+        nodes_all = np.concatenate([self.nodes, start + np.arange(len(fresh))])
+        order = np.argsort(keys_all, kind="stable")
+        self.keys, self.nodes = keys_all[order], nodes_all[order]
+        return first
+
+
+@dataclass(frozen=True, slots=True)
+class Birth:
+    """New nodes of one kind, made together: consecutive numbers from `start`, and what they lie between.
+
+    Attributes
+    ----------
+    start : int
+    corners : (k, c) int64
+        2 ends of an edge, 4 corners of a face, 8 corners of a cell.
+    mids : (k, e) int64
+        Middles of the edges: 0, 4, 12.
+    centres : (k, f) int64
+        Centres of the faces: 0, 0, 6.
+    """
+
+    start: int
+    corners: IntArray
+    mids: IntArray
+    centres: IntArray
+
+    @property
+    def nodes(self) -> IntArray:
+        """(k,) numbers of the new nodes."""
+        return self.start + np.arange(len(self.corners))
+
+    def middle(self, points: FloatArray) -> FloatArray:
+        """(k, 3) transfinite middles: the curvature of the surface fades into the inside."""
+        corner = points[self.corners].mean(axis=1)
+        if not self.mids.shape[1]:
+            return np.asarray(corner)
+        mid = points[self.mids].mean(axis=1)
+        if not self.centres.shape[1]:
+            return np.asarray(2.0 * mid - corner)
+        return np.asarray(3.0 * points[self.centres].mean(axis=1) - 3.0 * mid + corner)
+
+    def flat(self, points: FloatArray) -> FloatArray:
+        """(k, 3) means of the corners."""
+        return np.asarray(points[self.corners].mean(axis=1))
+
+
+def place(
+    points: FloatArray, birth: Birth, hanging: BoolArray, on_skin: BoolArray, snap: Snap | None
+) -> None:
+    """Put new nodes into place: hanging ones on the coarse face, free skin ones on the surface."""
+    nodes = birth.nodes
+    points[nodes] = np.where(hanging[nodes, None], birth.flat(points), birth.middle(points))
+    moved = nodes[on_skin[nodes] & ~hanging[nodes]]
+    if snap is not None and len(moved):
+        points[moved] = snap(points[moved])
+
+
+@dataclass(slots=True)
+class Forest:
+    """The growing mesh: leaves only, with all edges and faces ever split."""
+
+    points: FloatArray
+    cells: IntArray
+    level: IntArray
+    tags: npt.NDArray[np.int8]
+    frozen: BoolArray
+    snap: Snap | None
+    edges: KeyMap = field(default_factory=KeyMap)
+    quads: KeyMap = field(default_factory=KeyMap)
+    births: list[Birth] = field(default_factory=list)
+
+    @classmethod
+    def plant(cls, mesh: HexMesh, snap: Snap | None, frozen: BoolArray) -> "Forest":
+        """Start from an unrefined mesh."""
+        tags = match_faces(mesh)
+        return cls(mesh.points.copy(), mesh.cells, mesh.level.astype(np.int64), tags, frozen, snap)
+
+    def on_skin(self) -> BoolArray:
+        """(n,) True for nodes of SKIN faces of the leaves."""
+        mask = np.zeros(len(self.points), np.bool_)
+        mask[self.cells[:, FACES][self.tags == SKIN]] = True
+        return mask
+
+    def known_mids(self) -> IntArray:
+        """(m, 18) nodes that exist in the middle of each leaf's edges and faces, -1 where none."""
+        mids = self.edges.find(edge_keys(self.cells[:, EDGES]))
+        faces = self.cells[:, FACES]
+        keys = face_keys(faces.reshape(-1, 4)).reshape(len(self.cells), 6)
+        return np.concatenate([mids, self.quads.find(keys)], axis=1)
+
+    def split(self, marked: BoolArray) -> None:
+        """Replace the marked leaves by their eight children, kept leaves first and in order."""
+        if not marked.any():
+            return
+        parents = self.cells[marked]
+        first_birth = len(self.births)
+        nodes = np.concatenate([parents, self._mids(parents)], axis=1)
+        tags = np.where(CHILD_KEEPS_FACE[None], self.tags[marked][:, None, :], np.int8(-1))
+        self.cells = np.concatenate([self.cells[~marked], nodes[:, CHILDREN].reshape(-1, 8)])
+        self.level = np.concatenate([self.level[~marked], np.repeat(self.level[marked] + 1, 8)])
+        self.tags = np.concatenate([self.tags[~marked], tags.reshape(-1, 6)])
+        self.frozen = np.concatenate([self.frozen[~marked], np.zeros(8 * len(parents), np.bool_)])
+        self.place_all(np.zeros(len(self.points), np.bool_), first_birth)
+
+    def place_all(self, hanging: BoolArray, first: int = 0) -> None:
+        """Put the nodes of all births from `first` on into place, in the order they were born."""
+        skin = self.on_skin()
+        for birth in self.births[first:]:
+            place(self.points, birth, hanging, skin, self.snap)
+
+    def _mids(self, parents: IntArray) -> IntArray:
+        """(k, 19) middle nodes of the parents, made where missing."""
+        mids = self._edge_nodes(parents)
+        centres = self._face_nodes(parents, mids)
+        birth = Birth(len(self.points), parents, mids, centres)
+        self._grow(birth)
+        return np.concatenate([mids, centres, birth.nodes[:, None]], axis=1)
+
+    def _edge_nodes(self, parents: IntArray) -> IntArray:
+        pairs = parents[:, EDGES].reshape(-1, 2)
+        keys = edge_keys(pairs)
+        start = len(self.points)
+        first = self.edges.add(keys, start)
+        none = np.empty((len(first), 0), np.int64)
+        self._grow(Birth(start, pairs[first], none, none))
+        return self.edges.find(keys).reshape(-1, 12)
+
+    def _face_nodes(self, parents: IntArray, mids: IntArray) -> IntArray:
+        faces = parents[:, FACES].reshape(-1, 4)
+        keys = face_keys(faces)
+        start = len(self.points)
+        first = self.quads.add(keys, start)
+        around = mids[:, FACE_EDGES].reshape(-1, 4)[first]
+        self._grow(Birth(start, faces[first], around, np.empty((len(first), 0), np.int64)))
+        return self.quads.find(keys).reshape(-1, 6)
+
+    def _grow(self, birth: Birth) -> None:
+        self.births.append(birth)
+        self.points = np.concatenate([self.points, np.zeros((len(birth.corners), 3))])
