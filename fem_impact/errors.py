@@ -1,0 +1,103 @@
+"""What can go wrong for a user: typed errors, each with the exit code that the command line returns."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+__all__ = [
+    "EXIT_CODES",
+    "FemImpactError",
+    "MissingLibraryError",
+    "OutputPathError",
+    "ResultError",
+    "RunError",
+    "SceneError",
+]
+
+
+class FemImpactError(ValueError):
+    """Anything a user can cause and mend; the message names the cause and the remedy."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class SceneError(FemImpactError):
+    """A scene that cannot be run as stated.
+
+    Parameters
+    ----------
+    problem : str
+        What is wrong, in physical words.
+    key : str, optional
+        Dotted key in the scene, such as ``projectile.length``.
+    value : object, optional
+        The refused value as the user gave it; left out of the message when None.
+    remedy : str, optional
+        What to write instead.
+    source : str, optional
+        The file, or the Python object, in which the key stands.
+    """
+
+    exit_code: ClassVar[int] = 3
+
+    def __init__(
+        self, problem: str, *, key: str = "", value: Any = None, remedy: str = "", source: str = ""
+    ) -> None:
+        self.problem, self.key, self.value = problem, key, value
+        self.remedy, self.source = remedy, source
+        super().__init__(self._message())
+
+    def _message(self) -> str:
+        shown = "" if self.value is None else f" = {_short(self.value)}"
+        place = ": ".join(part for part in (self.source, f"{self.key}{shown}".strip(" =")) if part)
+        text = f"{place}: {self.problem}" if place else self.problem
+        return f"{text} {self.remedy}".strip()
+
+    def under(self, prefix: str, source: str = "") -> SceneError:
+        """Return the same complaint, with its key placed below ``prefix`` and its file named."""
+        key = ".".join(part for part in (prefix, self.key) if part)
+        return SceneError(
+            self.problem, key=key, value=self.value, remedy=self.remedy, source=source or self.source
+        )
+
+
+class OutputPathError(FemImpactError):
+    """Results cannot be written where the user asked for them."""
+
+    exit_code: ClassVar[int] = 4
+
+
+class ResultError(FemImpactError):
+    """A result directory or file handed in cannot be read as one."""
+
+    exit_code: ClassVar[int] = 5
+
+
+class RunError(FemImpactError):
+    """A run that began and could not be finished or trusted."""
+
+    exit_code: ClassVar[int] = 6
+
+
+class MissingLibraryError(FemImpactError):
+    """A system library or an optional package is missing; computed results are kept."""
+
+    exit_code: ClassVar[int] = 7
+
+
+EXIT_CODES: dict[int, str] = {
+    0: "done",
+    1: "a fault of the program (please report it with the command and the scene)",
+    2: "the command line was not understood",
+    SceneError.exit_code: "the scene was refused before any work",
+    OutputPathError.exit_code: "the output place cannot be written, or the disk is full",
+    ResultError.exit_code: "a result handed in cannot be read",
+    RunError.exit_code: "the run stopped early or its energy ledger did not close",
+    MissingLibraryError.exit_code: "a library for pictures or films is missing; results are kept",
+    130: "interrupted; what was computed is kept",
+}
+
+
+def _short(value: Any, limit: int = 60) -> str:
+    text = f'"{value}"' if isinstance(value, str) else repr(value)
+    return text if len(text) <= limit else text[: limit - 3] + "..."

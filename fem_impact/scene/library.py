@@ -1,0 +1,116 @@
+"""What is shipped with the package: materials and surfaces with their sources, and ready scenes."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from difflib import get_close_matches
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields
+from fem_impact.scene.types import Material, Scene, Surface
+from fem_impact.scene.units import parse_quantity
+
+__all__ = ["load", "material", "materials", "proposal", "shipped", "source_of", "surface", "surfaces"]
+
+_DATA = files("fem_impact.scene").joinpath("data")
+
+
+def shipped() -> tuple[str, ...]:
+    """Return the ids of the shipped scenes: the measured sets in the paper's order, then the others."""
+    return tuple(_table("scenes.toml")["order"])
+
+
+def load(id_or_path: str | Path) -> Scene:
+    """Return a shipped scene by its id, or read a scene file.
+
+    Raises
+    ------
+    SceneError
+        For an unknown id, a missing file, or any mistake in the file.
+    """
+    name = os.fspath(id_or_path)
+    if name in shipped():
+        return _shipped(name)
+    if not _looks_like_a_file(name):
+        raise SceneError(
+            "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
+        )
+    return Scene.from_toml(name)
+
+
+def materials() -> dict[str, Material]:
+    """Return the shipped materials by name, SI units."""
+    return {name: _material(name, table) for name, table in _table("materials.toml").items()}
+
+
+def material(name: str) -> Material:
+    """Return one shipped material, or refuse the name with a suggestion."""
+    known = materials()
+    if name not in known:
+        near = get_close_matches(name, list(known), 1)
+        remedy = (
+            f'Did you mean "{near[0]}"?' if near else f"Known: {', '.join(known)}; or give a table of values."
+        )
+        raise SceneError("is not a shipped material.", value=name, remedy=remedy)
+    return known[name]
+
+
+def surfaces() -> dict[str, Surface]:
+    """Return the shipped surface states by name, each with its interval of f and its source."""
+    keys = ("friction", "friction_low", "friction_high", "source")
+    return {name: Surface(name, **{k: t[k] for k in keys}) for name, t in _table("surfaces.toml").items()}  # type: ignore[arg-type]
+
+
+def surface(state: str) -> Surface:
+    """Return one shipped surface state, or refuse the word."""
+    known = surfaces()
+    if not isinstance(state, str) or state not in known:
+        choices = ", ".join(f'"{s}"' for s in [*known, "custom"])
+        raise SceneError("is not a surface state.", key="state", value=state, remedy=f"Use one of {choices}.")
+    return known[state]
+
+
+def source_of(name: str, key: str = "") -> str:
+    """Return where a value of a shipped material (name, key) or surface (state) comes from."""
+    if not key:
+        return str(_table("surfaces.toml").get(name, {}).get("source", "stated in the scene"))
+    return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
+
+
+def proposal(path: Path) -> str:
+    """Return what to type instead of a path that does not exist."""
+    return _near(path.stem)
+
+
+def _near(name: str) -> str:
+    near = get_close_matches(name, shipped(), 1)
+    return f"Did you mean {near[0]}?" if near else "`fem-impact scenes` lists the shipped scenes."
+
+
+def _looks_like_a_file(name: str) -> bool:
+    return name.endswith(".toml") or "/" in name or os.sep in name or os.path.lexists(name)
+
+
+@cache
+def _shipped(name: str) -> Scene:
+    from fem_impact.scene.read import read_dict
+
+    return read_dict(_table(f"scenes/{name}.toml"), f"shipped scene {name}")
+
+
+def _material(name: str, table: dict[str, Any]) -> Material:
+    values = {
+        f.key: parse_quantity(table[f.key], f.dimension, f.key) if f.dimension else table[f.key]
+        for f in fields.MATERIAL
+    }
+    return Material(name=name, **values)
+
+
+@cache
+def _table(name: str) -> dict[str, Any]:
+    return tomllib.loads(_DATA.joinpath(*name.split("/")).read_text(encoding="utf-8"))

@@ -1,0 +1,64 @@
+"""Change one key of a scene, as ``--set key=value`` does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from difflib import get_close_matches
+from typing import Any
+
+from fem_impact.errors import SceneError
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_dict
+
+__all__ = ["replace"]
+
+_SUFFIXES = ("_m_per_s", "_rad_per_s", "_kg_per_m3", "_rad", "_Pa", "_m", "_s")
+
+
+def replace(scene: Scene, key: str, value: Any) -> Scene:
+    """Return a checked copy of the scene with one dotted key changed.
+
+    A changed friction makes the surface custom and a changed property renames its material, so that no
+    shipped name ever stands for other values.
+    """
+    data = to_dict(scene)
+    *path, last = key.split(".")
+    table = _table(data, path, key)
+    table.pop(_plain(last, table), None)
+    table[last] = value
+    _rename(table, path, last)
+    return read_dict(data, "--set")
+
+
+def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
+    table = data
+    for name in path:
+        inner = table.get(name)
+        if not isinstance(inner, dict):
+            near = get_close_matches(name, [k for k, v in table.items() if isinstance(v, Mapping)], 1)
+            hint = f"Did you mean {near[0]}?" if near else "Write section.key, such as accuracy.tip_size."
+            raise SceneError("is not a key of a scene.", key=key, remedy=hint, source="--set")
+        table = inner
+    return table
+
+
+def _plain(last: str, table: Mapping[str, Any]) -> str:
+    """Return the unit-free twin of an SI key, so that ``length_m`` replaces ``length``."""
+    return next((last.removesuffix(s) for s in _SUFFIXES if last.removesuffix(s) in table), last)
+
+
+def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
+    if path == ["surface"] and last.startswith("friction"):
+        _own_surface(table, last)
+    elif path == ["surface"] and last == "state":
+        for key in ("friction", "friction_low", "friction_high", "source"):
+            table.pop(key, None)
+    elif path[-1:] == ["material"] and last != "name":
+        table["name"] = f"{table['name'].removesuffix(' (changed)')} (changed)"
+
+
+def _own_surface(table: dict[str, Any], last: str) -> None:
+    table |= {"state": "custom", "source": "set by the user"}
+    if last == "friction":
+        table |= {"friction_low": table["friction"], "friction_high": table["friction"]}

@@ -1,0 +1,163 @@
+"""The tables of a scene, one reader each; the keys of every table are known and all others refused."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from difflib import get_close_matches
+from typing import Any, TypeVar
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields, library
+from fem_impact.scene.effect_names import check_effects
+from fem_impact.scene.fields import Field
+from fem_impact.scene.types import Accuracy, Barrier, Impact, Material, Projectile, Save, Scene, Surface
+from fem_impact.scene.units import parse_number, parse_quantity
+
+__all__ = ["read_scene"]
+
+T = TypeVar("T")
+Table = Mapping[str, Any]
+_TOP = (
+    "id",
+    "title",
+    "measured",
+    "effects",
+    "projectile",
+    "barrier",
+    "surface",
+    "impact",
+    "accuracy",
+    "save",
+)
+
+
+def read_scene(data: Table) -> Scene:
+    """Make a scene from its tables; keys in messages are dotted from the top."""
+    if not isinstance(data, Mapping):
+        raise SceneError("a scene must be a table of tables.", value=data)
+    _check_keys(data, _TOP)
+    effects = check_effects(_needed(data, "effects"))
+    return Scene(
+        id=_needed(data, "id"),
+        title=data.get("title", data["id"]),
+        projectile=_within(data, "projectile", _projectile),
+        barrier=_within(data, "barrier", _barrier),
+        surface=_within(data, "surface", _surface) if _touches(data, effects) else _frictionless(),
+        impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
+        effects=effects,
+        accuracy=_within(data, "accuracy", lambda t: Accuracy(**_numbers(t, fields.ACCURACY)), {}),
+        save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
+        measured=data.get("measured"),
+    )
+
+
+def _touches(data: Table, effects: tuple[str, ...]) -> bool:
+    return "surface" in data or "friction" in effects
+
+
+def _frictionless() -> Surface:
+    return Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
+
+
+def _projectile(table: Table) -> Projectile:
+    words = ("tip", "material")
+    plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
+    numbers = _numbers(table, fields.PROJECTILE, words, plain)
+    return Projectile(tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers)
+
+
+def _barrier(table: Table) -> Barrier:
+    _check_keys(table, ("material",))
+    return Barrier(_within(table, "material", _material))
+
+
+def _material(table: Table | str) -> Material:
+    if isinstance(table, str):
+        return library.material(table)
+    numbers = _numbers(table, fields.MATERIAL, ("name",))
+    made = Material(name=_needed(table, "name"), **numbers)
+    known = library.materials().get(made.name)
+    if known is not None and known != made:
+        raise SceneError(
+            "is the name of a shipped material with other values.",
+            key="name",
+            value=made.name,
+            remedy="Give a changed material a name of its own.",
+        )
+    return made
+
+
+def _surface(table: Table) -> Surface:
+    state = _needed(table, "state")
+    if state == "custom":
+        return _custom_surface(table)
+    _check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE)))
+    known = library.surface(state)
+    for key, value in table.items():
+        if value != getattr(known, key):
+            raise SceneError(
+                f"is not the value of a {state} surface ({getattr(known, key)}).",
+                key=key,
+                value=value,
+                remedy='Leave it out, or write state = "custom" with your own friction and its source.',
+            )
+    return known
+
+
+def _custom_surface(table: Table) -> Surface:
+    f = _needed(table, "friction")
+    numbers = _numbers(table, fields.SURFACE, ("state", "source"), {"friction_low": f, "friction_high": f})
+    return Surface(state="custom", source=_needed(table, "source"), **numbers)
+
+
+def _numbers(
+    table: Table, wanted: tuple[Field, ...], words: Iterable[str] = (), instead: Table | None = None
+) -> dict[str, Any]:
+    """Read the numbers of one table: each with its unit, as its SI key, or left to its default."""
+    keys = [f.key for f in wanted]
+    _check_keys(table, [*words, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*words, *keys])
+    return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
+
+
+def _number(table: Table, field: Field, default: Any) -> Any:
+    if field.si_key and field.si_key in table:
+        if field.key in table:
+            raise SceneError(
+                f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
+            )
+        return parse_number(table[field.si_key], field.si_key)
+    if field.key not in table:
+        return default if default is not None else _needed(table, field.key)
+    value = table[field.key]
+    if field.dimension:
+        return parse_quantity(value, field.dimension, field.key)
+    parse_number(value, field.key)
+    return value
+
+
+def _within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:
+    """Read one sub-table and place its complaints below its key."""
+    table = data.get(key, default) if default is not None else _needed(data, key)
+    if not isinstance(table, Mapping) and not (key == "material" and isinstance(table, str)):
+        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
+    try:
+        return read(table)
+    except SceneError as error:
+        raise error.under(key) from None
+
+
+def _needed(table: Table, key: str) -> Any:
+    if key not in table:
+        raise SceneError(
+            "is missing.", key=key, remedy="`fem-impact scenes` lists complete scenes to start from."
+        )
+    return table[key]
+
+
+def _check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) -> None:
+    for key in table:
+        if key not in known:
+            near = get_close_matches(str(key), list(known), 1)
+            listed = ", ".join(shown or known)
+            remedy = f"Did you mean {near[0]}?" if near else f"Known here: {listed}."
+            raise SceneError("is not a known key.", key=str(key), remedy=remedy)

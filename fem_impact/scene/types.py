@@ -1,0 +1,236 @@
+"""The scene: what the user states about rod, barrier, surface, impact, effects and accuracy.
+
+SI units inside. Every part checks itself when it is made, so a scene from a file and a scene from Python
+are the same object and pass the same checks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields
+from fem_impact.scene.checks import check_choice, check_id, check_numbers, check_text
+from fem_impact.scene.effect_names import check_effects
+
+__all__ = [
+    "MEASURED_SETS",
+    "Accuracy",
+    "Barrier",
+    "Impact",
+    "Material",
+    "Projectile",
+    "Save",
+    "Scene",
+    "Surface",
+]
+
+MEASURED_SETS = (
+    *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
+    *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A metal: E, yield_stress and ultimate_stress in Pa, nu dimensionless, rho in kg/m3."""
+
+    name: str
+    E: float
+    nu: float
+    rho: float
+    yield_stress: float
+    ultimate_stress: float
+
+    def __post_init__(self) -> None:
+        check_text(self.name, "name", 60)
+        check_numbers(self, fields.MATERIAL)
+        if self.ultimate_stress < self.yield_stress:
+            raise SceneError(
+                "is below the yield stress.",
+                key="ultimate_stress",
+                value=f"{self.ultimate_stress / 1e6:g} MPa",
+                remedy=f"Give at least {self.yield_stress / 1e6:g} MPa.",
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Projectile:
+    """The rod: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain."""
+
+    length: float
+    diameter: float
+    tip: Literal["A", "B", "plain"]
+    tip_radius: float
+    material: Material
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.PROJECTILE)
+        check_choice(self.tip, ("A", "B", "plain"), "tip")
+        _check_tip(self)
+        if self.length < self.diameter:
+            raise SceneError(
+                f"is shorter than the diameter ({self.diameter * 1e3:g} mm); this is a study of rods.",
+                key="length",
+                value=f"{self.length * 1e3:g} mm",
+                remedy="Give a length of at least one diameter.",
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Barrier:
+    """The massive plate that the rod strikes."""
+
+    material: Material
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """State of the two surfaces: Coulomb f that goes in, its interval and where they come from."""
+
+    state: Literal["machined", "contaminated", "cleaned", "custom"]
+    friction: float
+    friction_low: float
+    friction_high: float
+    source: str
+
+    def __post_init__(self) -> None:
+        check_choice(self.state, ("machined", "contaminated", "cleaned", "custom"), "state")
+        check_numbers(self, fields.SURFACE)
+        check_text(self.source, "source", 1000)
+        if not self.friction_low <= self.friction <= self.friction_high:
+            raise SceneError(
+                f"lies outside its own interval, {self.friction_low:g} to {self.friction_high:g}.",
+                key="friction",
+                value=self.friction,
+                remedy="Give friction_low <= friction <= friction_high.",
+            )
+
+
+@dataclass(frozen=True, slots=True)
+class Impact:
+    """Motion at first contact: angle in rad, v_n and v_t of the mass centre in m/s, omega in rad/s."""
+
+    angle: float
+    v_n: float
+    v_t: float
+    omega: float = 0.0
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.IMPACT)
+
+
+@dataclass(frozen=True, slots=True)
+class Accuracy:
+    """What the answer may cost: element size at the tip in m, cells across, latest time in s."""
+
+    tip_size: float = 0.35e-3
+    across: int = 8
+    max_time: float = 2.5e-3
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.ACCURACY)
+
+
+@dataclass(frozen=True, slots=True)
+class Save:
+    """What is kept of a run: frames of the fields, steps between rows of the histories."""
+
+    frames: int = 120
+    history_every: int = 20
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.SAVE)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """One impact, completely stated; ``measured`` names the published set it repeats, if any."""
+
+    id: str
+    title: str
+    projectile: Projectile
+    barrier: Barrier
+    surface: Surface
+    impact: Impact
+    effects: tuple[str, ...]
+    accuracy: Accuracy = Accuracy()
+    save: Save = Save()
+    measured: str | None = None
+
+    def __post_init__(self) -> None:
+        check_id(self.id, "id")
+        check_text(self.title, "title")
+        object.__setattr__(self, "effects", check_effects(self.effects))
+        if self.measured is not None:
+            check_choice(self.measured, MEASURED_SETS, "measured")
+        _check_tip_size(self)
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Scene:
+        """Read a scene file; every mistake is a `SceneError` naming file, key, value and remedy."""
+        from fem_impact.scene.read import read_toml
+
+        return read_toml(path)
+
+    @classmethod
+    def from_dict(cls, data: Mapping[str, Any], source: str = "scene") -> Scene:
+        """Make a scene from nested tables laid out as in a scene file."""
+        from fem_impact.scene.read import read_dict
+
+        return read_dict(data, source)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the complete scene as nested tables, quantities written with their units."""
+        from fem_impact.scene.write import to_dict
+
+        return to_dict(self)
+
+    def to_toml(self) -> str:
+        """Return the complete scene as a TOML file that reads back as an equal object."""
+        from fem_impact.scene.write import to_toml
+
+        return to_toml(self)
+
+    def digest(self) -> str:
+        """Return the SHA-256 (64 hex digits) of the complete scene; equal scenes have equal digests."""
+        from fem_impact.scene.write import digest
+
+        return digest(self)
+
+    def replace(self, key: str, value: Any) -> Scene:
+        """Return a copy with one dotted key changed, such as ``("accuracy.tip_size", "0.5 mm")``."""
+        from fem_impact.scene.replace import replace
+
+        return replace(self, key, value)
+
+
+def _check_tip(rod: Projectile) -> None:
+    if rod.tip_radius > rod.diameter / 2:
+        raise SceneError(
+            f"is larger than the rod's radius ({rod.diameter * 500:g} mm).",
+            key="tip_radius",
+            value=f"{rod.tip_radius * 1e3:g} mm",
+            remedy="Give a tip radius of at most half the diameter.",
+        )
+    if (rod.tip == "plain") != (rod.tip_radius == 0.0):
+        raise SceneError(
+            f'does not fit tip "{rod.tip}": a plain tip has radius 0, tips A and B have a radius above 0.',
+            key="tip_radius",
+            value=f"{rod.tip_radius * 1e3:g} mm",
+            remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
+        )
+
+
+def _check_tip_size(scene: Scene) -> None:
+    largest = scene.projectile.diameter / 4
+    if scene.accuracy.tip_size > largest:
+        raise SceneError(
+            f"is too coarse for a rod of {scene.projectile.diameter * 1e3:g} mm diameter.",
+            key="accuracy.tip_size",
+            value=f"{scene.accuracy.tip_size * 1e3:g} mm",
+            remedy=f"Give at most {largest * 1e3:g} mm.",
+        )

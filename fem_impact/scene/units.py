@@ -1,0 +1,189 @@
+"""Quantities with units: read ``"240 mm"`` exactly, write it back exactly, refuse what is ambiguous."""
+
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from difflib import get_close_matches
+from typing import Any
+
+from fem_impact.errors import SceneError
+
+__all__ = ["DIMENSIONS", "Dimension", "Unit", "format_quantity", "parse_number", "parse_quantity"]
+
+_NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
+_LONGEST = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """One unit: ``value_SI = number * 10**power * factor``; factor is 1 for every decimal unit."""
+
+    symbol: str
+    power: int = 0
+    factor: float = 1.0
+
+    def to_si(self, number: str) -> float:
+        """Convert decimal text to SI, rounding once, so that writing and reading are exact."""
+        return float(Decimal(number).scaleb(self.power)) * self.factor
+
+
+@dataclass(frozen=True, slots=True)
+class Dimension:
+    """A physical dimension: its accepted units (first is SI), the suffix of SI keys, an example."""
+
+    name: str
+    suffix: str
+    written: str
+    example: str
+    units: tuple[Unit, ...]
+
+    def unit(self, symbol: str) -> Unit | None:
+        """Return the unit of that symbol, or None."""
+        return next((u for u in self.units if u.symbol == symbol), None)
+
+    @property
+    def symbols(self) -> str:
+        """All accepted symbols as one readable list."""
+        return ", ".join(u.symbol for u in self.units)
+
+
+_RPM = 2.0 * math.pi / 60.0
+DIMENSIONS: dict[str, Dimension] = {
+    d.name: d
+    for d in (
+        Dimension("length", "m", "mm", "240 mm", (Unit("m"), Unit("mm", -3), Unit("cm", -2), Unit("um", -6))),
+        Dimension("speed", "m_per_s", "m/s", "-2.1 m/s", (Unit("m/s"), Unit("mm/s", -3), Unit("km/s", 3))),
+        Dimension("angle", "rad", "deg", "45 deg", (Unit("rad"), Unit("deg", 0, math.pi / 180.0))),
+        Dimension(
+            "angular speed",
+            "rad_per_s",
+            "rad/s",
+            "45 rad/s",
+            (Unit("rad/s"), Unit("deg/s", 0, math.pi / 180.0), Unit("rpm", 0, _RPM)),
+        ),
+        Dimension(
+            "stress", "Pa", "MPa", "546 MPa", (Unit("Pa"), Unit("kPa", 3), Unit("MPa", 6), Unit("GPa", 9))
+        ),
+        Dimension("density", "kg_per_m3", "kg/m3", "7850 kg/m3", (Unit("kg/m3"), Unit("g/cm3", 3))),
+        Dimension("time", "s", "ms", "2.5 ms", (Unit("s"), Unit("ms", -3), Unit("us", -6), Unit("ns", -9))),
+    )
+}
+
+
+def parse_quantity(value: Any, dimension: str, key: str) -> float:
+    """Read a quantity written with its unit.
+
+    Parameters
+    ----------
+    value : str
+        Such as ``"240 mm"`` or ``"-2.1 m/s"``.
+    dimension : str
+        A name in `DIMENSIONS`.
+    key : str
+        Name used in messages and to propose the SI key.
+
+    Returns
+    -------
+    float
+        The value in SI units.
+
+    Raises
+    ------
+    SceneError
+        For a bare number, an unknown unit, NaN, infinity or anything that is not a quantity.
+    """
+    dim = DIMENSIONS[dimension]
+    remedy = f'Write it with its unit, such as "{dim.example}", or as {key}_{dim.suffix} in SI.'
+    if isinstance(value, bool) or not isinstance(value, (str, int, float)):
+        raise SceneError(f"is a {_kind(value)}, not a {dim.name}.", key=key, value=value, remedy=remedy)
+    if not isinstance(value, str):
+        raise SceneError(f"a bare number is not a {dim.name}.", key=key, value=value, remedy=remedy)
+    return _read_text(value, dim, key, remedy)
+
+
+def parse_number(value: Any, key: str) -> float:
+    """Read a bare number: a dimensionless value, or the value of a key that names its SI unit."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise SceneError(
+            f"is a {_kind(value)}, not a number.", key=key, value=value, remedy="Write a plain number."
+        )
+    try:
+        return float(value)
+    except OverflowError:
+        raise SceneError("is too large.", key=key, value="an integer of many digits") from None
+
+
+def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
+    """Write an SI value with a unit, so that `parse_quantity` gives back the very same float."""
+    dim = DIMENSIONS[dimension]
+    unit = dim.unit(symbol or dim.written) or dim.units[0]
+    text = _decimal(value, unit) if unit.factor == 1.0 else _scaled(value, unit)
+    return f"{text} {unit.symbol}" if text else f"{value!r} {dim.units[0].symbol}"
+
+
+def _decimal(value: float, unit: Unit) -> str:
+    number = Decimal(repr(value)).scaleb(-unit.power).normalize()
+    return f"{number:f}" if -7 < number.adjusted() < 9 else f"{number}"
+
+
+def _scaled(value: float, unit: Unit) -> str:
+    """Return the shortest text that reads back exactly, or nothing when there is none."""
+    texts = (f"{value / unit.factor:.{digits}g}" for digits in range(1, 18))
+    exact = next((text for text in texts if unit.to_si(text) == value), "")
+    return f"{Decimal(exact):f}" if exact and abs(float(exact)) < 1e9 else exact
+
+
+def _read_text(text: str, dim: Dimension, key: str, remedy: str) -> float:
+    match = _QUANTITY.fullmatch(text) if len(text) <= _LONGEST else None
+    if match is None:
+        raise SceneError(_why_not(text, dim), key=key, value=text, remedy=remedy)
+    number, symbol = match.group(1), _plain(match.group(2) or "")
+    if symbol.startswith(","):
+        raise SceneError("has a decimal comma; write a decimal point.", key=key, value=text, remedy=remedy)
+    if not symbol:
+        raise SceneError("has no unit.", key=key, value=text, remedy=remedy)
+    unit = dim.unit(symbol)
+    if unit is None:
+        raise SceneError(_unknown_unit(symbol, dim), key=key, value=text, remedy=remedy)
+    return _finite(number, unit, key, text)
+
+
+def _finite(number: str, unit: Unit, key: str, text: str) -> float:
+    if not math.isfinite(float(number)):
+        raise SceneError("is too large for a number.", key=key, value=text)
+    return unit.to_si(number) + 0.0 if float(number) else 0.0
+
+
+def _plain(symbol: str) -> str:
+    """Fold the usual spellings of a unit into one."""
+    folded = symbol.strip().replace(" ", "").replace("³", "3").replace("^3", "3").replace("°", "deg")
+    return folded.replace("µ", "u").replace("μ", "u")
+
+
+def _unknown_unit(symbol: str, dim: Dimension) -> str:
+    near = get_close_matches(symbol, [u.symbol for u in dim.units], 1, 0.4)
+    hint = f" Did you mean {near[0]}?" if near else ""
+    return f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}).{hint}"
+
+
+def _why_not(text: str, dim: Dimension) -> str:
+    lowered = text.strip().lower().lstrip("+-")
+    if lowered.startswith(("nan", "inf")):
+        return "must be a finite number."
+    return f"cannot be read as a {dim.name}."
+
+
+def _kind(value: Any) -> str:
+    names = {
+        bool: "true/false value",
+        str: "text",
+        list: "list",
+        dict: "table",
+        int: "number",
+        float: "number",
+    }
+    return names.get(type(value), type(value).__name__)

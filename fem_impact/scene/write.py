@@ -1,0 +1,74 @@
+"""From a `Scene` to its complete written form: tables, TOML text and digest."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping
+from typing import Any
+
+from fem_impact.scene import fields
+from fem_impact.scene.fields import Field
+from fem_impact.scene.types import Material, Scene
+
+__all__ = ["digest", "to_dict", "to_toml"]
+
+
+def to_dict(scene: Scene) -> dict[str, Any]:
+    """Return every value of the scene, defaults too, quantities with their units."""
+    rod = scene.projectile
+    top: dict[str, Any] = {"id": scene.id, "title": scene.title, "effects": list(scene.effects)}
+    if scene.measured is not None:
+        top["measured"] = scene.measured
+    surface = {"state": scene.surface.state, "source": scene.surface.source}
+    return top | {
+        "projectile": {
+            "tip": rod.tip,
+            **_written(rod, fields.PROJECTILE),
+            "material": _material(rod.material),
+        },
+        "barrier": {"material": _material(scene.barrier.material)},
+        "surface": surface | _written(scene.surface, fields.SURFACE),
+        "impact": _written(scene.impact, fields.IMPACT),
+        "accuracy": _written(scene.accuracy, fields.ACCURACY),
+        "save": _written(scene.save, fields.SAVE),
+    }
+
+
+def to_toml(scene: Scene) -> str:
+    """Return the scene as TOML text that reads back as an equal scene."""
+    return "\n".join(_lines(to_dict(scene), "")) + "\n"
+
+
+def digest(scene: Scene) -> str:
+    """Return the SHA-256 of the scene's canonical JSON."""
+    text = json.dumps(to_dict(scene), sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _material(material: Material) -> dict[str, Any]:
+    return {"name": material.name, **_written(material, fields.MATERIAL)}
+
+
+def _written(part: object, wanted: tuple[Field, ...]) -> dict[str, Any]:
+    return {f.key: f.write(getattr(part, f.key)) for f in wanted}
+
+
+def _lines(table: Mapping[str, Any], path: str) -> list[str]:
+    """Return a table's own values, then its sub-tables under their headings."""
+    own = [f"{key} = {_value(value)}" for key, value in table.items() if not isinstance(value, Mapping)]
+    heading = ["", f"[{path}]"] if path and own else []
+    below = [
+        line
+        for key, value in table.items()
+        if isinstance(value, Mapping)
+        for line in _lines(value, f"{path}.{key}" if path else key)
+    ]
+    return [*heading, *own, *below]
+
+
+def _value(value: Any) -> str:
+    """Write one TOML value; a JSON string is also a TOML basic string once DEL is escaped."""
+    if isinstance(value, list):
+        return f"[{', '.join(_value(item) for item in value)}]"
+    return json.dumps(value, ensure_ascii=False, allow_nan=False).replace("\x7f", "\\u007f")
