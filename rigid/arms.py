@@ -1,0 +1,47 @@
+"""Lever arms of the contact point: Eq 6-7 of Averill et al."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Floats, floats
+
+
+class Arms(NamedTuple):
+    """Position of the contact point: it lies at -d_c t - d_d n from the mass centre (m)."""
+
+    d_c: Floats
+    d_d: Floats
+
+
+def corner_arms(length: ArrayLike, diameter: ArrayLike, alpha: ArrayLike) -> Arms:
+    """Arms of the sharp corner of a plain cylinder (Eq 6-7).
+
+    The printed form, with the half diagonal s = sqrt(l^2 + d^2)/2 and the angle
+    alpha - pi/2 + arctan(l/d), is the rotation of the corner (d/2, l/2) written in polar form.
+
+    Parameters
+    ----------
+    length, diameter : array_like
+        Of the cylinder, m.
+    alpha : array_like
+        Inclination of the barrier, rad.
+
+    Returns
+    -------
+    Arms
+        d_c, d_d in m, of the broadcast shape.
+
+    Examples
+    --------
+    >>> d_c, d_d = corner_arms(0.08, 0.019, np.radians(17.0))
+    >>> f"{1e3 * d_c:.2f} mm, {1e3 * d_d:.2f} mm"
+    '2.61 mm, 41.03 mm'
+    """
+    length, diameter, alpha = floats(length, diameter, alpha)
+    half_diagonal = 0.5 * np.hypot(length, diameter)
+    angle = alpha - np.pi / 2 + np.arctan(length / diameter)
+    return Arms(half_diagonal * np.sin(angle), half_diagonal * np.cos(angle))

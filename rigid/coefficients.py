@@ -1,0 +1,88 @@
+"""Impact coefficients from velocities: Eq 16-18."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arrays import Floats, floats
+from .errors import refuse
+from .massive import APPROACH
+
+
+class Coefficients(NamedTuple):
+    """Kinematic restitution, impulse ratio and moment restitution, dimensionless."""
+
+    e: Floats
+    mu: Floats
+    e_m: Floats
+
+
+def restitution(
+    v_n: ArrayLike, V_n: ArrayLike, Omega: ArrayLike, d_c: ArrayLike, omega: ArrayLike = 0.0
+) -> Floats:
+    """Kinematic restitution at the contact point, e = -(V_n + d_c Omega)/(v_n + d_c omega) (Eq 16)."""
+    v_n, V_n, Omega, d_c, omega = floats(v_n, V_n, Omega, d_c, omega)
+    approach = v_n + d_c * omega
+    refuse(~(approach < 0), APPROACH, approach)
+    return -(V_n + d_c * Omega) / approach
+
+
+def impulse_ratio(v_n: ArrayLike, v_t: ArrayLike, V_n: ArrayLike, V_t: ArrayLike) -> Floats:
+    """Tangential over normal impulse, mu = (V_t - v_t)/(V_n - v_n) (Eq 17)."""
+    v_n, v_t, V_n, V_t = floats(v_n, v_t, V_n, V_t)
+    normal = V_n - v_n
+    refuse(~(normal > 0), "the barrier can only push: V_n - v_n must be positive, got {value} m/s", normal)
+    return (V_t - v_t) / normal
+
+
+def coefficients(
+    v_n: ArrayLike,
+    v_t: ArrayLike,
+    V_n: ArrayLike,
+    V_t: ArrayLike,
+    Omega: ArrayLike,
+    *,
+    d_c: ArrayLike,
+    d_d: ArrayLike,
+    k2: ArrayLike,
+    omega: ArrayLike = 0.0,
+) -> Coefficients:
+    """e, mu and e_m of measured or computed velocities (Eq 16-18).
+
+    Parameters
+    ----------
+    v_n, v_t, V_n, V_t : array_like
+        Velocities of the mass centre before and after, m/s.
+    Omega, omega : array_like
+        Spin after and before, rad/s.
+    d_c, d_d : array_like
+        Arms of the contact point, m.
+    k2 : array_like
+        Squared radius of gyration, m2.
+
+    Returns
+    -------
+    Coefficients
+        float64 of the broadcast shape. e_m is infinite where the impulse passes through the mass
+        centre (and undefined, nan, if the spin does not change either).
+
+    Raises
+    ------
+    ImpactError
+        If the contact point does not approach, or the normal impulse is not positive.
+
+    Examples
+    --------
+    >>> e, mu, e_m = coefficients(-2.751, -2.809, -.397, -1.887, 26.94, d_c=.084, d_d=.086, k2=4.84e-3)
+    >>> f"{e:.3f} {mu:.3f} {e_m:.2f}"
+    '0.678 0.392 -1.10'
+    """
+    v_n, v_t, V_n, V_t, Omega, omega = floats(v_n, v_t, V_n, V_t, Omega, omega)
+    d_c, d_d, k2 = floats(d_c, d_d, k2)
+    e, mu = restitution(v_n, V_n, Omega, d_c, omega), impulse_ratio(v_n, v_t, V_n, V_t)
+    moment = d_c * (V_n - v_n) - d_d * (V_t - v_t) + k2 * omega
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return Coefficients(e, mu, -k2 * Omega / moment)

@@ -1,0 +1,46 @@
+"""The refusals of this package, in physical words and with the offending number."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+
+class RigidError(ValueError):
+    """An input for which rigid-body impact theory has no meaning."""
+
+
+class ShapeError(RigidError):
+    """A projectile that cannot be turned on a lathe."""
+
+
+class ImpactError(RigidError):
+    """An impact that cannot happen, or whose equations have no solution."""
+
+
+class DataError(RigidError):
+    """Measured data that are missing, or too few for what is asked of them."""
+
+
+def refuse(bad: Any, message: str, values: Any, error: type[RigidError] = ImpactError) -> None:
+    """Raise `error` where `bad` holds, naming the first offending value and its place.
+
+    Parameters
+    ----------
+    bad : bool or array of bool
+        True where the input cannot be used.
+    message : str
+        What is wrong and what to do, with ``{value}`` where the number belongs.
+    values : array_like
+        The quantity judged, broadcastable to the shape of `bad`.
+    error : type of RigidError
+        The class to raise.
+    """
+    bad = np.asarray(bad)
+    if not bad.any():
+        return
+    place = np.unravel_index(int(np.argmax(bad)), bad.shape)
+    value = np.broadcast_to(np.asarray(values), bad.shape)[place]
+    where = f" (impact {', '.join(str(int(i)) for i in place)})" if place else ""
+    raise error(message.format(value=f"{value:.6g}") + where)

@@ -1,0 +1,56 @@
+"""Mean, scatter and interval of a column of measurements."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from ..errors import DataError
+
+
+@dataclass(frozen=True, slots=True)
+class Statistic:
+    """What a column of measurements says.
+
+    Attributes
+    ----------
+    mean, sd : float
+        Mean and sample standard deviation, in the column's unit.
+    low, high : float
+        Student's 95 % interval of the mean.
+    n : int
+        Number of tests.
+    """
+
+    mean: float
+    sd: float
+    low: float
+    high: float
+    n: int
+
+
+def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:
+    """Recompute the statistics of one column.
+
+    Parameters
+    ----------
+    values : (n,) array_like
+        At least two measurements.
+    level : float
+        Confidence of the interval of the mean.
+
+    Examples
+    --------
+    >>> s = statistic([1.0, 2.0, 3.0])
+    >>> f"{s.mean} {s.sd} [{s.low:.3f}, {s.high:.3f}] n = {s.n}"
+    '2.0 1.0 [-0.484, 4.484] n = 3'
+    """
+    x = np.asarray(values, dtype=np.float64)
+    if x.ndim != 1 or x.size < 2:
+        raise DataError(f"a scatter needs at least two measurements in one column, got shape {x.shape}")
+    mean, sd = float(x.mean()), float(x.std(ddof=1))
+    half = float(stdtrit(x.size - 1, (1 + level) / 2)) * sd / x.size**0.5
+    return Statistic(mean, sd, mean - half, mean + half, x.size)

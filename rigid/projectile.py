@@ -1,0 +1,165 @@
+"""The projectile: a turned rod, its mass properties and where it touches an inclined barrier."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .arms import Arms, corner_arms
+from .arrays import Floats, floats
+from .errors import ShapeError, refuse
+from .nose import Nose, nose
+from .slenderness import slenderness
+
+TIPS = ("A", "B", "plain")
+
+
+@dataclass(frozen=True, slots=True)
+class Projectile:
+    """A rod of circular section with one turned tip.
+
+    Parameters
+    ----------
+    length, diameter : float
+        Overall, m.
+    tip : "A", "B" or "plain"
+        A: spherical nose of `tip_radius` to 60 degrees from the pole, then its tangent cone (an
+        assumption: the published profile stops at the sphere); B: flat face with a rounded edge of
+        `tip_radius`; plain: flat face, sharp edge.
+    tip_radius : float
+        m; not used by "plain", where it must be 0.
+    density : float
+        kg/m3.
+
+    Examples
+    --------
+    >>> rod = Projectile(0.24, 0.019, "B", 0.003, 7850.0)
+    >>> f"{rod.mass:.4f} kg, k2 {rod.k2:.4e} m2, z_c {1e3 * rod.z_c:.2f} mm"
+    '0.5333 kg, k2 4.8076e-03 m2, z_c 120.19 mm'
+    """
+
+    length: float
+    diameter: float
+    tip: str
+    tip_radius: float
+    density: float
+
+    def __post_init__(self) -> None:
+        _check(self)
+
+    @property
+    def nose(self) -> Nose:
+        """Shape of the tip."""
+        return nose(self.tip, self.diameter / 2, self.tip_radius)
+
+    @property
+    def z_side(self) -> float:
+        """Where the nose ends and the cylinder begins, m from the tip end."""
+        return self.nose.z_side
+
+    @property
+    def mass(self) -> float:
+        """Mass of the whole rod, kg."""
+        return _moments(self).mass
+
+    @property
+    def z_c(self) -> float:
+        """Distance of the mass centre from the tip end, m."""
+        return _moments(self).z_c
+
+    @property
+    def k2(self) -> float:
+        """Squared radius of gyration about a transverse axis through the mass centre, m2."""
+        return _moments(self).k2
+
+    @property
+    def gamma(self) -> float:
+        """Slenderness coefficient (Eq 29), m^-0.3815."""
+        return float(slenderness(self.length, self.diameter))
+
+    def meridian(self, n: int = 33) -> Floats:
+        """Give the tip's meridian as (rho, z) points, m, from (0, 0) to (R, z_side).
+
+        `n` points lie on the arc (both ends counted); the flat face and the cone add their ends only.
+        Shape (m, 2), float64; every break point is exact.
+        """
+        if n < 2:
+            raise ShapeError(f"an arc needs at least 2 points, got n = {n}")
+        return self.nose.polyline(n)
+
+    def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
+        """Give (rho, z), m, of the lowest meridian point at inclination `alpha` (rad)."""
+        (alpha,) = floats(alpha)
+        outside = ~((alpha >= 0) & (alpha < np.pi / 2))
+        refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
+        return self.nose.lowest(alpha)
+
+    def arms(self, alpha: ArrayLike) -> Arms:
+        """Give (d_c, d_d), m, of the real tip: its lowest point seen from the true mass centre."""
+        rho, z = self.contact_point(alpha)
+        sin, cos = np.sin(alpha), np.cos(alpha)
+        return Arms((self.z_c - z) * sin - rho * cos, (self.z_c - z) * cos + rho * sin)
+
+    def corner_arms(self, alpha: ArrayLike) -> Arms:
+        """Give (d_c, d_d), m, of the sharp corner of a plain cylinder of this size (Eq 6-7)."""
+        return corner_arms(self.length, self.diameter, alpha)
+
+
+class Moments(NamedTuple):
+    """Mass (kg), distance of the mass centre from the tip (m), squared radius of gyration (m2)."""
+
+    mass: float
+    z_c: float
+    k2: float
+
+
+def _check(rod: Projectile) -> None:
+    """Refuse a shape that cannot be turned."""
+    for name in ("length", "diameter", "density"):
+        value = getattr(rod, name)
+        if not (math.isfinite(value) and value > 0):
+            raise ShapeError(f"{name} must be positive and finite, got {value}")
+    if rod.tip not in TIPS:
+        raise ShapeError(f"tip must be one of {', '.join(TIPS)}, got {rod.tip!r}")
+    if rod.tip == "plain" and rod.tip_radius != 0:
+        raise ShapeError(f"a plain tip has a sharp edge: tip_radius must be 0, got {rod.tip_radius}")
+    if rod.tip != "plain" and not 0 < rod.tip_radius <= rod.diameter / 2:
+        limit = f"must lie in 0 < tip_radius <= {rod.diameter / 2} m (the rod's radius)"
+        raise ShapeError(f"tip_radius of tip {rod.tip} {limit}, got {rod.tip_radius}")
+    if not rod.nose.z_side < rod.length:
+        raise ShapeError(f"the nose is {rod.nose.z_side:.6g} m long, the rod only {rod.length} m")
+
+
+@lru_cache(maxsize=128)
+def _moments(rod: Projectile) -> Moments:
+    """Integrate the solid of revolution.
+
+    dm = density pi rho^2 dz, and a disc adds its own rho^2/4 about its diameter; Gauss points are
+    exact for the straight pieces and reach round-off on the arc.
+    """
+    z, rho2, dz = (np.concatenate(part) for part in zip(*_pieces(rod), strict=True))
+    dm = rod.density * np.pi * rho2 * dz
+    mass = float(dm.sum())
+    z_c = float(dm @ z) / mass
+    return Moments(mass, z_c, float(dm @ (rho2 / 4 + (z - z_c) ** 2)) / mass)
+
+
+def _pieces(rod: Projectile) -> Iterator[tuple[Floats, Floats, Floats]]:
+    """Yield (z, rho^2, dz) at the Gauss points of arc, cone and cylinder."""
+    x, weight = np.polynomial.legendre.leggauss(24)
+    unit, weight = 0.5 * (x + 1), 0.5 * weight
+    tip = rod.nose
+    theta = tip.sweep * unit
+    rho = tip.face + tip.r * np.sin(theta)
+    yield tip.r * (1 - np.cos(theta)), rho**2, tip.r * np.sin(theta) * tip.sweep * weight
+    start, z_start = tip.arc_end
+    height = tip.z_side - z_start
+    yield z_start + height * unit, (start + (tip.radius - start) * unit) ** 2, height * weight
+    body = rod.length - tip.z_side
+    yield tip.z_side + body * unit, np.full_like(unit, tip.radius**2), body * weight
