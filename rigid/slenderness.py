@@ -12,7 +12,8 @@ EXPONENT = 1.3815
 LIMIT = 26.45
 """Largest gamma (m^-0.3815) for which a free steel bar was found to rebound as a rigid body."""
 
-LIMIT_MM = LIMIT * 1000 ** (1 - EXPONENT)
+TO_MM = float(np.power(1000.0, 1.0 - EXPONENT))
+LIMIT_MM = LIMIT * TO_MM
 """The same limit with lengths in millimetres, mm^-0.3815."""
 
 
@@ -41,13 +42,12 @@ def slenderness(length: ArrayLike, diameter: ArrayLike) -> Floats:
     length, diameter = floats(length, diameter)
     for value in (length, diameter):
         refuse(~(value > 0), "length and diameter must be positive, got {value} m", value, ShapeError)
-    gamma: Floats = length / diameter**EXPONENT
-    return gamma
+    return length / diameter**EXPONENT
 
 
 def in_millimetres(gamma: ArrayLike) -> Floats:
     """Give gamma in mm^-0.3815 for gamma in m^-0.3815 (the limit 26.45 becomes 1.896)."""
-    return np.asarray(gamma, dtype=np.float64) * 1000 ** (1 - EXPONENT)
+    return np.asarray(gamma, dtype=np.float64) * TO_MM
 
 
 def behaves_rigidly(gamma: ArrayLike) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
