@@ -5,6 +5,7 @@ from meshes.errors import MeshError
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.quality import Quality, quality, volume
 from meshes.refine import levels_for, refine
+from meshes.rod import RodMesh, rod
 from meshes.zone import Zone
 
 __all__ = [
@@ -14,10 +15,12 @@ __all__ = [
     "HexMesh",
     "MeshError",
     "Quality",
+    "RodMesh",
     "Zone",
     "block",
     "levels_for",
     "quality",
     "refine",
+    "rod",
     "volume",
 ]

@@ -1,0 +1,141 @@
+"""The meridian of a tip: a polyline that grid lines are laid along and nodes are snapped to."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from meshes.errors import MeshError
+
+__all__ = ["Meridian", "closest_on"]
+
+FloatArray = npt.NDArray[np.float64]
+
+# A turn of the polyline above this is an edge of the body, not a step of a smooth curve.
+CORNER = np.deg2rad(12.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Meridian:
+    """A polyline of (rho, z) from the pole (0, 0) to the side of a rod, by arc length.
+
+    Attributes
+    ----------
+    line : (k, 2) float64, m
+        Vertices; the last is where the cylinder begins, at the radius of the rod.
+
+    Raises
+    ------
+    MeshError
+        If the line does not start at the pole, turns back, or stands still.
+    """
+
+    line: FloatArray
+
+    def __post_init__(self) -> None:
+        """Refuse a line that bounds no tip."""
+        line = np.array(self.line, dtype=np.float64)
+        object.__setattr__(self, "line", line)
+        if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2:
+            raise MeshError(f"meridian has shape {line.shape}: give at least two rows (rho, z)")
+        step = np.diff(line, axis=0)
+        if np.any(np.abs(line[0]) > 1e-12 * line[-1, 0]):
+            raise MeshError(f"meridian starts at {line[0].tolist()} m: it must start at the pole (0, 0)")
+        if np.any(step < -1e-12 * line[-1, 0]) or np.any(np.hypot(*step.T) <= 0.0):
+            raise MeshError("meridian turns back or repeats a point: rho and z must grow along it")
+
+    @property
+    def radius(self) -> float:
+        """Radius of the rod, m."""
+        return float(self.line[-1, 0])
+
+    @property
+    def height(self) -> float:
+        """Height z at which the cylinder begins, m."""
+        return float(self.line[-1, 1])
+
+    @property
+    def arc(self) -> FloatArray:
+        """(k,) arc length at the vertices, m."""
+        return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.line, axis=0).T))])
+
+    @property
+    def slope(self) -> FloatArray:
+        """(k - 1,) angle of each segment from the radial direction, rad."""
+        step = np.diff(self.line, axis=0)
+        return np.asarray(np.arctan2(step[:, 1], step[:, 0]))
+
+    def extended(self, height: float) -> "Meridian":
+        """Go on along the cylinder up to `height` (m)."""
+        if height <= self.height:
+            return self
+        return Meridian(np.concatenate([self.line, [[self.radius, height]]]))
+
+    def at(self, arc: FloatArray) -> FloatArray:
+        """(..., 2) points at arc lengths (...), m."""
+        known = self.arc
+        return np.stack([np.interp(arc, known, self.line[:, i]) for i in (0, 1)], axis=-1)
+
+    def corners(self) -> FloatArray:
+        """(c,) arc lengths of the sharp edges, m."""
+        turn = np.abs(np.diff(self.slope))
+        return np.asarray(self.arc[1:-1][turn > CORNER])
+
+    def shoulder(self) -> float:
+        """Arc length at which the line has turned half-way from face to side, m.
+
+        A blunt rule for pointed tips: not nearer to the axis than half the radius.
+        """
+        slope, arc = self.slope, self.arc
+        middle = 0.5 * (arc[1:] + arc[:-1])
+        after = int(np.argmax(slope >= np.pi / 4.0)) if np.any(slope >= np.pi / 4.0) else len(slope)
+        if after in (0, len(slope)) or slope[after] - slope[after - 1] > CORNER:
+            turned = float(arc[after])
+        else:
+            pair = slice(after - 1, after + 1)
+            turned = float(np.interp(np.pi / 4.0, slope[pair], middle[pair]))
+        return max(turned, float(np.interp(0.5 * self.radius, self.line[:, 0], arc)))
+
+    def inward(self, arc: float) -> FloatArray:
+        """(2,) unit normal into the body, the bisector at an edge."""
+        reach = 1e-6 * self.radius
+        sides = self.at(np.array([arc - reach, arc, arc + reach]))
+        step = np.diff(sides, axis=0)
+        step = step / np.hypot(*step.T)[:, None]
+        mean = step.sum(axis=0) / np.hypot(*step.sum(axis=0))
+        return np.array([-mean[1], mean[0]])
+
+    def snap(self, points: FloatArray) -> FloatArray:
+        """Closest points of the surface of revolution, azimuth kept: (k, 3) m to (k, 3) m."""
+        rho = np.hypot(points[:, 0], points[:, 1])
+        target = closest_on(self.line, np.stack([rho, points[:, 2]], axis=1))
+        scale = np.where(rho > 0.0, target[:, 0] / np.where(rho > 0.0, rho, 1.0), 1.0)
+        return np.stack([points[:, 0] * scale, points[:, 1] * scale, target[:, 1]], axis=1)
+
+
+def closest_on(line: FloatArray, points: FloatArray) -> FloatArray:
+    """Closest points of a polyline.
+
+    Parameters
+    ----------
+    line : (k, 2) float64
+    points : (p, 2) float64
+
+    Returns
+    -------
+    (p, 2) float64
+    """
+    step = np.diff(line, axis=0)
+    length = np.hypot(*step.T)
+    # Pieces of near-equal length: the closest segment then touches one of the few closest vertices.
+    count = np.maximum(1, np.ceil(length / (length.sum() / 2000.0))).astype(np.int64)
+    segment = np.repeat(np.arange(len(step)), count)
+    share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + 0.5) / count[segment]
+    _, near = cKDTree(line[segment] + share[:, None] * step[segment]).query(points, k=min(4, len(segment)))
+    candidates = segment[near.reshape(len(points), -1)]
+    from_start = points[:, None, :] - line[candidates]
+    along = (from_start * step[candidates]).sum(axis=-1) / length[candidates] ** 2
+    foot = line[candidates] + np.clip(along, 0.0, 1.0)[..., None] * step[candidates]
+    best = np.linalg.norm(foot - points[:, None, :], axis=-1).argmin(axis=1)
+    return np.asarray(foot[np.arange(len(points)), best])

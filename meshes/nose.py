@@ -1,0 +1,100 @@
+"""The nose of a rod in its meridian half plane: a plug wrapped in a layer that follows the surface.
+
+The plug carries the inner part of the section and ends in the point C of the half plane; the layer
+leaves the face, turns around the edge and runs up the side. Plug, face layer and side layer meet in C,
+one layer deep, so the grid at the surface itself is regular all along the meridian.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.meridian import Meridian
+
+__all__ = ["Nose", "lay_nose"]
+
+FloatArray = npt.NDArray[np.float64]
+
+# Depth of C below the surface as a multiple of the layer: found by a scan like the section's proportions.
+DEPTH = 1.1
+FACE_DEPTH = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Nose:
+    """Nodes of the nose in the half plane, (rho, z) in m.
+
+    Attributes
+    ----------
+    face : (p, 2)
+        Below each node of the plug's section, on the surface.
+    plug : (rows + 1, p, 2)
+        Nodes of the plug, row 0 above the face layer, the last row at the body.
+    side : (rows + 1, 2)
+        Surface nodes of the side layer; row 0 is the end of the face.
+    """
+
+    face: FloatArray
+    plug: FloatArray
+    side: FloatArray
+
+
+def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, pitch: float) -> Nose:
+    """Lay the nose grid.
+
+    Parameters
+    ----------
+    meridian : Meridian
+    height : float, m
+        Where the body begins.
+    share : (p,) float64
+        Radius of the plug's nodes over the plug's radius, 0 to 1.
+    plug : float
+        Radius of the plug over the radius of the rod, at the body.
+    pitch : float, m
+        Wanted height of the rows.
+    """
+    curve = meridian.extended(height)
+    split = curve.shoulder()
+    layer = (1.0 - plug) * meridian.radius
+    deep = _depth(curve, split, layer) * curve.inward(split)
+    corner = curve.at(np.array(split)) + deep
+    length = curve.arc[-1] - split
+    rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
+    side = curve.at(_along(split, curve.arc[-1], rows, curve.corners()))
+    face = curve.at(split * share)
+    raise_face = np.outer(1.0 - share**2, [0.0, FACE_DEPTH * layer]) + np.outer(share**2, deep)
+    fade = np.linspace(0.0, 1.0, rows + 1)
+    wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer, 0.0])
+    return Nose(face, _filled(face + raise_face, wall, share, height), side)
+
+
+def _depth(meridian: Meridian, split: float, layer: float) -> float:
+    """Distance of C from the surface: from the edge of a sharp corner, from the arc of a round one."""
+    end = meridian.at(np.array(split))
+    rounding = float(np.hypot(meridian.radius - end[0], end[1]))
+    return DEPTH * max(np.sqrt(2.0) * layer - rounding, 0.8 * layer)
+
+
+def _along(start: float, end: float, rows: int, corners: FloatArray) -> FloatArray:
+    """(rows + 1,) arc lengths in even steps, moved so that a row falls on each edge of the body."""
+    even = np.linspace(start, end, rows + 1)
+    inside = corners[(corners > start + 0.3 * (even[1] - start)) & (corners < end - 0.3 * (even[1] - start))]
+    if not len(inside):
+        return even
+    row = np.clip(np.rint((inside - start) / (even[1] - start)), 1, rows - 1)
+    row, first = np.unique(row, return_index=True)
+    places = np.concatenate([[start], inside[first], [end]])
+    return np.interp(np.arange(rows + 1), np.concatenate([[0], row, [rows]]), places)
+
+
+def _filled(bottom: FloatArray, wall: FloatArray, share: FloatArray, height: float) -> FloatArray:
+    """(rows + 1, p, 2) transfinite plug between its bottom, wall, axis and the plane of the body."""
+    u = np.linspace(0.0, 1.0, len(wall))[:, None, None]
+    s = share[None, :, None]
+    pole = np.array([0.0, bottom[np.argmin(share), 1]])
+    top = np.stack([share * wall[-1, 0], np.full(len(share), height)], axis=1)
+    axis = pole + u * (np.array([0.0, height]) - pole)
+    straight = (1.0 - u) * ((1.0 - s) * pole + s * wall[0]) + u * top
+    return np.asarray((1.0 - u) * bottom + u * top + (1.0 - s) * axis + s * wall[:, None] - straight)

@@ -1,0 +1,177 @@
+"""Half a rod with a shaped tip: a nose that follows its meridian, and a body of identical slices."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from meshes.errors import MeshError
+from meshes.hexmesh import SKIN, SYMMETRY, HexMesh, from_cells
+from meshes.meridian import Meridian
+from meshes.nose import Nose, lay_nose
+from meshes.quality import require_positive
+from meshes.refine import reach, refine
+from meshes.section import Section, section
+from meshes.zone import Zone
+
+__all__ = ["RodMesh", "rod"]
+
+FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class RodMesh:
+    """Half a rod, y >= 0, in the rod frame: z along the axis from the tip (0) to the tail.
+
+    Attributes
+    ----------
+    mesh : HexMesh
+    body_nodes : (n_section, n_layers) int64
+        Nodes of the slices; column 0 is the interface to the nose (or the flat face), the last the tail.
+    body_cells : (n_section_cells, n_slices) int64
+        Cells of a row are translates of each other along z; never refined.
+    slice_length : float, m
+    body_start : float, m
+        z of the interface.
+    """
+
+    mesh: HexMesh
+    body_nodes: IntArray
+    body_cells: IntArray
+    slice_length: float
+    body_start: float
+
+
+def rod(
+    meridian: FloatArray,
+    length: float,
+    across: int = 8,
+    slice_length: float | None = None,
+    zone: Zone | None = None,
+    levels: int = 0,
+    *,
+    nose: bool = True,
+    buffer: int = 2,
+) -> RodMesh:
+    """Mesh half a rod.
+
+    Parameters
+    ----------
+    meridian : (k, 2) float64, m
+        (rho, z) of the tip from the pole (0, 0) to the start of the cylinder.
+    length : float, m
+    across : int
+        Cells over the diameter, even, at least 6.
+    slice_length : float, m, optional
+        Wanted height of the slices (default: diameter / across); adjusted to divide the body evenly.
+    zone, levels, buffer
+        See `refine`; the zone is in the rod frame. The nose is made long enough to hold the refinement.
+    nose : bool
+        False: only slices, from a flat face at z = 0 (the meridian then gives the radius alone).
+
+    Raises
+    ------
+    MeshError
+        If the rod is too short for its nose, or a cell folds.
+    """
+    shape = Meridian(meridian)
+    half = section(across)
+    pitch = 2.0 * shape.radius / across
+    wanted = pitch if slice_length is None else slice_length
+    if not nose and zone is not None:
+        raise MeshError("a rod of slices alone cannot be refined: leave the zone out or keep the nose")
+    start = _body_start(shape, pitch, zone, levels, buffer) if nose else 0.0
+    count = _slices(length, start, wanted, pitch)
+    slab = (length - start) / count
+    points, cells = _body(half, shape.radius, start, slab, count)
+    body_cells = np.arange(len(cells)).reshape(count, -1).T
+    body_nodes = np.arange(len(points)).reshape(count + 1, -1).T
+    if nose:
+        points, cells = _with_nose(half, shape, start, pitch, points, cells)
+    mesh = from_cells(points, cells, _tag)
+    require_positive(mesh)
+    if zone is not None and levels:
+        frozen = np.arange(len(cells)) < body_cells.size
+        full = shape.extended(length)
+        mesh = refine(mesh, zone, levels, full.snap, buffer=buffer, frozen=frozen)
+        require_positive(mesh)
+    return RodMesh(mesh, body_nodes, body_cells, slab, start)
+
+
+def _body_start(shape: Meridian, pitch: float, zone: Zone | None, levels: int, buffer: int) -> float:
+    """Where the slices can begin: past the tip's shape and past all cells that are to be split, m."""
+    start = max(shape.height + pitch, 2.0 * shape.radius / 3.0)
+    if zone is None or levels == 0:
+        return start
+    top = float(zone.corners()[:, 2].max())
+    return max(start, top + float(reach(1.4 * pitch, 1, levels, buffer)) + 1.5 * pitch)
+
+
+def _slices(length: float, start: float, wanted: float, pitch: float) -> int:
+    if not wanted > 0.0:
+        raise MeshError(f"slice_length must be positive, not {wanted} m")
+    if length < start + 0.5 * pitch:
+        raise MeshError(
+            f"length {length} m leaves no body above the nose, which needs {start:.6g} m: "
+            "take a longer rod, a smaller zone or fewer levels"
+        )
+    return max(1, round((length - start) / wanted))
+
+
+def _body(half: Section, radius: float, start: float, slab: float, count: int) -> tuple[FloatArray, IntArray]:
+    """Points and cells of the slices, layer after layer."""
+    z = start + slab * np.arange(count + 1)
+    flat = radius * half.unit
+    layers = np.broadcast_to(flat, (count + 1, *flat.shape))
+    height = np.broadcast_to(z[:, None, None], (count + 1, len(flat), 1))
+    points = np.concatenate([layers, height], axis=2).reshape(-1, 3)
+    slab_cells = np.concatenate([half.quads, half.quads + len(flat)], axis=1)
+    cells = slab_cells[None] + len(flat) * np.arange(count)[:, None, None]
+    return points, cells.reshape(-1, 8)
+
+
+def _with_nose(
+    half: Section, shape: Meridian, start: float, pitch: float, points: FloatArray, cells: IntArray
+) -> tuple[FloatArray, IntArray]:
+    """Append the nose below the body; its last row is the body's first layer."""
+    inner = half.plug_nodes
+    grid = lay_nose(shape, start, half.radius[:inner] / half.plug, half.plug, pitch)
+    rows = len(grid.side) - 1
+    first = len(points)
+    below = first + np.arange(inner)
+    plug = np.concatenate(
+        [first + inner * (1 + np.arange(rows))[:, None] + np.arange(inner), [np.arange(inner)]]
+    )
+    rim = len(half.unit) - inner
+    outer = first + inner * (rows + 1) + rim * np.arange(rows - 1)[:, None] + np.arange(rim)
+    side = np.concatenate([[below[-rim:]], outer, [inner + np.arange(rim)]])
+    body = np.concatenate([plug, side], axis=1)
+    layers = [_between(below, plug[0], half.quads[: half.plug_quads])]
+    layers += [_between(body[k], body[k + 1], half.quads) for k in range(rows)]
+    return np.concatenate([points, _revolved(half, grid)]), np.concatenate([cells, *layers])
+
+
+def _between(low: IntArray, high: IntArray, quads: IntArray) -> IntArray:
+    """(k, 8) cells between two layers of the same section."""
+    return np.concatenate([low[quads], high[quads]], axis=1)
+
+
+def _revolved(half: Section, grid: Nose) -> FloatArray:
+    """(n, 3) nodes of the nose without its last row: face, plug rows, side rows."""
+    inner = half.plug_nodes
+    around, rim = half.direction[:inner], half.direction[inner:]
+    blocks = [_turn(grid.face, around)]
+    blocks += [_turn(row, around) for row in grid.plug[:-1]]
+    blocks += [_turn(np.broadcast_to(place, (len(rim), 2)), rim) for place in grid.side[1:-1]]
+    return np.concatenate(blocks)
+
+
+def _turn(meridian: FloatArray, direction: FloatArray) -> FloatArray:
+    """(k, 3) points from (rho, z) and the direction of their half plane."""
+    return np.concatenate([meridian[:, :1] * direction, meridian[:, 1:]], axis=1)
+
+
+def _tag(corners: FloatArray) -> IntArray:
+    """SYMMETRY at y = 0, SKIN elsewhere."""
+    return np.where((corners[:, :, 1] == 0.0).all(axis=1), SYMMETRY, SKIN)
