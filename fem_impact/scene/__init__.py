@@ -4,6 +4,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene.effect_names import BARRIERS, NAMES
 from fem_impact.scene.fields import DEFAULTS, Default
 from fem_impact.scene.library import load, material, materials, shipped, source_of, surface, surfaces
+from fem_impact.scene.replace import replace_all
 from fem_impact.scene.types import (
     MEASURED_SETS,
     Accuracy,
@@ -16,6 +17,7 @@ from fem_impact.scene.types import (
     Surface,
 )
 from fem_impact.scene.units import format_quantity, parse_quantity
+from fem_impact.scene.validity import validity
 
 __all__ = [
     "BARRIERS",
@@ -37,8 +39,10 @@ __all__ = [
     "material",
     "materials",
     "parse_quantity",
+    "replace_all",
     "shipped",
     "source_of",
     "surface",
     "surfaces",
+    "validity",
 ]

@@ -11,24 +11,37 @@ from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
 
-__all__ = ["replace"]
+__all__ = ["replace", "replace_all"]
 
 _SUFFIXES = ("_m_per_s", "_rad_per_s", "_kg_per_m3", "_rad", "_Pa", "_m", "_s")
 
 
 def replace(scene: Scene, key: str, value: Any) -> Scene:
-    """Return a checked copy of the scene with one dotted key changed.
+    """Return a checked copy of the scene with one dotted key changed; see `replace_all`."""
+    return replace_all(scene, {key: value})
 
-    A changed friction makes the surface custom and a changed property renames its material, so that no
-    shipped name ever stands for other values.
+
+def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Return a checked copy of the scene with dotted keys changed, checked together at the end.
+
+    A changed friction makes the surface custom, a changed property renames its material, and a changed
+    rod, impact or surface state no longer repeats a measured set: a name never stands for other values.
+    Friction, materials, effects and accuracy are the model's side and leave ``measured`` as it is.
     """
     data = to_dict(scene)
+    for key, value in changes.items():
+        _change(data, key, value)
+    return read_dict(data, "--set")
+
+
+def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     table = _table(data, path, key)
     table.pop(_plain(last, table), None)
     table[last] = value
     _rename(table, path, last)
-    return read_dict(data, "--set")
+    if (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state":
+        data.pop("measured", None)
 
 
 def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:

@@ -1,0 +1,7 @@
+"""Run the command line as ``python -m fem_impact``."""
+
+import sys
+
+from fem_impact.cli import main
+
+sys.exit(main())

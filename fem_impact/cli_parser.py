@@ -1,0 +1,110 @@
+"""The words of the command line: commands, options, help."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.errors import EXIT_CODES
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+
+__all__ = ["Options", "build_parser"]
+
+_SCENE = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
+_SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
+_RESULT = "directory that a run or a study wrote"
+
+
+class Options(argparse.Namespace):
+    """What the command line said; every option has a value, whichever command was given."""
+
+    handler: str = ""
+    version: bool = False
+    json: bool = False
+    quiet: bool = False
+    scene: str = ""
+    changes: list[str]
+    ids: list[str]
+    out: Path | None = None
+    quick: bool = False
+    workers: int | None = None
+    result: Path
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    codes = "\n".join(f"  {code:>3}  {words}" for code, words in EXIT_CODES.items())
+    parser = argparse.ArgumentParser(
+        prog="fem-impact",
+        description="Where the energy of a dropped steel rod goes: finite elements beside rigid theory.",
+        epilog=f"exit codes:\n{codes}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="store_true", help="print the version")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check):
+        add(commands)
+    return parser
+
+
+def _command(commands: Commands, name: str, words: str, handler: str) -> argparse.ArgumentParser:
+    """Add one command with the options that all share."""
+    parser = commands.add_parser(name, help=words, description=f"{words.capitalize()}.")
+    parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
+    parser.set_defaults(handler=handler)
+    return parser
+
+
+def _add_run(commands: Commands) -> None:
+    parser = _command(commands, "run", "compute one scene and write its results", "fem_impact.cli_run:run")
+    _add_scene_words(parser)
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_study(commands: Commands) -> None:
+    parser = _command(
+        commands, "study", "compute the paper's sets and compare them with it", "fem_impact.cli_run:study"
+    )
+    parser.add_argument("name", choices=["sets"], help="sets: the published series of tests")
+    parser.add_argument("ids", nargs="*", metavar="ID", help="sets to compute (default: all of them)")
+    parser.add_argument("--quick", action="store_true", help="three rods with a coarse tip, about a minute")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/sets)")
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_render(commands: Commands) -> None:
+    parser = _command(commands, "render", "make a film of the stress waves", "fem_impact.cli_show:render")
+    parser.add_argument("result", type=Path, metavar="RESULT", help=_RESULT)
+    parser.add_argument("--out", type=Path, metavar="FILE", help="film to write (default: beside the fields)")
+
+
+def _add_report(commands: Commands) -> None:
+    parser = _command(commands, "report", "write the report as one HTML file", "fem_impact.cli_show:report")
+    parser.add_argument("result", type=Path, metavar="RESULT", help=_RESULT)
+
+
+def _add_scenes(commands: Commands) -> None:
+    _command(commands, "scenes", "list the shipped scenes", "fem_impact.cli_scene:scenes")
+
+
+def _add_check(commands: Commands) -> None:
+    words = "check a scene and print it with units, sources and effects, without computing"
+    _add_scene_words(_command(commands, "check", words, "fem_impact.cli_scene:check"))
+
+
+def _add_scene_words(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help=_SCENE)
+    parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
+
+
+def _at_least_one(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 1024:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes (1 to 1024)")
+    return int(text)

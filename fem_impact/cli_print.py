@@ -1,0 +1,84 @@
+"""What commands print on standard output: one JSON document, or a short readable summary."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+__all__ = ["print_json", "print_outcome", "print_table"]
+
+_MOTION = (
+    ("restitution e (paper's arms)", "e_paper", ""),
+    ("impulse ratio mu", "mu", ""),
+    ("V_n after", "V_n_m_per_s", "m/s"),
+    ("V_t after", "V_t_m_per_s", "m/s"),
+    ("Omega after", "Omega_rad_per_s", "rad/s"),
+)
+_SHARES = (
+    ("retained as rigid motion", "E_r_over_E_0"),
+    ("vibration of the rod", "E_vib_over_E_0"),
+    ("friction", "W_friction_over_E_0"),
+    ("plastic work, rod", "E_plastic_rod_over_E_0"),
+    ("plastic work, barrier", "E_plastic_barrier_over_E_0"),
+    ("locked in, rod", "E_locked_rod_over_E_0"),
+    ("locked in, barrier", "E_locked_barrier_over_E_0"),
+    ("radiated into the barrier", "W_radiated_over_E_0"),
+    ("contact closing", "W_closing_over_E_0"),
+    ("residual of the ledger", "residual_over_E_0"),
+)
+
+
+def print_json(document: Any) -> None:
+    """Print one JSON document; NaN and infinity are never written."""
+    sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def print_outcome(record: Mapping[str, Any], out: Path) -> None:
+    """Print the motion after impact, where the energy went, and every warning."""
+    lines = [f"{record['scene_id']}: {record['scene_title']}", ""]
+    lines += [_motion(record, *row) for row in _MOTION]
+    lines += ["", f"of the initial energy, E_0 = {_number(record['E_0_J'])} J:"]
+    lines += [_share(record, words, key) for words, key in _SHARES]
+    lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
+    lines += ["", *(f"note: {sentence}" for sentence in (*record["validity"], *record["warnings"]))]
+    sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
+
+
+def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None:
+    """Print rows as a table with aligned columns."""
+    texts = [list(columns), *([str(row[column]) for column in columns] for row in rows)]
+    widths = [max(len(text[i]) for text in texts) for i in range(len(columns))]
+    for text in texts:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(text, widths, strict=True))
+        sys.stdout.write(line.rstrip() + "\n")
+
+
+def _motion(record: Mapping[str, Any], words: str, key: str, unit: str) -> str:
+    band = (record["bands"] or {}).get(key)
+    spread = f" +- {_number(band)}" if band is not None else ""
+    return f"  {words:<30} {_value(record, key)}{spread} {unit}".rstrip()
+
+
+def _share(record: Mapping[str, Any], words: str, key: str) -> str:
+    share = record[key]
+    text = f"{100 * share:9.3f} %" if share is not None else f"not known: {_reason(record, key)}"
+    return f"  {words:<30} {text}"
+
+
+def _vibration_note(record: Mapping[str, Any]) -> str:
+    return f"  vibration is below its numerical floor, {100 * record['E_vib_floor_over_E_0']:.1g} %"
+
+
+def _value(record: Mapping[str, Any], key: str) -> str:
+    return _number(record[key]) if record[key] is not None else f"not known: {_reason(record, key)}"
+
+
+def _reason(record: Mapping[str, Any], key: str) -> str:
+    return str((record["reasons"] or {}).get(key, "no reason given"))
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

@@ -1,0 +1,94 @@
+"""The commands that compute: ``run`` and ``study``."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import sys
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.cli_changes import changed_scene
+from fem_impact.cli_out import checked_out
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json, print_outcome
+from fem_impact.errors import RunError, SceneError
+from fem_impact.progress import Meter, NullMeter, meter_for
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+__all__ = ["run", "study"]
+
+QUICK_SETS = ("t3-machined", "t4", "t5b")
+
+
+def run(options: Options) -> int:
+    """Compute one scene, write its results and print them."""
+    scene = changed_scene(options.scene, options.changes)
+    out = checked_out(options.out or _default_out(scene, options))
+    from fem_impact.simulate import simulate
+
+    meter = _meter(options)
+    try:
+        outcome = simulate(scene, fidelity="solid", out=out, progress=meter)
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"Results: {out}") from None
+    finally:
+        meter.close()
+    print_json(outcome.to_dict()) if options.json else print_outcome(outcome, out)
+    return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
+
+
+def study(options: Options) -> int:
+    """Compute measured sets, compare them with the paper and print the table."""
+    ids = _checked_ids(options.ids) or (QUICK_SETS if options.quick else ())
+    out = checked_out(options.out or Path("results") / "sets")
+    from fem_impact.study import run_sets
+
+    meter = _meter(options)
+    try:
+        result = run_sets(ids, options.quick, out, meter, options.workers or _cores())
+    finally:
+        meter.close()
+    if options.json:
+        print_json({"rows": result.rows})
+    else:
+        sys.stdout.write(f"{result.table}\nresults: {out}\n")
+    return 0
+
+
+def _default_out(scene: Scene, options: Options) -> Path:
+    """Return results/ID, with a part of the digest when the shipped scene was changed."""
+    name = f"{scene.id}-{scene.digest()[:8]}" if options.changes else scene.id
+    return Path("results") / name
+
+
+def _checked_ids(ids: list[str]) -> tuple[str, ...]:
+    from fem_impact.scene import MEASURED_SETS
+
+    for name in ids:
+        if name not in MEASURED_SETS:
+            near = get_close_matches(name, MEASURED_SETS, 1)
+            remedy = f"Did you mean {near[0]}?" if near else f"Measured: {', '.join(MEASURED_SETS)}."
+            raise SceneError("is not a measured set.", key="ID", value=name, remedy=remedy)
+    return tuple(dict.fromkeys(ids))
+
+
+def _meter(options: Options) -> Meter:
+    if options.quiet:
+        return NullMeter()
+    return meter_for(sys.stderr, width=max(40, shutil.get_terminal_size((100, 24)).columns - 1))
+
+
+def _cores() -> int:
+    """Return how many processor cores this process may use."""
+    return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
+
+
+def _stopped(record: dict[str, Any], out: Path) -> int:
+    sys.stderr.write(
+        f"fem-impact: error: the run stopped early: {record['stopped_because']} Results: {out}\n"
+    )
+    return RunError.exit_code

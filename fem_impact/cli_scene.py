@@ -1,0 +1,85 @@
+"""The commands that compute nothing: ``scenes`` and ``check``."""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any
+
+from fem_impact.cli_changes import changed_scene
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json, print_table
+from fem_impact.scene import DEFAULTS, Scene, load, shipped, source_of, validity
+
+__all__ = ["check", "scenes"]
+
+
+def scenes(options: Options) -> int:
+    """List the shipped scenes."""
+    rows: list[Any] = [_listed(load(name)) for name in shipped()]
+    if options.json:
+        print_json({"scenes": rows})
+    else:
+        print_table(rows, ("id", "speed", "title"))
+    return 0
+
+
+def check(options: Options) -> int:
+    """Print a scene's full statement: values, sources, effects and validity."""
+    scene = changed_scene(options.scene, options.changes)
+    statement = _statement(scene)
+    if options.json:
+        print_json(statement)
+    else:
+        sys.stdout.write(_readable(scene, statement))
+    return 0
+
+
+def _listed(scene: Scene) -> dict[str, Any]:
+    speed = math.hypot(scene.impact.v_n, scene.impact.v_t)
+    return {
+        "id": scene.id,
+        "title": scene.title,
+        "speed": f"{speed:.2f} m/s",
+        "measured": scene.measured,
+        "digest": scene.digest(),
+    }
+
+
+def _statement(scene: Scene) -> dict[str, Any]:
+    from fem_impact.effects import describe
+
+    return {
+        "scene": scene.to_dict(),
+        "digest": scene.digest(),
+        "sources": _sources(scene),
+        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
+        "effects": [
+            {"name": name, "on": on, "number": number, "sentence": sentence}
+            for name, on, number, sentence in describe(scene)
+        ],
+        "validity": list(validity(scene)),
+    }
+
+
+def _sources(scene: Scene) -> dict[str, str]:
+    """Return where each material value and the friction come from, by dotted key."""
+    bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
+    keys = ("E", "nu", "rho", "yield_stress", "ultimate_stress")
+    found = {
+        f"{body}.material.{key}": source_of(steel.name, key) for body, steel in bodies.items() for key in keys
+    }
+    return found | {"surface.friction": scene.surface.source}
+
+
+def _readable(scene: Scene, statement: dict[str, Any]) -> str:
+    lines = [scene.to_toml().rstrip(), "", "Sources"]
+    lines += [f"  {key}: {source}" for key, source in statement["sources"].items()]
+    lines += ["", "Values used where a scene does not state them"]
+    lines += [f"  {d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"]]
+    lines += ["", "Effects"]
+    lines += [f"  {'on ' if e['on'] else 'off'} {e['name']}: {e['sentence']}" for e in statement["effects"]]
+    lines += ["", "Validity"]
+    inside = "  inside the measured range of speed, angle, rod, steels and surfaces"
+    lines += [f"  {sentence}" for sentence in statement["validity"]] or [inside]
+    return "\n".join([*lines, "", f"The scene is valid; digest {statement['digest']}."]) + "\n"

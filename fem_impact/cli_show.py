@@ -1,0 +1,40 @@
+"""The commands that show results: ``render`` and ``report``."""
+
+from __future__ import annotations
+
+import sys
+
+from fem_impact.cli_out import checked_file, checked_result
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json
+from fem_impact.errors import MissingLibraryError
+
+__all__ = ["render", "report"]
+
+
+def render(options: Options) -> int:
+    """Make a film of the stress waves of a result."""
+    result = checked_result(options.result)
+    out = checked_file(options.out) if options.out else None
+    from fem_impact.render import render as make_film
+
+    film = make_film(result, out)
+    if options.json:
+        print_json({"path": str(film.path) if film.path else None, "notes": list(film.notes)})
+    else:
+        sys.stderr.writelines(f"note: {note}\n" for note in film.notes)
+        sys.stdout.write(f"film: {film.path}\n" if film.path else "")
+    return 0 if film.path else MissingLibraryError.exit_code
+
+
+def report(options: Options) -> int:
+    """Write the HTML report of a result."""
+    result = checked_result(options.result)
+    from fem_impact.report import write_report
+
+    path = write_report(result)
+    if options.json:
+        print_json({"path": str(path)})
+    else:
+        sys.stdout.write(f"report: {path}\n")
+    return 0

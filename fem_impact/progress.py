@@ -1,0 +1,115 @@
+"""What a run tells while it works, and the meters that show it: a live line, plain lines, or nothing."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol, TextIO
+
+__all__ = ["LineMeter", "Meter", "NullMeter", "Progress", "TerminalMeter", "describe", "meter_for"]
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """The state of a run: times in s, energy drift as a fraction of E_0, contact in words, a note.
+
+    ``eta_s`` is None while it cannot be told; ``note`` names the scene or the work when there are several.
+    """
+
+    time_s: float
+    end_time_s: float
+    step: int
+    energy_drift: float
+    contact: str
+    eta_s: float | None = None
+    note: str = ""
+
+
+class Meter(Protocol):
+    """Anything that takes progress, and may be closed when the work is over or interrupted."""
+
+    def __call__(self, progress: Progress) -> None:
+        """Take one report."""
+
+    def close(self) -> None:
+        """Finish; called once, also after an error."""
+
+
+class NullMeter:
+    """A meter that shows nothing."""
+
+    def __call__(self, progress: Progress) -> None:
+        """Ignore the report."""
+
+    def close(self) -> None:
+        """Do nothing."""
+
+
+class TerminalMeter:
+    """One live line on a terminal, rewritten at most ten times a second."""
+
+    def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic, width: int = 100) -> None:
+        self._stream, self._clock, self._width = stream, clock, width
+        self._next, self._dirty = 0.0, False
+
+    def __call__(self, progress: Progress) -> None:
+        """Rewrite the line when a tenth of a second has passed."""
+        now = self._clock()
+        if now < self._next:
+            return
+        self._next, self._dirty = now + 0.1, True
+        line = describe(progress)[: self._width]
+        self._stream.write(f"\r{line:<{self._width}}")
+        self._stream.flush()
+
+    def close(self) -> None:
+        """Leave the last line standing and go to the next."""
+        if self._dirty:
+            self._stream.write("\n")
+            self._stream.flush()
+
+
+class LineMeter:
+    """Plain lines for a log: one at the start of each work, then one every few seconds."""
+
+    def __init__(
+        self, stream: TextIO, every_s: float = 5.0, clock: Callable[[], float] = time.monotonic
+    ) -> None:
+        self._stream, self._every, self._clock = stream, every_s, clock
+        self._next: dict[str, float] = {}
+
+    def __call__(self, progress: Progress) -> None:
+        """Write a line when it is due for this work."""
+        now = self._clock()
+        if now < self._next.get(progress.note, now):
+            return
+        self._next[progress.note] = now + self._every
+        self._stream.write(f"{describe(progress)}\n")
+        self._stream.flush()
+
+    def close(self) -> None:
+        """Do nothing: every line is complete."""
+
+
+def meter_for(stream: TextIO, width: int = 100) -> Meter:
+    """Return a live line on a terminal and plain lines everywhere else."""
+    return TerminalMeter(stream, width=width) if stream.isatty() else LineMeter(stream)
+
+
+def describe(progress: Progress) -> str:
+    """Return one line: t, step, energy drift, contact state and the time still needed."""
+    parts = (
+        progress.note,
+        f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
+        f"step {progress.step}",
+        f"energy drift {progress.energy_drift:+.1e}",
+        progress.contact,
+        f"ETA {_clock_text(progress.eta_s)}" if progress.eta_s is not None else "",
+    )
+    return "  ".join(part for part in parts if part)
+
+
+def _clock_text(seconds: float) -> str:
+    minutes, rest = divmod(round(seconds), 60)
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"
