@@ -6,6 +6,7 @@ from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.quality import Quality, quality, volume
 from meshes.refine import levels_for, refine
 from meshes.rod import RodMesh, rod
+from meshes.step import step_bound
 from meshes.zone import Zone
 
 __all__ = [
@@ -22,5 +23,6 @@ __all__ = [
     "quality",
     "refine",
     "rod",
+    "step_bound",
     "volume",
 ]

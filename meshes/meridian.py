@@ -85,7 +85,7 @@ class Meridian:
     def shoulder(self) -> float:
         """Arc length at which the line has turned half-way from face to side, m.
 
-        A blunt rule for pointed tips: not nearer to the axis than half the radius.
+        For pointed tips: not nearer to the axis than 0.6 of the radius, which keeps the face cells wide.
         """
         slope, arc = self.slope, self.arc
         middle = 0.5 * (arc[1:] + arc[:-1])
@@ -95,7 +95,7 @@ class Meridian:
         else:
             pair = slice(after - 1, after + 1)
             turned = float(np.interp(np.pi / 4.0, slope[pair], middle[pair]))
-        return max(turned, float(np.interp(0.5 * self.radius, self.line[:, 0], arc)))
+        return max(turned, float(np.interp(0.6 * self.radius, self.line[:, 0], arc)))
 
     def inward(self, arc: float) -> FloatArray:
         """(2,) unit normal into the body, the bisector at an edge."""

@@ -16,9 +16,8 @@ __all__ = ["Nose", "lay_nose"]
 
 FloatArray = npt.NDArray[np.float64]
 
-# Depth of C below the surface as a multiple of the layer: found by a scan like the section's proportions.
-DEPTH = 1.1
-FACE_DEPTH = 1.0
+# Depth of C below the surface over the depth that gives an even layer: by the same scan as the section.
+DEPTH = 0.85
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,17 +63,18 @@ def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, 
     rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
     side = curve.at(_along(split, curve.arc[-1], rows, curve.corners()))
     face = curve.at(split * share)
-    raise_face = np.outer(1.0 - share**2, [0.0, FACE_DEPTH * layer]) + np.outer(share**2, deep)
+    pole = max(layer, float(corner[1]))
+    bottom = np.stack([corner[0] * share, pole + (corner[1] - pole) * share], axis=1)
     fade = np.linspace(0.0, 1.0, rows + 1)
     wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer, 0.0])
-    return Nose(face, _filled(face + raise_face, wall, share, height), side)
+    return Nose(face, _filled(bottom, wall, share, height), side)
 
 
 def _depth(meridian: Meridian, split: float, layer: float) -> float:
     """Distance of C from the surface: from the edge of a sharp corner, from the arc of a round one."""
     end = meridian.at(np.array(split))
     rounding = float(np.hypot(meridian.radius - end[0], end[1]))
-    return DEPTH * max(np.sqrt(2.0) * layer - rounding, 0.8 * layer)
+    return DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
 
 
 def _along(start: float, end: float, rows: int, corners: FloatArray) -> FloatArray:
@@ -86,7 +86,7 @@ def _along(start: float, end: float, rows: int, corners: FloatArray) -> FloatArr
     row = np.clip(np.rint((inside - start) / (even[1] - start)), 1, rows - 1)
     row, first = np.unique(row, return_index=True)
     places = np.concatenate([[start], inside[first], [end]])
-    return np.interp(np.arange(rows + 1), np.concatenate([[0], row, [rows]]), places)
+    return np.asarray(np.interp(np.arange(rows + 1), np.concatenate([[0], row, [rows]]), places))
 
 
 def _filled(bottom: FloatArray, wall: FloatArray, share: FloatArray, height: float) -> FloatArray:
