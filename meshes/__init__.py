@@ -2,10 +2,12 @@
 
 from meshes.block import block
 from meshes.errors import MeshError
+from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.quality import Quality, quality, volume
 from meshes.refine import levels_for, refine
 from meshes.rod import RodMesh, rod
+from meshes.sphere import sphere
 from meshes.step import step_bound
 from meshes.zone import Zone
 
@@ -15,14 +17,18 @@ __all__ = [
     "SYMMETRY",
     "HexMesh",
     "MeshError",
+    "MeshFile",
     "Quality",
     "RodMesh",
     "Zone",
     "block",
     "levels_for",
     "quality",
+    "read",
     "refine",
     "rod",
+    "sphere",
     "step_bound",
     "volume",
+    "write",
 ]

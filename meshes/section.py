@@ -8,7 +8,7 @@ import numpy.typing as npt
 
 from meshes.errors import MeshError
 
-__all__ = ["Section", "section"]
+__all__ = ["Section", "core_and_rings", "section"]
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -53,8 +53,8 @@ class Section:
         return np.where(s > 0.0, self.unit / np.where(s > 0.0, s, 1.0), np.array([1.0, 0.0]))
 
 
-def section(across: int) -> Section:
-    """Make the half section with `across` cells over the diameter.
+def core_and_rings(across: int) -> tuple[int, int]:
+    """Cells over the core (even) and rings around it, at least two, for `across` cells over the diameter.
 
     Raises
     ------
@@ -64,9 +64,18 @@ def section(across: int) -> Section:
     if across < 6 or across % 2:
         raise MeshError(f"across = {across} cells over the diameter: give an even number of at least 6")
     rings = max(2, round(across / 4))
-    core = across - 2 * rings
-    if core % 2:
-        core, rings = core - 1, rings + 1
+    return across - 2 * rings, rings
+
+
+def section(across: int) -> Section:
+    """Make the half section with `across` cells over the diameter.
+
+    Raises
+    ------
+    MeshError
+        If `across` is odd or below 6: an inner and an outer ring around a core need that many.
+    """
+    core, rings = core_and_rings(across)
     unit = np.concatenate([_core(core), _rings(core, rings)])
     quads = _quads(core, rings)
     outer = 2 * core
