@@ -1,0 +1,15 @@
+"""The keys by name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from fem_impact.outcome.keys import KEYS, Key
+
+__all__ = ["CONTACT_FIELDS", "KEY_TABLE"]
+
+KEY_TABLE: Mapping[str, Key] = MappingProxyType({key.name: key for key in KEYS})
+
+CONTACT_FIELDS = ("start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns")
+"""Fields of each entry of ``contacts``, whole rod."""

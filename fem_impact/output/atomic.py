@@ -1,0 +1,108 @@
+"""Whole-or-nothing files: write beside the target, sync, then put in place in one step."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import mkstemp
+
+from fem_impact.errors import OutputPathError, ResultError
+
+__all__ = ["atomic_path", "make_directory", "read_text", "write_bytes", "write_text"]
+
+
+@contextmanager
+def atomic_path(path: str | Path) -> Iterator[Path]:
+    """Lend a temporary file in the target's folder; it becomes ``path`` only if the block succeeds.
+
+    The suffix of ``path`` is kept, since encoders choose the format by it.
+
+    Raises
+    ------
+    OutputPathError
+        The folder cannot be written or the disk is full; the temporary file is gone then, and an
+        older file at ``path`` stands as it was.
+    """
+    target = Path(path)
+    draft = _draft(target)
+    try:
+        yield draft
+        _settle(draft, target)
+    except OSError as error:
+        raise OutputPathError(_sentence(target, error)) from error
+    finally:
+        draft.unlink(missing_ok=True)
+
+
+def write_bytes(path: str | Path, data: bytes) -> Path:
+    """Write ``data`` to ``path`` in one step; return the path. Raises OutputPathError."""
+    with atomic_path(path) as draft:
+        draft.write_bytes(data)
+    return Path(path)
+
+
+def write_text(path: str | Path, text: str) -> Path:
+    """Write ``text`` as UTF-8 to ``path`` in one step; return the path. Raises OutputPathError."""
+    return write_bytes(path, text.encode("utf-8"))
+
+
+def read_text(path: str | Path) -> str:
+    """Return the UTF-8 text of a result file.
+
+    Raises
+    ------
+    ResultError
+        The file is missing, a folder, not allowed to be read, or no text.
+    """
+    try:
+        return Path(path).read_bytes().decode("utf-8")
+    except UnicodeDecodeError as error:
+        raise ResultError(f"{path}: not UTF-8 text at byte {error.start}; the file is damaged.") from error
+    except OSError as error:
+        raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
+
+
+def make_directory(path: str | Path) -> Path:
+    """Make a result folder with its parents; return it.
+
+    Raises
+    ------
+    OutputPathError
+        A file stands in the way, or the place cannot be written.
+    """
+    try:
+        Path(path).mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputPathError(_sentence(Path(path), error)) from error
+    return Path(path)
+
+
+def _draft(target: Path) -> Path:
+    make_directory(target.parent)
+    try:
+        handle, name = mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
+    except OSError as error:
+        raise OutputPathError(_sentence(target, error)) from error
+    os.close(handle)
+    return Path(name)
+
+
+def _settle(draft: Path, target: Path) -> None:
+    with draft.open("rb") as file:
+        os.fsync(file.fileno())
+    draft.chmod(0o666 & ~_umask())
+    os.replace(draft, target)
+
+
+def _umask() -> int:
+    # the process mask can only be read by setting it
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+def _sentence(path: Path, error: OSError) -> str:
+    why = error.strerror or str(error)
+    return f"{path}: cannot be written ({why}); free some space or choose another place with --out."
