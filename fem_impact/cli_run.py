@@ -37,7 +37,10 @@ def run(options: Options) -> int:
         raise KeyboardInterrupt(f"Results: {out}") from None
     finally:
         meter.close()
-    print_json(outcome.to_dict()) if options.json else print_outcome(outcome, out)
+    if options.json:
+        sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
+    else:
+        print_outcome(outcome, out)
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
@@ -87,8 +90,6 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if sys.platform == "linux" else os.cpu_count() or 1
 
 
-def _stopped(record: dict[str, Any], out: Path) -> int:
-    sys.stderr.write(
-        f"fem-impact: error: the run stopped early: {record['stopped_because']} Results: {out}\n"
-    )
+def _stopped(cause: str, out: Path) -> int:
+    sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
     return RunError.exit_code

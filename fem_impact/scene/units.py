@@ -126,15 +126,19 @@ def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
 
 
 def _decimal(value: float, unit: Unit) -> str:
-    number = Decimal(repr(value)).scaleb(-unit.power).normalize()
-    return f"{number:f}" if -7 < number.adjusted() < 9 else f"{number}"
+    return _digits(Decimal(repr(value)).scaleb(-unit.power).normalize())
 
 
 def _scaled(value: float, unit: Unit) -> str:
     """Return the shortest text that reads back exactly, or nothing when there is none."""
     texts = (f"{value / unit.factor:.{digits}g}" for digits in range(1, 18))
     exact = next((text for text in texts if unit.to_si(text) == value), "")
-    return f"{Decimal(exact):f}" if exact and abs(float(exact)) < 1e9 else exact
+    return _digits(Decimal(exact)) if exact else ""
+
+
+def _digits(number: Decimal) -> str:
+    """Write everyday sizes without an exponent."""
+    return f"{number:f}" if -7 < number.adjusted() < 9 else f"{number}"
 
 
 def _read_text(text: str, dim: Dimension, key: str, remedy: str) -> float:
@@ -165,7 +169,8 @@ def _plain(symbol: str) -> str:
 
 
 def _unknown_unit(symbol: str, dim: Dimension) -> str:
-    near = get_close_matches(symbol, [u.symbol for u in dim.units], 1, 0.4)
+    near = [u.symbol for u in dim.units if u.symbol.lower() == symbol.lower()]
+    near = near or get_close_matches(symbol, [u.symbol for u in dim.units], 1, 0.4)
     hint = f" Did you mean {near[0]}?" if near else ""
     return f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}).{hint}"
 
@@ -174,7 +179,7 @@ def _why_not(text: str, dim: Dimension) -> str:
     lowered = text.strip().lower().lstrip("+-")
     if lowered.startswith(("nan", "inf")):
         return "must be a finite number."
-    return f"cannot be read as a {dim.name}."
+    return f"cannot be read as {dim.name}."
 
 
 def _kind(value: Any) -> str:

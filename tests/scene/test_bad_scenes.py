@@ -1,0 +1,196 @@
+"""Bad input: every mistake is one message with file, key, value and remedy, before any work."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fem_impact.scene import Impact, Material, Projectile, Scene, SceneError, load, materials
+
+NAN, INF = float("nan"), float("inf")
+MISTAKES = [
+    ("impact.v_n", "2.1 m/s", ["impact.v_n = 2.1 m/s", "below 0 m/s", "out of the barrier"]),
+    ("impact.v_n", "0 m/s", ["below 0 m/s"]),
+    ("impact.v_t", "1 m/s", ["impact.v_t", "at most 0 m/s"]),
+    ("impact.angle", "90 deg", ["impact.angle = 90 deg", "below 90 deg"]),
+    ("impact.angle", "95 deg", ["impact.angle = 95 deg", "below 90 deg"]),
+    ("impact.angle", "-1 deg", ["at least 0 deg"]),
+    ("impact.angle", 45, ["impact.angle = 45", "bare number", '"45 deg"', "angle_rad"]),
+    ("impact.v_n_m_per_s", NAN, ["impact.v_n", "finite"]),
+    ("impact.v_n", "-inf m/s", ["impact.v_n", "finite"]),
+    ("projectile.tip_radius", "10 mm", ["projectile.tip_radius", "10 mm", "9.5 mm"]),
+    ("projectile.tip_radius", "0 mm", ['tip = "plain"']),
+    ("projectile.length", 0.24, ["projectile.length = 0.24", "bare number", "length_m"]),
+    ("projectile.length", "240", ["no unit"]),
+    ("projectile.length", "240 kg", ["not a unit of length"]),
+    ("projectile.length", "240 m", ["at most", "10000 mm"]),
+    ("projectile.length", "10 mm", ["shorter than the diameter"]),
+    ("projectile.length", ["240 mm"], ["projectile.length", "list"]),
+    ("projectile.lenght", "240 mm", ["projectile.lenght", "Did you mean length"]),
+    ("projectile.tip", "C", ["projectile.tip", '"A", "B" or "plain"']),
+    ("projectile.material", "rod-stel", ['Did you mean "rod-steel"']),
+    ("projectile.material", 7850, ["projectile.material", "table"]),
+    ("projectile.material.nu", 0.5, ["projectile.material.nu", "below 0.5"]),
+    ("projectile.material.nu", "0.29", ["projectile.material.nu", "text"]),
+    ("projectile.material.ultimate_stress", "100 MPa", ["below the yield stress"]),
+    ("projectile.material.colour", "red", ["is not a known key"]),
+    ("barrier.material.rho", "7.85 kg/m3", ["at least 10 kg/m3"]),
+    ("barier", {}, ["barier", "Did you mean barrier"]),
+    ("surface.state", "wet", ["surface.state", '"machined"']),
+    ("surface.friction", -0.1, ["surface.friction", "at least 0"]),
+    ("surface.friction_low", 0.9, ["outside its own interval"]),
+    ("accuracy.across", 8.5, ["accuracy.across = 8.5", "whole number"]),
+    ("accuracy.across", 1, ["accuracy.across = 1", "at least 2"]),
+    ("accuracy.across", True, ["accuracy.across", "true/false"]),
+    ("accuracy.tip_size", "6 mm", ["accuracy.tip_size", "too coarse"]),
+    ("accuracy.tip_size", "-0.3 mm", ["at least 0.01 mm"]),
+    ("accuracy.max_time", "2.5 mm", ["not a unit of time"]),
+    ("save.frames", 10**30, ["save.frames", "at most 100000"]),
+    ("effects", "auto", ["effects", "not available yet", "vibration"]),
+    ("effects", "vibration", ["list of names"]),
+    ("effects", ["vibration", "frictoin", "barrier-rigid"], ["frictoin", 'Did you mean "friction"']),
+    ("effects", ["vibration", "vibration", "barrier-rigid"], ["twice"]),
+    ("effects", ["vibration"], ["0 barriers", "barrier-elastic"]),
+    ("effects", ["vibration", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
+    ("effects", ["friction", "barrier-rigid"], ["vibrate", 'Add "vibration"']),
+    ("effects", [["vibration"]], ["is not an effect"]),
+    ("measured", "t7", ["measured", '"t2"']),
+    ("id", "../../etc", ["id", "directory"]),
+    ("id", "", ["id"]),
+    ("title", 5, ["title", "text"]),
+    ("title", "two\nlines", ["one line"]),
+    ("nowhere.at.all", 1, ["is not a key"]),
+]
+
+
+@pytest.mark.parametrize(("key", "value", "words"), MISTAKES)
+def test_a_mistake_is_named_with_key_value_and_remedy(key, value, words):
+    with pytest.raises(SceneError) as caught:
+        load("t5b").replace(key, value)
+    message = str(caught.value)
+    assert message.startswith("--set: ")
+    for word in words:
+        assert word in message
+    assert caught.value.exit_code == 3
+
+
+def write(tmp_path, text, encoding="utf-8"):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(text.encode(encoding))
+    return path
+
+
+def refusal(path):
+    with pytest.raises(SceneError) as caught:
+        Scene.from_toml(path)
+    message = str(caught.value)
+    assert message.startswith(f"{path}: ")
+    return message
+
+
+def test_a_file_with_a_mistake_is_named(tmp_path):
+    text = load("t5b").to_toml().replace('length = "80 mm"', "length = 80")
+    assert "projectile.length = 80" in refusal(write(tmp_path, text))
+
+
+def test_a_missing_file_says_so(tmp_path):
+    assert "no such file" in refusal(tmp_path / "none.toml")
+
+
+def test_a_directory_is_no_scene(tmp_path):
+    assert "cannot be read" in refusal(tmp_path)
+
+
+@pytest.mark.parametrize("text", ["length = = 3", 'id = "a"\nid = "b"', "[" * 3000, "x = " + "1" * 9999])
+def test_unreadable_toml_says_where(tmp_path, text):
+    assert "TOML" in refusal(write(tmp_path, text))
+
+
+def test_bytes_that_are_no_text(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(b"\xff\xfe\x00id")
+    assert "UTF-8" in refusal(path)
+
+
+def test_a_huge_file_is_not_read(tmp_path):
+    assert "megabyte" in refusal(write(tmp_path, "# " + "x" * 1_000_001))
+
+
+def test_a_name_with_a_zero_byte():
+    with pytest.raises(SceneError, match="cannot be read"):
+        Scene.from_toml("a\0b.toml")
+
+
+@pytest.mark.parametrize("key", ["id", "effects", "projectile", "barrier", "impact"])
+def test_a_missing_table_or_key_is_named(key):
+    data = load("t5b").to_dict()
+    del data[key]
+    with pytest.raises(SceneError, match=f"here: {key}: is missing"):
+        Scene.from_dict(data, "here")
+
+
+def test_one_number_is_never_taken_twice():
+    data = load("t5b").to_dict()
+    data["projectile"]["length_m"] = 0.08
+    with pytest.raises(SceneError, match=r"projectile\.length: is given twice"):
+        Scene.from_dict(data)
+
+
+def test_friction_belongs_to_its_state():
+    data = load("t5b").to_dict()
+    data["surface"] = {"state": "machined", "friction": 0.6}
+    with pytest.raises(SceneError, match=r'surface\.friction = 0\.6.*state = "custom"'):
+        Scene.from_dict(data)
+
+
+def test_own_friction_needs_its_source():
+    data = load("t5b").to_dict()
+    data["surface"] = {"state": "custom", "friction": 0.6}
+    with pytest.raises(SceneError, match=r"surface\.source: is missing"):
+        Scene.from_dict(data)
+
+
+def test_a_shipped_name_never_stands_for_other_values():
+    data = load("t5b").to_dict()
+    data["projectile"]["material"]["E"] = "200 GPa"
+    with pytest.raises(SceneError, match=r"projectile\.material\.name"):
+        Scene.from_dict(data)
+
+
+def test_python_objects_pass_the_same_checks():
+    steel = materials()["rod-steel"]
+    with pytest.raises(SceneError, match=r"tip_radius = \"10 mm\""):
+        Projectile(0.24, 0.019, "B", 0.010, steel)
+    with pytest.raises(SceneError, match="v_n"):
+        Impact(math.pi / 4, 1.5, -1.5)
+    with pytest.raises(SceneError, match="finite"):
+        Material("mine", INF, 0.3, 7850.0, 1e8, 2e8)
+
+
+values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=12),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=6), inner, max_size=3),
+    max_leaves=5,
+)
+FULL = load("t5b").to_dict()
+KEYS = [(s, k) for s, table in FULL.items() if isinstance(table, dict) for k in table] + [
+    (key, None) for key in FULL
+]
+
+
+@given(st.sampled_from(KEYS), values)
+@settings(max_examples=300, deadline=None)
+def test_any_wrong_value_is_refused_or_gives_a_sound_scene(place, value):
+    section, key = place
+    data = load("t5b").to_dict()
+    if key is None:
+        data[section] = value
+    else:
+        data[section][key] = value
+    try:
+        scene = Scene.from_dict(data)
+    except SceneError as error:
+        assert section in str(error)
+        return
+    assert Scene.from_dict(scene.to_dict()) == scene

@@ -1,0 +1,101 @@
+"""Shipped scenes: all load, repeat the published sets and state where their values come from."""
+
+import math
+
+import numpy as np
+import pytest
+
+from fem_impact.scene import (
+    DEFAULTS,
+    MEASURED_SETS,
+    Accuracy,
+    Impact,
+    Save,
+    Scene,
+    SceneError,
+    load,
+    materials,
+    shipped,
+    source_of,
+    surfaces,
+    validity,
+)
+from rigid.experiments import measured_set, set_ids
+
+
+def test_the_thirteen_sets_and_two_more_are_shipped():
+    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick")
+    assert tuple(set_ids()) == MEASURED_SETS
+
+
+@pytest.mark.parametrize("name", shipped())
+def test_a_shipped_scene_carries_its_own_name(name):
+    scene = load(name)
+    assert scene.id == name
+    assert scene.measured == {"quick": "t5b"}.get(name, name if name in MEASURED_SETS else None)
+
+
+@pytest.mark.parametrize("name", MEASURED_SETS)
+def test_a_measured_scene_repeats_the_published_set(name):
+    scene, published = load(name), measured_set(name)
+    rod = scene.projectile
+    assert (rod.length, rod.diameter, rod.tip, rod.tip_radius) == (
+        published.length,
+        published.diameter,
+        published.tip,
+        published.tip_radius,
+    )
+    assert scene.surface.state == published.surface
+    assert math.isclose(scene.impact.angle, published.alpha, rel_tol=1e-12)
+    means = [float(np.mean(published.motion[key])) for key in ("v_n", "v_t")]
+    assert np.allclose((scene.impact.v_n, scene.impact.v_t), means, atol=6e-5)
+    assert scene.impact.omega == 0.0
+
+
+@pytest.mark.parametrize("name", MEASURED_SETS)
+def test_a_measured_scene_lies_inside_the_measured_range(name):
+    assert validity(load(name)) == ()
+
+
+def test_one_friction_interval_serves_every_rod_speed_and_angle():
+    used = {}
+    for name in MEASURED_SETS:
+        surface = load(name).surface
+        used.setdefault(surface.state, set()).add(surface)
+    assert used == {state: {surface} for state, surface in surfaces().items()}
+
+
+def test_every_surface_and_material_value_carries_a_source():
+    stated = [surface.source for surface in surfaces().values()]
+    stated += [source_of(name, key) for name in materials() for key in ("E", "nu", "rho", "yield_stress")]
+    assert all(len(source) > 20 and source != "stated in the scene" for source in stated)
+
+
+def test_the_steels_are_those_of_the_paper():
+    rod, plate = materials()["rod-steel"], materials()["plate-steel"]
+    assert (rod.E, rod.yield_stress, rod.ultimate_stress) == (219e9, 546e6, 592e6)
+    assert (plate.E, plate.yield_stress, plate.ultimate_stress) == (206e9, 320e6, 446e6)
+
+
+def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
+    made = {"impact": Impact(0.5, -1.0, -1.0), "accuracy": Accuracy(), "save": Save()}
+    elastic = load("elastic-frictionless")
+    for default in DEFAULTS:
+        section, key = default.key.split(".")
+        assert getattr(made[section], key) == getattr(getattr(elastic, section), key), default
+        assert elastic.to_dict()[section][key] == default.value
+        assert len(default.source) > 20
+
+
+def test_a_scene_that_leaves_the_measured_range_says_where():
+    changed = load("t5b").replace("impact.angle", "80 deg").replace("impact.omega", "5 rad/s")
+    sentences = " ".join(validity(changed))
+    assert "angle 80 deg, measured 17 deg to 60 deg" in sentences
+    assert "turn" in sentences
+
+
+def test_an_unknown_scene_is_answered_with_the_nearest_name():
+    with pytest.raises(SceneError, match="Did you mean t5b"):
+        load("t5bb")
+    with pytest.raises(SceneError, match=r"no such file.*Did you mean quick"):
+        Scene.from_toml("nowhere/qick.toml")

@@ -1,0 +1,115 @@
+"""Quantities: exact to write and read, strict about units."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import format_quantity, parse_quantity
+from fem_impact.scene.units import DIMENSIONS, parse_number
+
+finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e30, max_value=1e30)
+DECIMAL = [(d.name, u.symbol, u.power) for d in DIMENSIONS.values() for u in d.units if u.factor == 1.0]
+
+
+@pytest.mark.parametrize(
+    ("text", "dimension", "expected"),
+    [
+        ("240 mm", "length", 0.24),
+        ("0.35 mm", "length", 0.00035),
+        ("0.7mm", "length", 0.0007),
+        ("2.1 m/s", "speed", 2.1),
+        ("-1.5 m / s", "speed", -1.5),
+        ("219 GPa", "stress", 219e9),
+        ("546 MPa", "stress", 546e6),
+        ("7850 kg/m3", "density", 7850.0),
+        ("7.85 g/cm³", "density", 7850.0),
+        ("2.5 ms", "time", 0.0025),
+        ("400 µs", "time", 0.0004),
+        ("45 rad/s", "angular speed", 45.0),
+        ("45 deg", "angle", math.pi / 4),
+        ("17°", "angle", math.radians(17)),
+        ("60 rpm", "angular speed", 2 * math.pi),
+        ("1e-3 m", "length", 0.001),
+    ],
+)
+def test_reads_quantities_as_the_nearest_float(text, dimension, expected):
+    assert parse_quantity(text, dimension, "key") == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        (240, "bare number"),
+        (0.24, "bare number"),
+        ("240", "no unit"),
+        ("240 kg", "not a unit of length"),
+        ("240 MM", "Did you mean"),
+        ("2,4 m", "decimal comma"),
+        ("nan m", "finite"),
+        ("-inf m", "finite"),
+        ("1e400 m", "too large"),
+        ("1e999999999999 m", "too large"),
+        ("", "cannot be read"),
+        ("mm 240", "cannot be read"),
+        ("1_000 mm", "not a unit"),
+        ("٣ mm", "cannot be read"),
+        ("1" * 70 + " mm", "cannot be read"),
+        (True, "true/false"),
+        (None, "NoneType"),
+        ([240, "mm"], "list"),
+        ({"value": 240}, "table"),
+    ],
+)
+def test_refuses_what_is_no_length_and_names_key_and_remedy(value, words):
+    with pytest.raises(SceneError) as caught:
+        parse_quantity(value, "length", "length")
+    assert words in str(caught.value)
+    assert str(caught.value).startswith("length")
+
+
+def test_a_bare_number_is_answered_with_both_ways_to_write_it():
+    with pytest.raises(SceneError, match=r'"240 mm", or as length_m in SI'):
+        parse_quantity(240, "length", "length")
+
+
+@pytest.mark.parametrize("value", ["3", True, None, [1.0]])
+def test_a_pure_number_must_be_a_number(value):
+    with pytest.raises(SceneError, match="nu"):
+        parse_number(value, "nu")
+
+
+def test_an_integer_beyond_floats_is_refused():
+    with pytest.raises(SceneError, match="too large"):
+        parse_number(10**400, "nu")
+
+
+@given(finite, st.sampled_from(sorted(DIMENSIONS)))
+def test_writing_and_reading_gives_the_same_float(value, dimension):
+    text = format_quantity(value, dimension)
+    assert parse_quantity(text, dimension, "key") == value
+
+
+@given(st.decimals(-1_000_000, 1_000_000, places=6), st.sampled_from(DECIMAL))
+def test_decimal_units_round_once(number, unit):
+    dimension, symbol, power = unit
+    assert parse_quantity(f"{number:f} {symbol}", dimension, "key") == float(number.scaleb(power))
+
+
+@given(finite, st.sampled_from(DECIMAL), st.sampled_from(DECIMAL))
+def test_a_unit_of_another_dimension_is_never_taken(value, written, read):
+    if written[0] == read[0]:
+        return
+    with pytest.raises(SceneError):
+        parse_quantity(f"{value!r} {written[1]}", read[0], "key")
+
+
+@given(st.text(max_size=80), st.sampled_from(sorted(DIMENSIONS)))
+def test_any_text_is_read_as_finite_or_refused(text, dimension):
+    try:
+        value = parse_quantity(text, dimension, "key")
+    except SceneError:
+        return
+    assert math.isfinite(value)
