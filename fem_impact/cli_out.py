@@ -21,15 +21,13 @@ def checked_out(out: Path) -> Path:
     OutputPathError
         When it is a file, lies below a file, holds somebody's other files, or cannot be written.
     """
-    _refuse_files(out)
-    if out.is_dir() and any(out.iterdir()) and not _holds_results(out):
-        raise OutputPathError(
-            f"{out}: the directory holds other files, and results would mix with them. "
-            "Choose an empty or a new directory with --out."
-        )
     try:
+        _refuse_files(out)
+        _refuse_strangers(out)
         out.mkdir(parents=True, exist_ok=True)
         _prove_writable(out)
+    except OutputPathError:
+        raise
     except (OSError, ValueError) as error:
         raise OutputPathError(_cannot(out, error)) from None
     return out
@@ -37,11 +35,13 @@ def checked_out(out: Path) -> Path:
 
 def checked_file(out: Path) -> Path:
     """Return a file path whose directory exists and can be written."""
-    if out.is_dir():
-        raise OutputPathError(f"{out}: is a directory. Give the name of a file with --out.")
-    _refuse_files(out.parent)
     try:
+        if out.is_dir():
+            raise OutputPathError(f"{out}: is a directory. Give the name of a file with --out.")
+        _refuse_files(out.parent)
         _prove_writable(out.parent)
+    except OutputPathError:
+        raise
     except (OSError, ValueError) as error:
         raise OutputPathError(_cannot(out.parent, error)) from None
     return out
@@ -72,8 +72,13 @@ def _refuse_files(out: Path) -> None:
             raise OutputPathError(f"{out}: {what}. Choose another directory with --out.")
 
 
-def _holds_results(out: Path) -> bool:
-    return any((out / name).exists() for name in _OWN_FILES)
+def _refuse_strangers(out: Path) -> None:
+    if not out.is_dir() or not any(out.iterdir()) or any((out / name).exists() for name in _OWN_FILES):
+        return
+    raise OutputPathError(
+        f"{out}: the directory holds other files, and results would mix with them. "
+        "Choose an empty or a new directory with --out."
+    )
 
 
 def _prove_writable(directory: Path) -> None:

@@ -40,7 +40,7 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     """Print the motion after impact, where the energy went, and every warning."""
     lines = [f"{record['scene_id']}: {record['scene_title']}", ""]
     lines += [_motion(record, *row) for row in _MOTION]
-    lines += ["", f"of the initial energy, E_0 = {_number(record['E_0_J'])} J:"]
+    lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
     lines += ["", *(f"note: {sentence}" for sentence in (*record["validity"], *record["warnings"]))]
@@ -69,7 +69,7 @@ def _share(record: Mapping[str, Any], words: str, key: str) -> str:
 
 
 def _vibration_note(record: Mapping[str, Any]) -> str:
-    return f"  vibration is below its numerical floor, {100 * record['E_vib_floor_over_E_0']:.1g} %"
+    return f"  vibration is below its numerical floor (fraction {_value(record, 'E_vib_floor_over_E_0')})"
 
 
 def _value(record: Mapping[str, Any], key: str) -> str:
@@ -77,7 +77,7 @@ def _value(record: Mapping[str, Any], key: str) -> str:
 
 
 def _reason(record: Mapping[str, Any], key: str) -> str:
-    return str((record["reasons"] or {}).get(key, "no reason given"))
+    return str(record["reasons"].get(key, "no reason given"))
 
 
 def _number(value: float) -> str:

@@ -54,12 +54,15 @@ def _statement(scene: Scene) -> dict[str, Any]:
         "digest": scene.digest(),
         "sources": _sources(scene),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [
-            {"name": name, "on": on, "number": number, "sentence": sentence}
-            for name, on, number, sentence in describe(scene)
-        ],
+        "effects": [_effect(*row) for row in describe(scene)],
         "validity": list(validity(scene)),
     }
+
+
+def _effect(name: str, on: bool, measure: str, number: float, sentence: str) -> dict[str, Any]:
+    """Return one effect of the statement; a number that is not finite (tan(alpha) = 0) becomes null."""
+    shown = number if math.isfinite(number) else None
+    return {"name": name, "on": on, "measure": measure, "number": shown, "sentence": sentence}
 
 
 def _sources(scene: Scene) -> dict[str, str]:
@@ -78,8 +81,14 @@ def _readable(scene: Scene, statement: dict[str, Any]) -> str:
     lines += ["", "Values used where a scene does not state them"]
     lines += [f"  {d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"]]
     lines += ["", "Effects"]
-    lines += [f"  {'on ' if e['on'] else 'off'} {e['name']}: {e['sentence']}" for e in statement["effects"]]
+    lines += [_effect_line(effect) for effect in statement["effects"]]
     lines += ["", "Validity"]
     inside = "  inside the measured range of speed, angle, rod, steels and surfaces"
     lines += [f"  {sentence}" for sentence in statement["validity"]] or [inside]
     return "\n".join([*lines, "", f"The scene is valid; digest {statement['digest']}."]) + "\n"
+
+
+def _effect_line(effect: dict[str, Any]) -> str:
+    number = "not finite" if effect["number"] is None else f"{effect['number']:.3g}"
+    mark = "on " if effect["on"] else "off"
+    return f"  {mark} {effect['name']}: {effect['sentence']} ({effect['measure']}: {number})"

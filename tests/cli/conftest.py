@@ -1,0 +1,86 @@
+"""Stand-ins for the solver and its siblings, so that the command line is tested by itself."""
+
+import importlib
+import sys
+import types
+from dataclasses import dataclass, field
+
+import pytest
+
+from fem_impact.cli import main
+from fem_impact.outcome import KEYS, Outcome
+from fem_impact.progress import Progress
+
+
+def an_outcome(**changed):
+    """Return a complete outcome; what a test does not set is a plausible value of its kind."""
+    kinds = {"text": "text", "texts": [], "flag": True, "count": 3, "number": 0.25}
+    values = {key.name: kinds[key.kind] for key in KEYS if key.kind in kinds and not key.nullable}
+    values |= {"versions": {}, "contacts": [], "schema_version": 1, "finished": True, "fidelity": "solid"}
+    values |= {"scene_id": "t5b", "E_vib_below_floor": False, "E_0_J": 0.39, "mu": 0.5, "bands": {"mu": 0.01}}
+    values |= changed
+    unknown = {
+        key.name: "not in the stand-in" for key in KEYS if key.nullable and values.get(key.name) is None
+    }
+    return Outcome(values, reasons=unknown)
+
+
+@dataclass
+class Stand:
+    """What the stand-ins were called with, and what they do."""
+
+    calls: list = field(default_factory=list)
+    outcome: object = None
+    error: BaseException | None = None
+
+
+def _module(monkeypatch, name, **contents):
+    module = types.ModuleType(name)
+    module.__dict__.update(contents)
+    monkeypatch.setitem(sys.modules, name, module)
+    parent, _, last = name.rpartition(".")
+    monkeypatch.setattr(importlib.import_module(parent), last, module, raising=False)
+
+
+@pytest.fixture
+def stand(monkeypatch):
+    """Replace simulate, run_sets, render and write_report."""
+    stand = Stand()
+
+    def work(name, result):
+        def called(*args, **kwargs):
+            stand.calls.append((name, args, kwargs))
+            progress = kwargs.get("progress") or next((a for a in args if callable(a)), None)
+            if progress:
+                progress(Progress(1e-4, 2.5e-3, 4000, 1e-6, "touching, 12 nodes", 61.0))
+            if stand.error:
+                raise stand.error
+            return result()
+
+        return called
+
+    table = types.SimpleNamespace(rows=[{"id": "t4", "e": 0.2}], table="the table")
+    film = types.SimpleNamespace(path=None, notes=["install libegl1"])
+    _module(
+        monkeypatch, "fem_impact.simulate", simulate=work("simulate", lambda: stand.outcome or an_outcome())
+    )
+    _module(monkeypatch, "fem_impact.study", run_sets=work("run_sets", lambda: table))
+    _module(monkeypatch, "fem_impact.render", render=work("render", lambda: film))
+    _module(monkeypatch, "fem_impact.report", write_report=work("report", lambda: "report.html"))
+    return stand
+
+
+@pytest.fixture
+def cli(capsys, tmp_path, monkeypatch):
+    """Call the command in an empty directory; return exit code, standard output and standard error."""
+    monkeypatch.chdir(tmp_path)
+
+    def call(*words):
+        try:
+            code = main([str(word) for word in words])
+        except SystemExit as stop:
+            code = stop.code
+        out, err = capsys.readouterr()
+        return code, out, err
+
+    return call

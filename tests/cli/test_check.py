@@ -1,0 +1,54 @@
+"""``check`` and ``scenes``: a scene's statement, readable and as JSON."""
+
+import json
+
+from fem_impact.effects import EFFECTS
+from fem_impact.scene import NAMES, Scene, load, shipped
+
+
+def test_scenes_lists_every_shipped_scene(cli):
+    code, out, _ = cli("scenes")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[1:]] == list(shipped())
+    listed = json.loads(cli("scenes", "--json")[1])["scenes"]
+    assert [row["digest"] for row in listed] == [load(name).digest() for name in shipped()]
+
+
+def test_check_prints_values_units_sources_and_effects(cli):
+    code, out, _ = cli("check", "t5b")
+    assert code == 0
+    for words in (
+        'length = "80 mm"',
+        "footnote 2",
+        "accuracy.tip_size = 0.35 mm",
+        "on  friction",
+        "inside the measured",
+    ):
+        assert words in out
+
+
+def test_check_as_json_gives_a_scene_that_reads_back(cli):
+    _, out, _ = cli("check", "t5b", "--set", "impact.angle=80 deg", "--json")
+    statement = json.loads(out)
+    scene = Scene.from_dict(statement["scene"])
+    assert statement["digest"] == scene.digest()
+    assert any("angle 80 deg" in sentence for sentence in statement["validity"])
+    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(scene.effects)
+
+
+def test_check_refuses_a_bad_file_by_name(cli, tmp_path):
+    (tmp_path / "mine.toml").write_text("id = 3")
+    code, out, err = cli("check", "mine.toml")
+    assert (code, out) == (3, "")
+    assert err.startswith("fem-impact: error: mine.toml: ")
+
+
+def test_every_effect_that_a_scene_can_name_is_described():
+    assert tuple(EFFECTS) == NAMES
+
+
+def test_check_answers_at_both_ends_of_the_angle(cli):
+    for angle in ("0 deg", "89.9 deg"):
+        code, out, _ = cli("check", "t5b", "--set", f"impact.angle={angle}", "--json")
+        assert code == 0
+        assert json.loads(out)["scene"]["impact"]["angle"] == angle

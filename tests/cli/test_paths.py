@@ -1,0 +1,110 @@
+"""Output and result places are checked before any work."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+
+def refused(cli, stand, *words):
+    code, out, err = cli(*words)
+    assert not stand.calls
+    assert out == ""
+    assert "Traceback" not in err
+    return code, err
+
+
+def test_an_output_that_is_a_file(cli, stand):
+    Path("taken").write_text("mine")
+    code, err = refused(cli, stand, "run", "t5b", "--out", "taken")
+    assert code == 4
+    assert "taken: is a file" in err
+    assert Path("taken").read_text() == "mine"
+
+
+def test_an_output_under_a_file(cli, stand):
+    Path("taken").write_text("mine")
+    code, err = refused(cli, stand, "study", "sets", "--out", "taken/a/b")
+    assert code == 4
+    assert "lies below taken, which is a file" in err
+
+
+def test_an_output_among_other_files(cli, stand):
+    Path("home").mkdir()
+    Path("home/letter.txt").write_text("mine")
+    code, err = refused(cli, stand, "run", "t5b", "--out", "home")
+    assert code == 4
+    assert "other files" in err
+
+
+def test_an_output_that_cannot_be_made(cli, stand):
+    code, err = refused(cli, stand, "run", "t5b", "--out", "/proc/nowhere/results")
+    assert code == 4
+    assert "cannot be written" in err
+
+
+def test_an_output_with_a_name_too_long(cli, stand):
+    code, err = refused(cli, stand, "run", "t5b", "--out", "x" * 5000)
+    assert code == 4
+    assert "cannot be written" in err
+
+
+def test_results_are_replaced_by_a_second_run(cli, stand):
+    Path("here").mkdir()
+    Path("here/outcome.json").write_text("{}")
+    assert cli("run", "t5b", "--out", "here", "--quiet")[0] == 0
+
+
+def test_a_bad_scene_makes_no_directory(cli, stand):
+    code, err = refused(cli, stand, "run", "t5b", "--set", "impact.v_n=1 m/s", "--out", "here")
+    assert code == 3
+    assert "impact.v_n = 1 m/s" in err
+    assert not Path("here").exists()
+
+
+@pytest.mark.parametrize("change", ["accuracy.tip_size", "=3", "impact.angle=45", "impact=1"])
+def test_a_bad_change_is_refused(cli, stand, change):
+    code, err = refused(cli, stand, "run", "t5b", "--set", change)
+    assert code == 3
+    assert "--set" in err
+
+
+@pytest.mark.parametrize("command", ["render", "report"])
+def test_results_that_are_none(cli, stand, command):
+    Path("empty").mkdir()
+    Path("file").write_text("")
+    for place, words in (("gone", "no such directory"), ("file", "is a file"), ("empty", "holds no")):
+        code, err = refused(cli, stand, command, place)
+        assert code == 5
+        assert words in err
+
+
+def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
+    Path("here").mkdir()
+    Path("here/outcome.json").write_text("{}")
+    code, _, err = cli("render", "here")
+    assert code == 7
+    assert "install libegl1" in err
+    assert json.loads(cli("render", "here", "--json")[1]) == {"path": None, "notes": ["install libegl1"]}
+
+
+def test_report_prints_where_it_is(cli, stand):
+    Path("here").mkdir()
+    Path("here/study.json").write_text("{}")
+    assert cli("report", "here")[:2] == (0, "report: report.html\n")
+
+
+def test_a_film_is_not_written_over_a_directory(cli, stand):
+    Path("here").mkdir()
+    Path("here/outcome.json").write_text("{}")
+    code, err = refused(cli, stand, "render", "here", "--out", "here")
+    assert code == 4
+    assert "is a directory" in err
+
+
+def test_a_reader_that_leaves_makes_no_noise():
+    line = f"{sys.executable} -m fem_impact scenes | true"
+    done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=True)
+    assert done.stderr == ""

@@ -1,0 +1,107 @@
+"""``run`` and ``study``: what is passed on, printed and returned."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from fem_impact.scene import load
+
+
+def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
+    code, out, err = cli("run", "t5b", "--out", "here")
+    name, (scene,), options = stand.calls[0]
+    assert (code, name, scene) == (0, "simulate", load("t5b"))
+    assert options["fidelity"] == "solid"
+    assert options["out"] == Path("here")
+    for words in ("results: here", "0.5 +- 0.01", "not known: not in the stand-in", "E_0 = 0.39 J"):
+        assert words in out
+    assert "t 100/2500 us  step 4000  energy drift +1.0e-06  touching, 12 nodes  ETA 1 min 01 s" in err
+
+
+def test_changes_are_applied_and_filed_apart(cli, stand):
+    code, _, _ = cli("run", "t5b", "--set", "accuracy.tip_size=0.5 mm", "--set", "save.frames=10", "--quiet")
+    _, (scene,), options = stand.calls[0]
+    assert code == 0
+    assert (scene.accuracy.tip_size, scene.save.frames) == (0.0005, 10)
+    assert options["out"] == Path("results") / f"t5b-{scene.digest()[:8]}"
+
+
+def test_effects_may_be_listed_with_commas(cli, stand):
+    code, _, _ = cli("run", "t5b", "--set", "effects=vibration, barrier-rigid", "--quiet")
+    assert code == 0
+    assert stand.calls[0][1][0].effects == ("vibration", "barrier-rigid")
+
+
+def test_json_is_one_document_and_nothing_else(cli, stand):
+    _, out, _ = cli("run", "t5b", "--json")
+    assert json.loads(out)["scene_id"] == "t5b"
+    _, out, _ = cli("study", "sets", "t4", "--json")
+    assert json.loads(out) == {"rows": [{"id": "t4", "e": 0.2}]}
+
+
+def test_quiet_shows_no_progress(cli, stand):
+    assert cli("run", "t5b", "--quiet")[2] == ""
+
+
+def test_a_run_that_stops_early_keeps_its_results_and_says_so(cli, stand):
+    from conftest import an_outcome
+
+    stand.outcome = an_outcome(
+        finished=False, stopped_because="the step fell below 1 ps.", E_0_J=None, E_vib_below_floor=None
+    )
+    code, out, err = cli("run", "t5b", "--quiet")
+    assert code == 6
+    assert "the step fell below 1 ps" in err
+    assert "results:" in out
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (OSError(28, "No space left on device", "results/history.csv"), 4, "disk is full"),
+        (OSError(13, "Permission denied", "results/history.csv"), 4, "Permission denied"),
+        (MemoryError(), 6, "out of memory"),
+    ],
+)
+def test_trouble_during_a_run_is_one_sentence(cli, stand, error, code, words):
+    stand.error = error
+    got, out, err = cli("run", "t5b", "--quiet")
+    assert (got, out) == (code, "")
+    assert words in err
+    assert "Traceback" not in err
+    assert err.count("\n") == 1
+
+
+def test_a_fault_of_the_program_is_not_hidden(cli, stand):
+    stand.error = ZeroDivisionError("a bug")
+    with pytest.raises(ZeroDivisionError):
+        cli("run", "t5b", "--quiet")
+
+
+def test_study_passes_ids_and_quick_picks_the_three_rods(cli, stand):
+    assert cli("study", "sets", "t4", "t5a", "t4", "--workers", "1")[0] == 0
+    assert cli("study", "sets", "--quick")[0] == 0
+    assert cli("study", "sets")[0] == 0
+    called = [args[:2] for _, args, _ in stand.calls]
+    assert called == [(("t4", "t5a"), False), (("t3-machined", "t4", "t5b"), True), ((), False)]
+    assert stand.calls[0][1][4] == 1
+
+
+def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
+    code, _, err = cli("study", "sets", "t3-machned")
+    assert code == 3
+    assert "Did you mean t3-machined" in err
+    assert not stand.calls
+
+
+@pytest.mark.parametrize("words", [["fly"], ["run"], ["study", "cats"], ["study", "sets", "--workers", "0"]])
+def test_a_line_that_is_not_understood_ends_with_2(cli, words):
+    assert cli(*words)[0] == 2
+
+
+def test_no_command_shows_the_help(cli):
+    code, out, err = cli()
+    assert (code, out) == (2, "")
+    assert "study" in err
