@@ -1,0 +1,54 @@
+"""The slots of a model that effects fill; an empty slot is a part that is never built."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+    from fem_impact.solid.hardening import Hardening
+
+
+@dataclass(slots=True)
+class ModelSpec:
+    """What the model is made of, beyond an elastic rod on a rigid frictionless plane.
+
+    Attributes
+    ----------
+    friction : Coulomb coefficient f, or None for a frictionless contact
+    rod_law, barrier_law : hardening of what may yield
+    meshed_barrier : a block instead of the rigid plane
+    gravity : acceleration, m/s2, or None
+    turning_frame : the rod's linear part follows its rotation
+    """
+
+    friction: float | None = None
+    rod_law: Hardening | None = None
+    barrier_law: Hardening | None = None
+    meshed_barrier: bool = False
+    gravity: float | None = None
+    turning_frame: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One effect: its name, what it does, the number that says whether it matters, how it enters.
+
+    Attributes
+    ----------
+    name : as written in a scene
+    sentence : what the user is told when it is on
+    absence : what the user is told when it is off
+    measure : name of the dimensionless number
+    number : computes it from a scene
+    fill : fills its slots
+    """
+
+    name: str
+    sentence: str
+    absence: str
+    measure: str
+    number: Callable[[Scene], float]
+    fill: Callable[[Scene, ModelSpec], None]

@@ -1,0 +1,89 @@
+"""Closed-form size of a contact before it is computed: for mesh zones and for the choice of effects.
+
+Local contact of principal radii R1 (meridian) and R2 (around the rod) under the effective mass m*,
+
+    1/m* = (1 + d_c (d_c - f d_d) / k^2) / m      (frictional impulse along one direction)
+
+either Hertzian, 8/15 E* sqrt(R) d^(5/2) = m* v_n^2 / 2, or fully plastic with the limiting pressure
+p = 2.8 sigma_y of the softer body, pi p R d^2 = m* v_n^2 / 2 (Thornton 1997, doi:10.1115/1.2787319;
+Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sin, sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Material, Scene
+
+LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
+FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
+
+
+@dataclass(frozen=True, slots=True)
+class ContactEstimate:
+    """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa."""
+
+    depth: float
+    a_t: float
+    a_b: float
+    duration: float
+    pressure: float
+
+
+def yield_names(scene: Scene) -> list[Material]:
+    """Return the materials that may yield in this scene."""
+    named = {"rod-plasticity": scene.projectile.material, "barrier-elastoplastic": scene.barrier.material}
+    return [material for name, material in named.items() if name in scene.effects]
+
+
+def principal_radii(scene: Scene) -> tuple[float, float]:
+    """Return (R1, R2), m, of the tip at its lowest point."""
+    rod, alpha = scene.projectile, scene.impact.angle
+    rho, _ = projectile(scene).contact_point(alpha)
+    R1 = rod.tip_radius if rod.tip_radius > 0 else rod.diameter / 200
+    around = float(rho) / sin(alpha) if alpha > 0 else FLATTEST
+    return R1, min(max(around, R1), FLATTEST)
+
+
+def projectile(scene: Scene):  # type: ignore[no-untyped-def]
+    """Return the rigid projectile of a scene."""
+    from rigid import Projectile
+
+    rod = scene.projectile
+    return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
+
+
+def effective_mass(scene: Scene) -> float:
+    """Return m*, kg, at least that of a frictionless contact."""
+    rod, f = projectile(scene), scene.surface.friction if "friction" in scene.effects else 0.0
+    d_c, d_d = rod.arms(scene.impact.angle)
+    frictionless = 1 + float(d_c) ** 2 / rod.k2
+    return float(rod.mass / min(frictionless, max(1.0, 1 + float(d_c) * (float(d_c) - f * float(d_d)) / rod.k2)))
+
+
+def contact_modulus(scene: Scene) -> float:
+    """Return E*, Pa; a rigid barrier has no share."""
+    bodies = [scene.projectile.material]
+    if "barrier-rigid" not in scene.effects:
+        bodies.append(scene.barrier.material)
+    return 1 / sum((1 - m.nu**2) / m.E for m in bodies)
+
+
+def contact_estimate(scene: Scene) -> ContactEstimate:
+    """Return the size of the first contact of a scene."""
+    R1, R2 = principal_radii(scene)
+    R, v_n = sqrt(R1 * R2), max(abs(scene.impact.v_n), 1e-6)
+    energy, E_star = 0.5 * effective_mass(scene) * v_n**2, contact_modulus(scene)
+    depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
+    elastic = ContactEstimate(
+        depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, 4 / (3 * pi) * E_star * sqrt(depth / R)
+    )
+    softer = yield_names(scene)
+    limit = LIMIT_PRESSURE * min((m.yield_stress for m in softer), default=float("inf"))
+    if elastic.pressure <= limit:
+        return elastic
+    depth = sqrt(energy / (pi * limit * R))
+    return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit)

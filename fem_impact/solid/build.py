@@ -1,0 +1,230 @@
+"""From a scene and its filled slots to a model: meshes, operators, masses, items, step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.effects.spec import ModelSpec
+from fem_impact.solid.boundary import spread_boundary
+from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
+from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, largest_frequency, lumped_mass
+from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.geometry import Geometry, build_geometry
+from fem_impact.solid.hardening import Hardening
+from fem_impact.solid.items import Force, Impulse
+from fem_impact.solid.layout import Layout, number
+from fem_impact.solid.model import Model
+from fem_impact.solid.slices import SliceOperator
+from fem_impact.solid.sparse import Hanging, RowProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.yielding import YieldingZone, dummy_element
+from meshes import SKIN, HexMesh
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Material, Scene
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+SAFETY = 0.9  # of the stable step
+START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
+BAND = 0.02  # contact band over the tip size, see SurfaceContact
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """One meshed body ready for assembly.
+
+    Attributes
+    ----------
+    points, places : (n, 3), positions in the barrier frame and unknowns of all nodes
+    yields : (m,) cells that may yield
+    stiffness : (m, 24, 24) linear operators; mass : (m, 8) lumped
+    """
+
+    name: str
+    mesh: HexMesh
+    points: Array
+    places: Ints
+    material: Material
+    yields: Bools
+    stiffness: Array
+    mass: Array
+
+
+def _body(name: str, mesh: HexMesh, points: Array, places: Ints, material: Material, yields: Bools) -> Body:
+    C = isotropic_stiffness(material.E, material.nu)
+    K = element_stiffness(points, mesh.cells, C, "incompatible")
+    K[yields] = element_stiffness(points, mesh.cells[yields], C, "bbar")
+    return Body(name, mesh, points, places, material, yields, K, lumped_mass(points, mesh.cells, material.rho))
+
+
+def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
+    rod, barrier = geometry.rod.mesh, geometry.barrier
+    fine = geometry.levels > 0
+    yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
+    found = [_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
+    if barrier is not None:
+        yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
+        found.append(_body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields))
+    return found
+
+
+def _masses(bodies: list[Body], layout: Layout) -> Array:
+    mass = np.zeros(layout.size)
+    for body in bodies:
+        T = tie_operator(body.mesh.tie, body.places, layout.size)
+        mass += assemble_mass(body.mass, body.mesh.cells, T)
+    return mass
+
+
+def _inverse(mass: Array, bodies: list[Body]) -> Array:
+    """Invert; nothing moves through the symmetry plane."""
+    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
+    for body in bodies:
+        inverse[body.places[np.abs(body.points[:, 1]) < 1e-12, 1]] = 0.0
+    return inverse
+
+
+def _start(bodies: list[Body], layout: Layout, scene: Scene, mass: Array) -> tuple[Array, Array]:
+    """Return positions and velocities at time 0; omega turns n towards t."""
+    x, v = np.zeros(layout.size), np.zeros(layout.size)
+    x[layout.dummy] = dummy_element()
+    for body in bodies:
+        x[body.places] = body.points
+    rod, impact = bodies[0], scene.impact
+    centre = mass_centre(mass, x, rod.places)
+    arm = rod.points - centre
+    speed = np.zeros_like(rod.points)
+    speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
+    speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
+    v[rod.places] = speed
+    return x, v
+
+
+def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
+    """Return the mass centre (3,), m, of the nodes in ``places``; b is 0 by symmetry."""
+    m = mass[places[:, 0]]
+    centre = m @ x[places] / m.sum()
+    centre[1] = 0.0
+    return np.asarray(centre)
+
+
+def _elastic_rod(body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, turning: bool) -> ElasticRod:
+    rod, n = geometry.rod, layout.rod_size
+    section = np.full(len(body.points), -1)
+    section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
+    first = body.mesh.cells[rod.body_cells[:, 0]]
+    slices = SliceOperator.of(body.stiffness[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
+    linear = ~body.yields
+    linear[rod.body_cells] = False
+    T = tie_operator(body.mesh.tie, body.places, n)
+    nose = RowProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T))
+    frame = _frame(body, layout, mass, x, turning)
+    return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
+
+
+def _frame(body: Body, layout: Layout, mass: Array, x: Array, turning: bool) -> FixedFrame | TurningFrame:
+    n = layout.rod_size
+    if not turning:
+        return FixedFrame(x[:n].copy())
+    free = body.places[~body.mesh.is_hanging]
+    reference = x.copy()
+    reference[free] -= mass_centre(mass, x, free)
+    t, b, normal = (np.ascontiguousarray(free[:, c]) for c in range(3))
+    return TurningFrame(reference[:n], mass[:n], t, b, normal)
+
+
+def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, Array]:
+    """Return the block's linear part and the damping of its free unknowns."""
+    place = layout.barrier_slice
+    shifted = body.places - place.start
+    T = tie_operator(body.mesh.tie, shifted, place.stop - place.start)
+    m = body.material
+    spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
+    K = assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T)
+    K.setdiag(K.diagonal() + T.T @ spring.ravel())
+    n = K.shape[0]
+    block = ElasticBlock(RowProduct.of(K), x[place].copy(), place, np.zeros(n), np.zeros(n))
+    return block, T.T @ damping.ravel()
+
+
+def _dashpots(damping: Array, layout: Layout, inverse_mass: Array) -> Dashpots:
+    places = layout.barrier_slice.start + np.flatnonzero(damping)
+    places = places[inverse_mass[places] > 0]
+    return Dashpots(places, damping[places - layout.barrier_slice.start], inverse_mass[places])
+
+
+def _zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
+    cells, m = body.mesh.cells[body.yields], body.material
+    return YieldingZone.of(body.name, body.places[cells], body.points[cells], m.E, m.nu, law, layout.dummy)
+
+
+def _skin(body: Body, geometry: Geometry) -> Ints:
+    """Return the skin quads (m, 4) of the finest cells, all nodes free, facing the other body."""
+    quads = body.mesh.faces_with(SKIN)
+    corners = body.points[quads]
+    normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
+    facing = steep < -0.1 if body.name == "rod" else steep > 0.1
+    finest = np.isin(quads, body.mesh.cells[body.mesh.level == geometry.levels]).all(axis=1)
+    # rod quads look down: turn them so that both patches turn the same way seen from above
+    found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
+    return found[:, ::-1] if body.name == "rod" else found
+
+
+def _contact(bodies: list[Body], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array) -> Impulse:
+    f = spec.friction or 0.0
+    if len(bodies) == 1:
+        skin = np.unique(bodies[0].mesh.faces_with(SKIN))
+        free = skin[~bodies[0].mesh.is_hanging[skin]]
+        return PlaneContact(bodies[0].places[free], inverse_mass, f)
+    rod, barrier = (make_patch(_skin(body, geometry), body.places, body.points) for body in bodies)
+    return SurfaceContact.of(rod, barrier, inverse_mass, f, BAND * geometry.tip_size, x)
+
+
+def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layout: Layout) -> Weight:
+    down = np.zeros((len(rod.places), 3))
+    down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
+    direction = np.zeros(layout.size)
+    direction[rod.places] = down
+    n = layout.rod_size
+    return Weight(gravity * mass[:n] * direction[:n], x[:n].copy())
+
+
+def stable_step(bodies: list[Body]) -> float:
+    """Return the largest step, s, that no element forbids."""
+    return min(float((2 / largest_frequency(b.stiffness, b.mass)).min()) for b in bodies)
+
+
+def build(scene: Scene, spec: ModelSpec) -> Model:
+    """Return the model of a scene; parts whose slot is empty are never made."""
+    geometry = build_geometry(scene, START_GAP, spec.meshed_barrier)
+    layout = number(geometry.rod, geometry.barrier)
+    bodies = _bodies(scene, spec, geometry, layout)
+    mass = _masses(bodies, layout)
+    inverse_mass = _inverse(mass, bodies)
+    x, v = _start(bodies, layout, scene, mass)
+    rod = bodies[0]
+    forces: list[Force] = [_elastic_rod(rod, geometry, layout, mass, x, spec.turning_frame)]
+    impulses: list[Impulse] = []
+    zones = [_zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law]
+    forces += zones
+    if spec.gravity is not None:
+        forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
+    if len(bodies) == 2:
+        block, damping = _elastic_block(bodies[1], layout, x)
+        forces.append(block)
+        impulses.append(_dashpots(damping, layout, inverse_mass))
+    contact = _contact(bodies, geometry, spec, x, inverse_mass)
+    impulses.append(contact)
+    hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])
+    book: ContactBook = contact.book
+    return Model(
+        geometry, layout, mass, inverse_mass, forces, impulses, hanging, zones, book, SAFETY * stable_step(bodies), (x, v)
+    )

@@ -1,0 +1,69 @@
+"""What contact has done so far: works, impulses and the intervals of touch."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# places in the step record that the kernels fill (half model)
+IMPULSE_T, IMPULSE_N, ARM, FRICTION, CLOSING, ACTIVE, OUTSIDE, SWEEPS = range(8)
+RECORD = 8
+
+# releases shorter than this are one contact: a few passages of a wave across the tip
+MERGE_GAP = 10e-6
+
+
+@dataclass(slots=True)
+class Interval:
+    """One contact: start and end, s, and its impulse on the whole rod, N s."""
+
+    start: float
+    end: float
+    impulse_n: float = 0.0
+    impulse_t: float = 0.0
+
+
+@dataclass(slots=True)
+class ContactBook:
+    """Running sums of one run; energies and impulses of the half model.
+
+    Attributes
+    ----------
+    step : (RECORD,) what the last step did
+    friction, closing : energy taken by friction and by stopping lumped nodes, J
+    impulse : (3,) sums of p_t, p_n and of the moment x_t p_n - x_n p_t about the origin
+    """
+
+    step: Array = field(default_factory=lambda: np.zeros(RECORD))
+    friction: float = 0.0
+    closing: float = 0.0
+    impulse: Array = field(default_factory=lambda: np.zeros(3))
+    intervals: list[Interval] = field(default_factory=list)
+    last_touch: float = -np.inf
+    outside: int = 0
+
+    @property
+    def touching(self) -> bool:
+        """Return whether the last step had a compressed node."""
+        return self.step[ACTIVE] > 0
+
+    def close_step(self, time: float) -> None:
+        """Add the step's record to the sums."""
+        self.friction += self.step[FRICTION]
+        self.closing += self.step[CLOSING]
+        self.outside = max(self.outside, int(self.step[OUTSIDE]))
+        if self.touching:
+            self._touch(time)
+
+    def _touch(self, time: float) -> None:
+        if time - self.last_touch > MERGE_GAP:
+            self.intervals.append(Interval(time, time))
+        now = self.intervals[-1]
+        now.end = self.last_touch = time
+        now.impulse_n += 2 * self.step[IMPULSE_N]
+        now.impulse_t += 2 * self.step[IMPULSE_T]
+        self.impulse += self.step[[IMPULSE_T, IMPULSE_N, ARM]]

@@ -1,0 +1,78 @@
+"""Contact of the rod's nodes with the rigid plane n = 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.contact.book import (
+    ACTIVE,
+    ARM,
+    CLOSING,
+    FRICTION,
+    IMPULSE_N,
+    IMPULSE_T,
+    ContactBook,
+)
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.kernels import kernel
+from fem_impact.solid.state import State
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(slots=True)
+class PlaneContact:
+    """Unilateral contact with Coulomb friction ``f`` on a rigid plane, node by node.
+
+    A node whose predicted position would lie below the plane gets the smallest impulse that lets it
+    arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1420-1, with the predicted gap).
+    """
+
+    nodes: Ints
+    inverse_mass: Array
+    f: float
+    book: ContactBook = field(default_factory=ContactBook)
+
+    def resolve(self, state: State) -> None:
+        """Apply this step's impulses."""
+        record = self.book.step
+        touch_plane(
+            self.nodes, state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next, self.f, record
+        )
+        self.book.close_step(state.time)
+
+    def accounts(self, state: State) -> Accounts:
+        """Return friction heat and closing loss."""
+        return {"friction": self.book.friction, "closing": self.book.closing}
+
+
+@kernel
+def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, record):  # type: ignore[no-untyped-def]
+    """Resolve all nodes (k, 3) and fill the step's record."""
+    record[:] = 0.0
+    for i in range(len(nodes)):
+        t, b, n = nodes[i, 0], nodes[i, 1], nodes[i, 2]
+        if x[n] + dt * v[n] >= 0.0:
+            continue
+        old_t = v[t] - kick * inverse_mass[t] * force[t]
+        old_b = v[b] - kick * inverse_mass[b] * force[b]
+        old_n = v[n] - kick * inverse_mass[n] * force[n]
+        p = (-max(x[n], 0.0) / dt - v[n]) / inverse_mass[n]
+        if p <= 0.0:
+            continue
+        slip = np.sqrt(v[t] * v[t] + v[b] * v[b])
+        share = min(1.0, f * p * inverse_mass[t] / slip) if slip > 0.0 else 0.0
+        p_t, p_b = -share * v[t] / inverse_mass[t], -share * v[b] / inverse_mass[t]
+        v[t] += inverse_mass[t] * p_t
+        v[b] += inverse_mass[b] * p_b
+        v[n] += inverse_mass[n] * p
+        record[IMPULSE_T] += p_t
+        record[IMPULSE_N] += p
+        record[ARM] += x[t] * p - x[n] * p_t
+        record[FRICTION] -= 0.5 * (p_t * (old_t + v[t]) + p_b * (old_b + v[b]))
+        record[CLOSING] -= 0.5 * p * (old_n + v[n])
+        record[ACTIVE] += 1.0

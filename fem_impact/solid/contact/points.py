@@ -1,0 +1,168 @@
+"""The point contacts of one step: collected from two surfaces, and their work booked."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.contact.book import (
+    ACTIVE,
+    ARM,
+    CLOSING,
+    FRICTION,
+    IMPULSE_N,
+    IMPULSE_T,
+    OUTSIDE,
+)
+from fem_impact.solid.contact.impulses import relative
+from fem_impact.solid.contact.search import bilinear, locate
+from fem_impact.solid.kernels import kernel
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+class Motion(NamedTuple):
+    """Positions, kicked velocities, the forces and step lengths of the kick, inverse masses."""
+
+    x: Array
+    v: Array
+    force: Array
+    inverse_mass: Array
+    kick: float
+    dt: float
+
+
+class Points(NamedTuple):
+    """Workspace of the point contacts of one step; the first ``count`` rows are in use.
+
+    Attributes
+    ----------
+    nodes : (k, 5, 3) int64, unknowns of the five nodes; weights : (k, 5), signed
+    normal : (k, 3); target : (k,) lowest normal rate, m/s; before : (k, 3) rates before the kick
+    p : (k, 3) impulses on the rod, N s; owner : (k,) slave node; memory : (slaves, 3) last impulses
+    """
+
+    nodes: Ints
+    weights: Array
+    normal: Array
+    target: Array
+    before: Array
+    p: Array
+    owner: Ints
+    memory: Array
+
+
+def make_points(n: int) -> Points:
+    """Return space for ``n`` slave nodes."""
+    return Points(
+        np.zeros((n, 5, 3), dtype=np.int64),
+        np.zeros((n, 5)),
+        np.zeros((n, 3)),
+        np.zeros(n),
+        np.zeros((n, 3)),
+        np.zeros((n, 3)),
+        np.zeros(n, dtype=np.int64),
+        np.zeros((n, 3)),
+    )
+
+
+@kernel
+def _enter(k, slave, gap, band, motion, c):  # type: ignore[no-untyped-def]
+    """Complete row k of the workspace; False when the pair stays apart in this step."""
+    old_t, old_b, old_n = 0.0, 0.0, 0.0
+    for a in range(5):
+        t, b, n, s = c.nodes[k, a, 0], c.nodes[k, a, 1], c.nodes[k, a, 2], c.weights[k, a]
+        old_t += s * (motion.v[t] - motion.kick * motion.inverse_mass[t] * motion.force[t])
+        old_b += s * (motion.v[b] - motion.kick * motion.inverse_mass[b] * motion.force[b])
+        old_n += s * (motion.v[n] - motion.kick * motion.inverse_mass[n] * motion.force[n])
+    m, normal = c.memory[slave], c.normal[k]
+    pressed = m[0] * normal[0] + m[1] * normal[1] + m[2] * normal[2] > 0.0
+    allowed = 0.0 if pressed and gap <= band else max(gap, 0.0)
+    rate = old_t * normal[0] + old_b * normal[1] + old_n * normal[2]
+    # only pairs that can meet within a few steps take part in the sweeps
+    if not pressed and allowed > 3.0 * motion.dt * max(-rate, 0.1):
+        return False
+    c.target[k] = -allowed / motion.dt
+    c.before[k, 0], c.before[k, 1], c.before[k, 2] = old_t, old_b, old_n
+    for i in range(3):
+        c.p[k, i] = m[i] if pressed else 0.0
+    c.owner[k] = slave
+    return True
+
+
+@kernel
+def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # type: ignore[no-untyped-def]
+    """Collect contacts of rod nodes with barrier quads; returns their number."""
+    x, top, count = motion.x, 0.0, 0
+    for i in range(len(barrier.places)):
+        top = max(top, x[barrier.places[i, 2]])
+    for i in range(len(rod.places)):
+        n = x[rod.places[i, 2]]
+        if n > top + band:
+            continue
+        t, b = x[rod.places[i, 0]], x[rod.places[i, 1]]
+        q, xi, eta = locate(x, barrier.places, barrier.quads, barrier.neighbours, max(last[i], 0), t, b)
+        if q < 0:
+            record[OUTSIDE] += 1.0 if n < -band else 0.0
+            continue
+        last[i] = q
+        w = bilinear(xi, eta)
+        surface, normal = 0.0, c.normal[count]
+        normal[:] = 0.0
+        c.nodes[count, 0], c.weights[count, 0] = rod.places[i], 1.0
+        for a in range(4):
+            node = barrier.quads[q, a]
+            c.nodes[count, a + 1], c.weights[count, a + 1] = barrier.places[node], -w[a]
+            surface += w[a] * x[barrier.places[node, 2]]
+            normal += w[a] * normals[node]
+        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
+        count += _enter(count, i, (n - surface) * normal[2], band, motion, c)
+    return count
+
+
+@kernel
+def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
+    """Append contacts of barrier nodes with rod quads; returns the new number."""
+    x, first = motion.x, len(rod.places)
+    for i in range(len(barrier.places)):
+        t, b, n = x[barrier.places[i, 0]], x[barrier.places[i, 1]], x[barrier.places[i, 2]]
+        q, xi, eta = locate(x, rod.places, rod.quads, rod.neighbours, max(last[first + i], 0), t, b)
+        if q < 0:
+            continue
+        last[first + i] = q
+        w = bilinear(xi, eta)
+        surface = 0.0
+        for a in range(4):
+            node = rod.quads[q, a]
+            c.nodes[count, a + 1], c.weights[count, a + 1] = rod.places[node], w[a]
+            surface += w[a] * x[rod.places[node, 2]]
+        c.nodes[count, 0], c.weights[count, 0] = barrier.places[i], -1.0
+        c.normal[count] = normals[i]
+        count += _enter(count, first + i, (surface - n) * normals[i, 2], band, motion, c)
+    return count
+
+
+@kernel
+def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
+    """Fill the step's record with impulses on the rod and work; remember the impulses."""
+    x = motion.x
+    c.memory[:, :] = 0.0
+    for k in range(count):
+        t, b, n = relative(motion.v, c.nodes[k], c.weights[k])
+        m_t, m_b, m_n = 0.5 * (c.before[k, 0] + t), 0.5 * (c.before[k, 1] + b), 0.5 * (c.before[k, 2] + n)
+        p, normal = c.p[k], c.normal[k]
+        pressed = p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]
+        closing = pressed * (m_t * normal[0] + m_b * normal[1] + m_n * normal[2])
+        record[CLOSING] -= closing
+        record[FRICTION] -= p[0] * m_t + p[1] * m_b + p[2] * m_n - closing
+        record[IMPULSE_T] += p[0]
+        record[IMPULSE_N] += p[2]
+        record[ACTIVE] += 1.0 if pressed > 0.0 else 0.0
+        for a in range(5):
+            if c.weights[k, a] > 0.0:
+                at_t, at_n = x[c.nodes[k, a, 0]], x[c.nodes[k, a, 2]]
+                record[ARM] += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
+        c.memory[c.owner[k]] = p

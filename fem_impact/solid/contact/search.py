@@ -1,0 +1,91 @@
+"""Where a point stands over a deformed surface: compiled walks over quads in the (t, b) plane."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem_impact.solid.kernels import inlined, kernel
+
+# a point this far outside the last quad (in its own units) still belongs to it: symmetry plane, round-off
+SLACK = 1e-6
+LONGEST_WALK = 60
+
+
+@inlined
+def bilinear(xi, eta):  # type: ignore[no-untyped-def]
+    """Return the four bilinear weights."""
+    return (
+        0.25 * (1 - xi) * (1 - eta),
+        0.25 * (1 + xi) * (1 - eta),
+        0.25 * (1 + xi) * (1 + eta),
+        0.25 * (1 - xi) * (1 + eta),
+    )
+
+
+@kernel
+def _invert(x, places, quad, t, b):  # type: ignore[no-untyped-def]
+    """Return (xi, eta) of the point (t, b) in a quad's projection, by Newton's method."""
+    t0, t1 = x[places[quad[0], 0]], x[places[quad[1], 0]]
+    t2, t3 = x[places[quad[2], 0]], x[places[quad[3], 0]]
+    b0, b1 = x[places[quad[0], 1]], x[places[quad[1], 1]]
+    b2, b3 = x[places[quad[2], 1]], x[places[quad[3], 1]]
+    xi, eta = 0.0, 0.0
+    for _ in range(6):
+        w0, w1, w2, w3 = bilinear(xi, eta)
+        r_t = t - (w0 * t0 + w1 * t1 + w2 * t2 + w3 * t3)
+        r_b = b - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3)
+        t_xi = 0.25 * ((1 - eta) * (t1 - t0) + (1 + eta) * (t2 - t3))
+        b_xi = 0.25 * ((1 - eta) * (b1 - b0) + (1 + eta) * (b2 - b3))
+        t_eta = 0.25 * ((1 - xi) * (t3 - t0) + (1 + xi) * (t2 - t1))
+        b_eta = 0.25 * ((1 - xi) * (b3 - b0) + (1 + xi) * (b2 - b1))
+        det = t_xi * b_eta - t_eta * b_xi
+        if det == 0.0:
+            break
+        d_xi, d_eta = (r_t * b_eta - r_b * t_eta) / det, (t_xi * r_b - b_xi * r_t) / det
+        # a far quad's inverse map may not exist: walk in its direction instead of jumping
+        xi = min(max(xi + d_xi, -3.0), 3.0)
+        eta = min(max(eta + d_eta, -3.0), 3.0)
+        if abs(d_xi) + abs(d_eta) < 1e-12:
+            break
+    return xi, eta
+
+
+@kernel
+def locate(x, places, quads, neighbours, start, t, b):  # type: ignore[no-untyped-def]
+    """Walk from quad ``start`` to the one over (t, b): (quad or -1, xi, eta)."""
+    q = start
+    for _ in range(LONGEST_WALK):
+        xi, eta = _invert(x, places, quads[q], t, b)
+        out_xi, out_eta = abs(xi) - 1.0, abs(eta) - 1.0
+        if max(out_xi, out_eta) <= SLACK:
+            return q, min(max(xi, -1.0), 1.0), min(max(eta, -1.0), 1.0)
+        edge = (1 if xi > 0 else 3) if out_xi >= out_eta else (2 if eta > 0 else 0)
+        if neighbours[q, edge] < 0:  # at a border try the other way out, then give up
+            edge = (2 if eta > 0 else 0) if out_xi >= out_eta else (1 if xi > 0 else 3)
+            if neighbours[q, edge] < 0 or min(out_xi, out_eta) <= SLACK:
+                return -1, xi, eta
+        q = neighbours[q, edge]
+    return -1, 0.0, 0.0
+
+
+@kernel
+def vertex_normals(x, places, quads, mirrored, normals):  # type: ignore[no-untyped-def]
+    """Set unit normals (k, 3) of patch nodes: area-weighted means of the quads around, mirrored at b = 0."""
+    normals[:] = 0.0
+    for q in range(len(quads)):
+        i, j, k, l = quads[q, 0], quads[q, 1], quads[q, 2], quads[q, 3]
+        ut, ub = x[places[k, 0]] - x[places[i, 0]], x[places[k, 1]] - x[places[i, 1]]
+        un = x[places[k, 2]] - x[places[i, 2]]
+        wt, wb = x[places[l, 0]] - x[places[j, 0]], x[places[l, 1]] - x[places[j, 1]]
+        wn = x[places[l, 2]] - x[places[j, 2]]
+        nt, nb, nn = ub * wn - un * wb, un * wt - ut * wn, ut * wb - ub * wt
+        for a in range(4):
+            node = quads[q, a]
+            normals[node, 0] += nt
+            normals[node, 1] += nb
+            normals[node, 2] += nn
+    for i in range(len(normals)):
+        if mirrored[i]:
+            normals[i, 1] = 0.0
+        length = np.sqrt(normals[i, 0] ** 2 + normals[i, 1] ** 2 + normals[i, 2] ** 2)
+        normals[i] /= length

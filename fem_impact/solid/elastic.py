@@ -1,0 +1,107 @@
+"""Linear bodies: the rod in its frame, and the barrier block on its springs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.slices import SliceOperator
+from fem_impact.solid.sparse import RowProduct
+from fem_impact.solid.state import State
+
+Array = NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class ElasticRod:
+    """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
+
+    slices: SliceOperator
+    nose: RowProduct
+    frame: FixedFrame | TurningFrame
+    body_shape: tuple[int, int]
+    d: Array
+    y: Array
+
+    def add_force(self, state: State) -> None:
+        """Add the elastic forces of the rod's linear part."""
+        n = len(self.d)
+        body = self.body_shape[0] * self.body_shape[1]
+        self.frame.localise(state.x[:n], self.d)
+        self.y[body:] = 0.0
+        self.slices.apply(self.d[:body].reshape(self.body_shape), self.y[:body].reshape(self.body_shape))
+        self.nose.add_to(self.d, self.y)
+        self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def accounts(self, state: State) -> Accounts:
+        """Return the strain energy at the last force evaluation."""
+        return {"strain_rod": 0.5 * float(self.d @ self.y)}
+
+
+@dataclass(slots=True)
+class ElasticBlock:
+    """The barrier's linear part; its rows start at ``place.start`` of the flat vector."""
+
+    stiffness: RowProduct
+    reference: Array
+    place: slice
+    d: Array
+    y: Array
+
+    def add_force(self, state: State) -> None:
+        """Add the elastic forces of block and boundary springs."""
+        np.subtract(state.x[self.place], self.reference, out=self.d)
+        self.y[:] = 0.0
+        self.stiffness.add_to(self.d, self.y)
+        state.force[self.place] -= self.y
+
+    def accounts(self, state: State) -> Accounts:
+        """Return the strain energy at the last force evaluation."""
+        return {"strain_barrier": 0.5 * float(self.d @ self.y)}
+
+
+@dataclass(slots=True)
+class Dashpots:
+    """Viscous boundary: takes radiated waves out, implicitly, so that it never limits the step."""
+
+    place: Array
+    damping: Array
+    inverse_mass: Array
+    radiated: float = 0.0
+
+    def resolve(self, state: State) -> None:
+        """Damp the boundary velocities; the dashpot force uses the mean velocity of the step."""
+        kicked = state.v[self.place]
+        old = kicked - state.kick * self.inverse_mass * state.force[self.place]
+        share = 0.5 * state.kick * self.inverse_mass * self.damping
+        new = (kicked - share * old) / (1 + share)
+        mean = 0.5 * (old + new)
+        self.radiated += state.kick * float(self.damping @ (mean * mean))
+        state.v[self.place] = new
+
+    def accounts(self, state: State) -> Accounts:
+        """Return the energy radiated so far."""
+        return {"radiated": self.radiated}
+
+
+@dataclass(slots=True)
+class Weight:
+    """Gravity on the rod.
+
+    ``weight`` is m g per unknown, N (zero where there is none).
+    """
+
+    weight: Array
+    reference: Array
+
+    def add_force(self, state: State) -> None:
+        """Add the weight."""
+        state.force[: len(self.weight)] += self.weight
+
+    def accounts(self, state: State) -> Accounts:
+        """Return the potential energy since the start."""
+        return {"gravity": -float(self.weight @ (state.x[: len(self.weight)] - self.reference))}

@@ -1,0 +1,87 @@
+"""Meshes of a scene in the barrier frame: where the fine zones lie and how large they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+import meshes
+from fem_impact.estimates import ContactEstimate, contact_estimate, projectile
+from meshes import HexMesh, RodMesh, Zone
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+Array = NDArray[np.float64]
+
+# fine zone in units of the estimated contact ellipse, and how many cells it has at least
+WIDTH, DEPTH, FEWEST = 1.6, 1.6, 4.0
+# the block reaches this far beyond its fine zone (the springs stand for the rest)
+BLOCK_MARGIN = 6e-3
+# the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)
+SLIDE = 5.0
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """Rod and barrier meshes with positions in the barrier frame (t, b, n).
+
+    Attributes
+    ----------
+    rod : RodMesh; rod_points : (n, 3) float64, m, lowest point at t = 0, n = gap
+    barrier : HexMesh or None
+    tip_size : finest cell edge, m (along t and b); levels : splits of a base cell
+    """
+
+    rod: RodMesh
+    rod_points: Array
+    barrier: HexMesh | None
+    tip_size: float
+    levels: int
+
+
+def to_barrier_frame(alpha: float) -> Array:
+    """Return the rotation (3, 3) from the rod frame (x, y, z) to (t, b, n)."""
+    return np.array([[cos(alpha), 0, sin(alpha)], [0, 1, 0], [-sin(alpha), 0, cos(alpha)]])
+
+
+def levels_of(scene: Scene) -> int:
+    """Return how often base cells are split to come nearest to the wanted tip size."""
+    base = scene.projectile.diameter / scene.accuracy.across
+    return max(0, round(float(np.log2(base / scene.accuracy.tip_size))))
+
+
+def half_widths(size: ContactEstimate, h: float) -> tuple[float, float, float]:
+    """Return the fine zone's extents along t (each side), b and n, m."""
+    depth = DEPTH * np.sqrt(size.a_t * size.a_b)
+    return max(WIDTH * size.a_t, FEWEST * h), max(WIDTH * size.a_b, FEWEST * h), max(depth, FEWEST * h)
+
+
+def build_geometry(scene: Scene, gap: float, meshed_barrier: bool) -> Geometry:
+    """Mesh the rod and, if wanted, the barrier block under it."""
+    body, alpha = projectile(scene), scene.impact.angle
+    levels = levels_of(scene)
+    h = body.diameter / scene.accuracy.across / 2**levels
+    t, b, n = half_widths(contact_estimate(scene), h)
+    rho, z = body.contact_point(alpha)
+    turn = to_barrier_frame(alpha)
+    lowest = np.array([float(rho), 0.0, float(z)])
+    zone = Zone(lowest, turn, np.array([-t, 0.0, -h]), np.array([t, b, n]))
+    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+    points = (rod.mesh.points - lowest) @ turn.T
+    points[:, 2] += gap - points[:, 2].min()
+    barrier = _block(scene, h * 2**levels, levels, (t, b, n)) if meshed_barrier else None
+    return Geometry(rod, points, barrier, h, levels)
+
+
+def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, float]) -> HexMesh:
+    t, b, n = zone
+    slide = SLIDE * contact_estimate(scene).depth * abs(scene.impact.v_t) / max(abs(scene.impact.v_n), 1e-6)
+    box = Zone(np.zeros(3), np.eye(3), np.array([-t - slide, 0.0, -n]), np.array([t, b, 0.0]))
+    low = np.array([-t - slide - BLOCK_MARGIN, 0.0, -n - BLOCK_MARGIN])
+    high = np.array([t + BLOCK_MARGIN, b + BLOCK_MARGIN, 0.0])
+    return meshes.block(low, high, base, zone=box, levels=levels)

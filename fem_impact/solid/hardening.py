@@ -1,0 +1,75 @@
+"""Isotropic hardening laws of the J2 material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import brentq
+
+
+@dataclass(frozen=True, slots=True)
+class Hardening:
+    """Flow stress sigma(eps_p) = yield_stress (1 + slope eps_p)^exponent.
+
+    ``exponent = 1`` is linear hardening with modulus ``yield_stress * slope``; ``slope = 0`` is
+    perfect plasticity.
+    """
+
+    yield_stress: float
+    slope: float
+    exponent: float
+
+    def __post_init__(self) -> None:
+        if not self.yield_stress > 0:
+            raise ValueError(f"Yield stress must be positive, got {self.yield_stress} Pa.")
+        if self.slope < 0 or self.exponent < 0:
+            raise ValueError("A softening material has no unique answer on any mesh: slope, exponent >= 0.")
+
+    def flow_stress(self, plastic_strain: ArrayLike) -> NDArray[np.float64]:
+        """Return the flow stress, Pa, at equivalent plastic strains of any shape."""
+        strain = np.asarray(plastic_strain, dtype=np.float64)
+        return np.asarray(self.yield_stress * (1 + self.slope * strain) ** self.exponent)
+
+
+def linear_hardening(yield_stress: float, modulus: float) -> Hardening:
+    """Return linear hardening with the plastic ``modulus`` d sigma / d eps_p, Pa."""
+    return Hardening(yield_stress, modulus / yield_stress, 1.0)
+
+
+def _nominal_strength_ratio(n: float, stiffness: float) -> float:
+    """Return ultimate (nominal) over yield stress of the power law that leaves the elastic line.
+
+    Considere: necking starts where d sigma / d eps = sigma, i.e. at total strain n; the nominal
+    stress is the true one times exp(-plastic strain).
+    """
+    return float((stiffness * n) ** n * np.exp(-(n - 1 / stiffness)))
+
+
+def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Hardening:
+    """Return the power law through yield point, elastic slope and nominal ultimate stress.
+
+    sigma = sigma_y (1 + E eps_p / sigma_y)^n; the only free number n follows from the ultimate stress
+    at the onset of necking (Considere's construction), so nothing is chosen by hand.
+
+    Raises
+    ------
+    ValueError
+        If the ultimate stress is below yield or more than any n <= 0.5 can give.
+
+    Examples
+    --------
+    >>> round(power_hardening(219e9, 546e6, 592e6).exponent, 3)
+    0.043
+    """
+    stiffness, ratio = E / yield_stress, ultimate_stress / yield_stress
+    # below n = 1/stiffness the necking strain would lie in the elastic range: perfect plasticity
+    low, high = 1 / stiffness, 0.5
+    if not 1 <= ratio <= _nominal_strength_ratio(high, stiffness):
+        raise ValueError(
+            f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa and "
+            f"{_nominal_strength_ratio(high, stiffness):.2f} times it."
+        )
+    n = brentq(lambda n: _nominal_strength_ratio(n, stiffness) - ratio, low, high) if ratio > 1 else 0.0
+    return Hardening(yield_stress, stiffness if n else 0.0, float(n))

@@ -1,0 +1,44 @@
+"""What the time loop knows: items that push, items that act on velocities, and their accounts.
+
+The loop holds three lists of these and nothing else. An effect that is off has no item.
+"""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from fem_impact.solid.state import State
+
+Accounts = dict[str, float]
+
+
+class Account(Protocol):
+    """Anything that holds energy or has taken energy away."""
+
+    def accounts(self, state: State) -> Accounts:
+        """Return half-model energies by ledger name, J."""
+        ...
+
+
+class Force(Account, Protocol):
+    """An item that adds forces at the present positions."""
+
+    def add_force(self, state: State) -> None:
+        """Add to ``state.force``."""
+        ...
+
+
+class Impulse(Account, Protocol):
+    """An item that changes the kicked velocities: contact, dashpots."""
+
+    def resolve(self, state: State) -> None:
+        """Change ``state.v`` and book the work done with the mean of old and new velocity."""
+        ...
+
+
+class StepLimit(Protocol):
+    """An item whose stable step changes as it deforms."""
+
+    def step_factor(self) -> float:
+        """Return the present stable step over the initial one."""
+        ...

@@ -1,0 +1,53 @@
+"""The time loop: leapfrog with contact impulses. It knows lists of items and observers, nothing else."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+
+
+class Observer(Protocol):
+    """Looks at the state after the forces are known and before the kick; may stop the run."""
+
+    every: int
+
+    def observe(self, state: State) -> bool:
+        """Return True to stop."""
+        ...
+
+
+def evaluate(model: Model, state: State) -> None:
+    """Set the forces of the present positions."""
+    state.force[:] = 0.0
+    for item in model.forces:
+        item.add_force(state)
+    model.hanging.collect(state.force)
+
+
+def advance(model: Model, state: State) -> None:
+    """Kick, resolve impulses, drift; forces must be up to date."""
+    state.kick = 0.5 * (state.dt + state.dt_next) if state.step else state.dt_next
+    state.v += state.kick * model.inverse_mass * state.force
+    for item in model.impulses:
+        item.resolve(state)
+    model.hanging.expand(state.v)
+    state.x += state.dt_next * state.v
+    state.dt = state.dt_next
+    state.time += state.dt
+    state.step += 1
+
+
+def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
+    """Step until an observer says stop.
+
+    Velocities stand half a step behind positions; the first kick from the given start velocity is a
+    full one, because nothing acts yet at time 0.
+    """
+    while True:
+        evaluate(model, state)
+        if any([o.observe(state) for o in observers if state.step % o.every == 0]):
+            return
+        advance(model, state)

@@ -1,0 +1,63 @@
+"""The constant side of a run: numbering, masses, and the lists of items that the time loop walks."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.contact import ContactBook
+from fem_impact.solid.geometry import Geometry
+from fem_impact.solid.items import Account, Force, Impulse
+from fem_impact.solid.layout import Layout
+from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.sparse import Hanging
+from fem_impact.solid.state import State
+from fem_impact.solid.yielding import YieldingZone
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """Everything that does not change during a run.
+
+    Attributes
+    ----------
+    geometry : meshes
+    layout : places of the unknowns
+    mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
+    forces, impulses : items in the order in which they act
+    hanging : ties of the locally refined meshes
+    zones : the yielding zones among the forces
+    book : record of the contact
+    step : stable step with its safety factor, s
+    start : (size,) positions and (size,) velocities at time 0
+    """
+
+    geometry: Geometry
+    layout: Layout
+    mass: Array
+    inverse_mass: Array
+    forces: Sequence[Force]
+    impulses: Sequence[Impulse]
+    hanging: Hanging
+    zones: Sequence[YieldingZone]
+    book: ContactBook
+    step: float
+    start: tuple[Array, Array]
+
+    def initial_state(self) -> State:
+        """Return the state just before the first contact."""
+        x, v = self.start
+        state = State(x.copy(), v.copy(), np.zeros_like(x))
+        state.dt_next = self.step
+        return state
+
+    def ledger(self) -> Ledger:
+        """Return an empty ledger over all items."""
+        items: list[Account] = [*self.forces, *self.impulses]
+        moved = np.where(self.inverse_mass > 0, self.mass, 0.0)
+        return Ledger(moved, slice(0, self.layout.rod_size), items)

@@ -1,0 +1,87 @@
+"""One section operator for a body of identical slices, applied as a banded stencil along the rod.
+
+A slice couples its lower and upper section nodes through A = [[A11, A12], [A21, A22]]. Every interior
+layer therefore sees A21 below, A11 + A22 on itself and A12 above, whatever its number: three values an
+entry instead of three values an entry and layer.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from fem_impact.solid.kernels import kernel
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class SliceOperator:
+    """Stiffness of the slices, N/m, in compressed rows over (component, section node)."""
+
+    start: Ints
+    columns: Ints
+    below: Array
+    lower: Array
+    upper: Array
+    above: Array
+
+    def apply(self, d: Array, y: Array) -> None:
+        """Set ``y`` to the product with ``d``, both (rows, layers)."""
+        apply_slices(self.start, self.columns, self.below, self.lower, self.upper, self.above, d, y)
+
+    @classmethod
+    def of(cls, K: Array, lower_nodes: Ints, upper_nodes: Ints) -> SliceOperator:
+        """Build from the element matrices (m, 24, 24) of one slice.
+
+        ``lower_nodes`` and ``upper_nodes`` are (m, 4): section numbers of each cell's two quads, so
+        that the element's nodes are the lower four, then the upper four, in VTK order.
+        """
+        n = int(lower_nodes.max()) + 1
+        place = lambda nodes: np.concatenate([nodes + c * n for c in range(3)], axis=1)  # noqa: E731
+        # element unknowns node-major -> component-major, split into the two layers
+        order = np.arange(24).reshape(8, 3).T
+        low, up = order[:, :4].ravel(), order[:, 4:].ravel()
+        parts = {
+            "lower": _gather(K, low, low, place(lower_nodes), place(lower_nodes), 3 * n),
+            "upper": _gather(K, up, up, place(upper_nodes), place(upper_nodes), 3 * n),
+            "above": _gather(K, low, up, place(lower_nodes), place(upper_nodes), 3 * n),
+            "below": _gather(K, up, low, place(upper_nodes), place(lower_nodes), 3 * n),
+        }
+        pattern = sum(abs(sp.csr_matrix(p)) for p in parts.values()).tocsr()
+        pattern.sort_indices()
+        rows = np.repeat(np.arange(3 * n), np.diff(pattern.indptr))
+        values = {k: np.asarray(p[rows, pattern.indices]).ravel() for k, p in parts.items()}
+        return cls(pattern.indptr.astype(np.int64), pattern.indices.astype(np.int64), **values)
+
+
+def _gather(K: Array, rows: Ints, cols: Ints, row_place: Ints, col_place: Ints, size: int) -> sp.csr_matrix:
+    block = K[:, rows][:, :, cols]
+    i = np.repeat(row_place, len(cols), axis=1).ravel()
+    j = np.tile(col_place, (1, len(rows))).ravel()
+    return sp.csr_matrix((block.ravel(), (i, j)), shape=(size, size))
+
+
+@kernel
+def _add_row(out, row, own, above, below):  # type: ignore[no-untyped-def]
+    """Add one entry's contribution to all inner layers of a row."""
+    for k in range(1, len(out) - 1):
+        out[k] += own * row[k] + above * row[k + 1] + below * row[k - 1]
+
+
+@kernel
+def apply_slices(start, columns, below, lower, upper, above, d, y):  # type: ignore[no-untyped-def]
+    """Set y (rows, layers) to the slice operator times d; the end layers belong to one slice only."""
+    last = d.shape[1] - 1
+    for i in range(len(start) - 1):
+        out = y[i]
+        out[:] = 0.0
+        for p in range(start[i], start[i + 1]):
+            row = d[columns[p]]
+            _add_row(out, row, lower[p] + upper[p], above[p], below[p])
+            out[0] += lower[p] * row[0] + above[p] * row[1]
+            out[last] += upper[p] * row[last] + below[p] * row[last - 1]

@@ -1,0 +1,38 @@
+"""What moves: positions, velocities, forces, and the clock."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(slots=True)
+class State:
+    """Moving part of a run; all vectors are flat and numbered by :class:`~fem_impact.solid.layout.Layout`.
+
+    Attributes
+    ----------
+    x, v, force : (size,) float64, m, m/s (half a step behind x), N
+    time : s
+    step : number of steps done
+    dt : step that led to ``x`` (s); 0 before the first
+    dt_next : step to take, s
+    """
+
+    x: Array
+    v: Array
+    force: Array
+    time: float = 0.0
+    step: int = 0
+    dt: float = 0.0
+    dt_next: float = 0.0
+    kick: float = field(default=0.0)
+
+    @classmethod
+    def at_rest(cls, x: Array) -> State:
+        """Start at positions ``x`` without motion."""
+        return cls(x.copy(), np.zeros_like(x), np.zeros_like(x))
