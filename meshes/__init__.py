@@ -8,7 +8,7 @@ from meshes.quality import Quality, quality, volume
 from meshes.refine import levels_for, refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import sphere
-from meshes.step import step_bound
+from meshes.step import step_bound, step_limit
 from meshes.zone import Zone
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "rod",
     "sphere",
     "step_bound",
+    "step_limit",
     "volume",
     "write",
 ]

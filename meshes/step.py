@@ -1,4 +1,4 @@
-"""A guaranteed bound of the explicit step from the geometry of each cell alone."""
+"""The explicit step that a cell allows: a bound from its geometry, and the exact limit of the cell."""
 
 import numpy as np
 import numpy.typing as npt
@@ -7,22 +7,20 @@ from meshes.errors import MeshError
 from meshes.gauss import GRADIENTS, SHAPES, jacobians
 from meshes.hexmesh import HexMesh
 
-__all__ = ["step_bound"]
+__all__ = ["step_bound", "step_limit"]
 
 FloatArray = npt.NDArray[np.float64]
 
 
 def step_bound(mesh: HexMesh, c_d: float, nu: float = 0.29) -> FloatArray:
-    r"""Step of the central-difference scheme that every cell certainly allows.
+    r"""Step of the central-difference scheme that every cell certainly allows, cheaply.
 
     For a cell with eight Gauss points q of volume w_q and row-sum masses m_a,
 
     .. math:: \omega^2 = \max_u \sum_q w_q \epsilon_q : C : \epsilon_q / \sum_a m_a |u_a|^2
               \le \sum_q w_q \lambda_{max}(C^{1/2} B_q M^{-1} B_q^T C^{1/2})
 
-    and no assembled mesh vibrates faster than its fastest cell (Irons). For a cube of edge h at
-    nu = 0.29 the exact limit is 0.742 h / c_d; the bound gives 0.62 of that, 0.55 or more for the
-    distorted cells of the builders here.
+    For a cube of edge h at nu = 0.29 it gives 0.540 h / c_d, 73 % of the exact 0.742 h / c_d.
 
     Parameters
     ----------
@@ -42,6 +40,29 @@ def step_bound(mesh: HexMesh, c_d: float, nu: float = 0.29) -> FloatArray:
     MeshError
         If the speed is not positive or Poisson's ratio is outside [0, 0.5).
     """
+    volumes, strain = _scaled_strains(mesh, c_d, nu)
+    greatest = np.linalg.eigvalsh(strain @ np.swapaxes(strain, -1, -2))[..., -1]
+    return np.asarray(2.0 / (c_d * np.sqrt((volumes * greatest).sum(axis=1))))
+
+
+def step_limit(mesh: HexMesh, c_d: float, nu: float = 0.29) -> FloatArray:
+    """Exact 2 / omega of each fully integrated cell by itself; arguments as in `step_bound`.
+
+    No assembled mesh vibrates faster than its fastest cell (Irons), and B-bar and incompatible modes
+    only lower the energy of a motion, so the least of these steps holds for them too.
+
+    Returns
+    -------
+    (m,) float64, s
+    """
+    volumes, strain = _scaled_strains(mesh, c_d, nu)
+    rows = (np.sqrt(volumes)[..., None, None] * strain).reshape(len(volumes), 48, 24)
+    greatest = np.linalg.eigvalsh(np.swapaxes(rows, -1, -2) @ rows)[:, -1]
+    return np.asarray(2.0 / (c_d * np.sqrt(greatest)))
+
+
+def _scaled_strains(mesh: HexMesh, c_d: float, nu: float) -> tuple[FloatArray, FloatArray]:
+    """Volumes (m, 8) and R B M^-1/2 (m, 8, 6, 24) of the Gauss points, for unit density and speed."""
     if not c_d > 0.0 or not 0.0 <= nu < 0.5:
         raise MeshError(f"step bound needs c_d > 0 and 0 <= nu < 0.5, not {c_d} m/s and {nu}")
     jacobian = jacobians(mesh)
@@ -49,9 +70,7 @@ def step_bound(mesh: HexMesh, c_d: float, nu: float = 0.29) -> FloatArray:
     gradients = np.einsum("qaj,mqji->mqai", GRADIENTS, np.linalg.inv(jacobian), optimize=True)
     mass = volumes @ SHAPES
     strain = _strain_operator(gradients / np.sqrt(mass)[:, None, :, None])
-    scaled = np.einsum("st,mqtu->mqsu", _stiffness_root(nu), strain, optimize=True)
-    greatest = np.linalg.eigvalsh(scaled @ np.swapaxes(scaled, -1, -2))[..., -1]
-    return np.asarray(2.0 / (c_d * np.sqrt((volumes * greatest).sum(axis=1))))
+    return volumes, np.asarray(_stiffness_root(nu) @ strain)
 
 
 def _stiffness_root(nu: float) -> FloatArray:

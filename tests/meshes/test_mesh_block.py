@@ -1,0 +1,59 @@
+import numpy as np
+import pytest
+from mesh_shapes import area_vectors
+
+import meshes
+
+LOW, HIGH = (-8e-3, 0.0, -6e-3), (8e-3, 8e-3, 0.0)
+ZONE = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), [-1.5e-3, -1e-3, -1.2e-3], [1.5e-3, 1e-3, 1e-3])
+
+
+@pytest.fixture(scope="module")
+def fine():
+    return meshes.block(LOW, HIGH, 2e-3, ZONE, 3)
+
+
+def test_base_block_has_equal_cells_and_exact_volume():
+    mesh = meshes.block(LOW, HIGH, 2.1e-3)
+    quality = meshes.quality(mesh)
+    assert len(mesh.cells) == 8 * 4 * 3
+    assert quality.volume == pytest.approx(16e-3 * 8e-3 * 6e-3, rel=1e-13)
+    assert quality.min_scaled_jacobian == pytest.approx(1.0)
+    assert quality.min_edge == pytest.approx(2e-3)
+
+
+def test_sides_are_tagged_by_what_they_are(fine):
+    area = np.linalg.norm(area_vectors(fine), axis=1)
+    totals = [area[fine.face_tag == tag].sum() for tag in (meshes.SKIN, meshes.SYMMETRY, meshes.OUTER)]
+    outer = 16e-3 * 8e-3 + 16e-3 * 6e-3 + 2 * 8e-3 * 6e-3
+    assert totals == pytest.approx([16e-3 * 8e-3, 16e-3 * 6e-3, outer], rel=1e-12)
+    skin = area_vectors(fine)[fine.face_tag == meshes.SKIN]
+    assert (skin[:, 2] > 0.0).all()
+
+
+def test_grid_at_the_contact_is_regular(fine):
+    top = fine.points[np.unique(fine.faces_with(meshes.SKIN))]
+    near = top[ZONE.distance(top) == 0.0]
+    steps = [np.diff(np.unique(near[:, axis].round(12))) for axis in (0, 1)]
+    assert len(near) == (len(steps[0]) + 1) * (len(steps[1]) + 1)
+    assert np.concatenate(steps) == pytest.approx(0.25e-3, rel=1e-9)
+
+
+def test_cells_at_the_zone_are_finest(fine):
+    touching = ZONE.gap(fine.points[fine.cells], np.full(len(fine.cells), 1e-9)) == 0.0
+    assert touching.any()
+    assert (fine.level[touching] == 3).all()
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "size", "words"),
+    [
+        ((0.0, 0.0, -1.0), (1.0, 1.0, 0.5), 0.5, "n = 0"),
+        ((0.0, 0.1, -1.0), (1.0, 1.0, 0.0), 0.5, "b = 0"),
+        ((1.0, 0.0, -1.0), (0.0, 1.0, 0.0), 0.5, "low < high"),
+        ((0.0, 0.0, -1.0), (1.0, 1.0, 0.0), 0.0, "size must be positive"),
+    ],
+)
+def test_impossible_blocks_are_refused(low, high, size, words):
+    with pytest.raises(meshes.MeshError, match=words):
+        meshes.block(low, high, size)

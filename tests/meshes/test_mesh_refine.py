@@ -1,0 +1,139 @@
+import doctest
+import importlib
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from mesh_shapes import area_vectors, contact_zone, edge_radius, flux_volume, interior
+
+import meshes
+from meshes.gauss import GRADIENTS, jacobians
+
+small = st.floats(0.0, 1.0)
+
+
+@st.composite
+def refined_blocks(draw):
+    centre = [6.0 * draw(small) - 3.0, 3.0 * draw(small), -3.0 * draw(small)]
+    turn = draw(st.floats(0.0, np.pi))
+    axes = [[np.cos(turn), 0.0, np.sin(turn)], [0.0, 1.0, 0.0], [-np.sin(turn), 0.0, np.cos(turn)]]
+    half = np.array([draw(small) for _ in range(3)])
+    zone = meshes.Zone(centre, axes, -half, half)
+    return meshes.block(
+        (-3.0, 0.0, -3.0), (3.0, 3.0, 0.0), 1.0, zone, draw(st.integers(1, 3)), buffer=draw(st.integers(0, 2))
+    )
+
+
+@pytest.fixture(scope="module")
+def rod():
+    return meshes.rod(edge_radius(), 0.06, zone=contact_zone(edge_radius()), levels=3).mesh
+
+
+def boxes_touch(mesh):
+    x = mesh.points[mesh.cells]
+    low, high = x.min(axis=1), x.max(axis=1)
+    return ((low[:, None] <= high[None] + 1e-9) & (high[:, None] >= low[None] - 1e-9)).all(axis=2)
+
+
+@settings(max_examples=25, deadline=None)
+@given(refined_blocks())
+def test_touching_cells_differ_by_one_level_at_most(mesh):
+    level = mesh.level.astype(int)
+    apart = np.abs(level[:, None] - level[None])
+    assert (apart[boxes_touch(mesh)] <= 1).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(refined_blocks())
+def test_ties_are_weights_of_free_nodes_and_reproduce_linear_fields(mesh):
+    weights = np.asarray(mesh.tie.sum(axis=1)).ravel()
+    assert np.abs(weights - 1.0).max() < 1e-14
+    assert not mesh.is_hanging[mesh.tie.indices].any()
+    assert mesh.tie.data.min() > 0.0
+    assert np.abs(mesh.tie @ mesh.points - mesh.points).max() < 3e-15
+
+
+@settings(max_examples=25, deadline=None)
+@given(refined_blocks())
+def test_refined_blocks_stay_closed_and_keep_their_volume(mesh):
+    assert np.abs(area_vectors(mesh).sum(axis=0)).max() < 1e-12
+    assert meshes.volume(mesh) == pytest.approx(54.0, rel=1e-12)
+    assert flux_volume(mesh) == pytest.approx(54.0, rel=1e-12)
+
+
+def test_hanging_nodes_exist_exactly_where_the_level_changes():
+    zone = meshes.Zone([0.25, 0.25, -0.25], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
+    mesh = meshes.block((0.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0, zone, 1)
+    # One corner cell split: of its 19 new nodes those on its three inner faces hang.
+    assert np.bincount(mesh.level).tolist() == [7, 8]
+    assert mesh.is_hanging.sum() == 3 + 9
+    assert len(mesh.points) == 27 + 19
+
+
+def test_ties_of_the_curved_nose_reproduce_linear_fields(rod):
+    gradient = np.array([[1.0, -2.0, 0.5], [0.3, 0.7, -1.1], [2.0, 0.1, 0.9]])
+    field = rod.points @ gradient.T + np.array([0.1, -0.2, 0.3])
+    assert rod.is_hanging.sum() > 100
+    assert np.abs(rod.tie @ field - field).max() < 1e-13
+
+
+def test_patch_constant_stress_loads_no_inner_node_across_level_changes(rod):
+    stress = np.array([[3.0, 1.0, -0.5], [1.0, -2.0, 0.7], [-0.5, 0.7, 1.5]])
+    jacobian = jacobians(rod)
+    gradients = np.einsum("qaj,mqji->mqai", GRADIENTS, np.linalg.inv(jacobian))
+    cell_force = np.einsum("mq,mqaj,ij->mai", np.linalg.det(jacobian), gradients, stress)
+    force = np.zeros_like(rod.points)
+    np.add.at(force, rod.cells, cell_force)
+    free = interior(rod) & ~rod.is_hanging
+    assert free.sum() > 1000
+    assert np.abs((rod.tie.T @ force)[free]).max() < 1e-12 * np.abs(cell_force).max()
+
+
+def test_nose_with_level_changes_has_no_gaps(rod):
+    assert np.abs(area_vectors(rod).sum(axis=0)).max() < 1e-16
+    assert flux_volume(rod) == pytest.approx(meshes.volume(rod), rel=1e-12)
+
+
+def test_two_whole_cells_lie_between_level_changes():
+    zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.3), np.full(3, 0.3))
+    mesh = meshes.block((-12.0, 0.0, -12.0), (12.0, 12.0, 0.0), 1.0, zone, 3, buffer=2)
+    x = mesh.points[mesh.cells]
+    for level in (1, 2):
+        inner = np.abs(x[mesh.level > level]).max()
+        outer = np.abs(x[mesh.level == level]).max()
+        assert outer - inner >= 2 * 0.5**level - 1e-12
+
+
+def test_building_twice_gives_the_same_bits(rod):
+    again = meshes.rod(edge_radius(), 0.06, zone=contact_zone(edge_radius()), levels=3).mesh
+    assert again.points.tobytes() == rod.points.tobytes()
+    assert again.cells.tobytes() == rod.cells.tobytes()
+
+
+def test_refused_requests():
+    zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
+    mesh = meshes.block((-2.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0)
+    with pytest.raises(meshes.MeshError, match="refined already"):
+        meshes.refine(meshes.refine(mesh, zone, 1), zone, 1)
+    with pytest.raises(meshes.MeshError, match="must stay whole"):
+        meshes.refine(mesh, zone, 1, frozen=np.ones(len(mesh.cells), bool))
+    with pytest.raises(meshes.MeshError, match="negative"):
+        meshes.refine(mesh, zone, -1)
+
+
+def test_no_levels_change_nothing():
+    zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
+    mesh = meshes.block((-2.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0)
+    same = meshes.refine(mesh, zone, 0)
+    assert (same.cells == mesh.cells).all()
+    assert (same.points == mesh.points).all()
+    assert len(same.faces) == len(mesh.faces)
+
+
+def test_levels_for_examples_hold():
+    result = doctest.testmod(importlib.import_module("meshes.refine"))
+    assert result.attempted == 1
+    assert result.failed == 0
+    with pytest.raises(meshes.MeshError, match="positive"):
+        meshes.levels_for(0.0, 1.0)
