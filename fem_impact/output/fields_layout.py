@@ -75,6 +75,7 @@ def add_frame(
     for name in STEP_ROWS:
         _put_step(steps, name, at, 1 if name == "NumberOfParts" else 0)
     _put_step(steps, "Values", at, time)
+    root.file.flush()  # a run killed here must not leave a counted frame without its data
     steps.attrs["NSteps"] = at + 1
 
 

@@ -126,4 +126,7 @@ def _lines(text: str, source: str) -> Iterable[list[str]]:
 def _plain(cell: Cell) -> Cell:
     if isinstance(cell, np.generic):
         cell = cell.item()
+    if isinstance(cell, str):
+        # one row, one line: a table cut off by a kill must stay readable up to its last line end
+        return cell.replace("\r", " ").replace("\n", " ")
     return repr(cell) if isinstance(cell, float) else cell
