@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from meshes.meridian import Meridian
 
-__all__ = ["Nose", "lay_nose"]
+__all__ = ["Nose", "inner_corner", "lay_nose"]
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -57,8 +57,8 @@ def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, 
     curve = meridian.extended(height)
     split = curve.shoulder()
     layer = (1.0 - plug) * meridian.radius
-    deep = _depth(curve, split, layer) * curve.inward(split)
-    corner = curve.at(np.array(split)) + deep
+    corner = inner_corner(meridian, plug)
+    deep = corner - curve.at(np.array(split))
     length = curve.arc[-1] - split
     rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
     side = curve.at(_along(split, curve.arc[-1], rows, curve.corners()))
@@ -68,6 +68,14 @@ def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, 
     fade = np.linspace(0.0, 1.0, rows + 1)
     wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer, 0.0])
     return Nose(face, _filled(bottom, wall, share, height), side)
+
+
+def inner_corner(meridian: Meridian, plug: float) -> FloatArray:
+    """(2,) point C (rho, z) where plug, face layer and side layer meet, m; arguments as in `lay_nose`."""
+    curve = meridian.extended(meridian.height + meridian.radius)
+    split = curve.shoulder()
+    depth = _depth(curve, split, (1.0 - plug) * meridian.radius)
+    return np.asarray(curve.at(np.array(split)) + depth * curve.inward(split))
 
 
 def _depth(meridian: Meridian, split: float, layer: float) -> float:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from meshes.errors import MeshError
 from meshes.hexmesh import SKIN, SYMMETRY, HexMesh, from_cells
 from meshes.meridian import Meridian
-from meshes.nose import Nose, lay_nose
+from meshes.nose import Nose, inner_corner, lay_nose
 from meshes.quality import require_positive
 from meshes.refine import reach, refine
 from meshes.section import Section, section
@@ -81,7 +81,7 @@ def rod(
     wanted = pitch if slice_length is None else slice_length
     if not nose and zone is not None:
         raise MeshError("a rod of slices alone cannot be refined: leave the zone out or keep the nose")
-    start = _body_start(shape, pitch, zone, levels, buffer) if nose else 0.0
+    start = _body_start(shape, half.plug, pitch, zone, levels, buffer) if nose else 0.0
     count = _slices(length, start, wanted, pitch)
     slab = (length - start) / count
     points, cells = _body(half, shape.radius, start, slab, count)
@@ -99,9 +99,12 @@ def rod(
     return RodMesh(mesh, body_nodes, body_cells, slab, start)
 
 
-def _body_start(shape: Meridian, pitch: float, zone: Zone | None, levels: int, buffer: int) -> float:
+def _body_start(
+    shape: Meridian, plug: float, pitch: float, zone: Zone | None, levels: int, buffer: int
+) -> float:
     """Where the slices can begin: past the tip's shape and past all cells that are to be split, m."""
-    start = max(shape.height + pitch, 2.0 * shape.radius / 3.0)
+    inner = float(inner_corner(shape, plug)[1])
+    start = max(shape.height + pitch, inner + 1.5 * pitch, 2.0 * shape.radius / 3.0)
     if zone is None or levels == 0:
         return start
     top = float(zone.corners()[:, 2].max())
