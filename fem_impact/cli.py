@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from fem_impact.cli_parser import Options, build_parser
+from fem_impact.cli_parser import Options, build_parser, read_line
 from fem_impact.errors import FemImpactError, OutputPathError, RunError
 
 __all__ = ["main"]
@@ -19,12 +19,11 @@ __all__ = ["main"]
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
-    parser = build_parser()
-    options = parser.parse_args(argv, namespace=Options())
+    options = read_line(argv)
     if options.version:
         return _version()
     if not options.handler:
-        parser.print_help(sys.stderr)
+        build_parser().print_help(sys.stderr)
         return 2
     return _guarded(_handler(options.handler), options)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,7 @@ from fem_impact.errors import EXIT_CODES
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 
-__all__ = ["Options", "build_parser"]
+__all__ = ["Options", "build_parser", "read_line"]
 
 _SCENE = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
 _SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
@@ -26,8 +27,8 @@ class Options(argparse.Namespace):
     json: bool = False
     quiet: bool = False
     scene: str = ""
-    changes: list[str]
-    ids: list[str]
+    changes: Sequence[str] = ()
+    ids: Sequence[str] = ()
     out: Path | None = None
     quick: bool = False
     workers: int | None = None
@@ -48,6 +49,20 @@ def build_parser() -> argparse.ArgumentParser:
     for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check):
         add(commands)
     return parser
+
+
+def read_line(argv: Sequence[str] | None) -> Options:
+    """Read the command line; one that is not understood ends the program with exit code 2.
+
+    argparse loses words that follow an option after ``ID ...``, as in ``study sets --quick t4``: they come
+    back as unknown and are put where they belong.
+    """
+    parser = build_parser()
+    options, rest = parser.parse_known_args(argv, namespace=Options())
+    if rest and (not options.handler.endswith(":study") or any(word.startswith("-") for word in rest)):
+        parser.error(f"not understood: {' '.join(rest)} (fem-impact COMMAND --help lists the options)")
+    options.ids = [*options.ids, *rest]
+    return options
 
 
 def _command(commands: Commands, name: str, words: str, handler: str) -> argparse.ArgumentParser:

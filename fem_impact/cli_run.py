@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import shutil
 import sys
+from collections.abc import Sequence
 from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -68,7 +69,7 @@ def _default_out(scene: Scene, options: Options) -> Path:
     return Path("results") / name
 
 
-def _checked_ids(ids: list[str]) -> tuple[str, ...]:
+def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
     from fem_impact.scene import MEASURED_SETS
 
     for name in ids:

@@ -96,7 +96,22 @@ def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
     assert not stand.calls
 
 
-@pytest.mark.parametrize("words", [["fly"], ["run"], ["study", "cats"], ["study", "sets", "--workers", "0"]])
+def test_sets_may_follow_the_options(cli, stand):
+    assert cli("study", "sets", "t5a", "--quick", "t4", "--quiet")[0] == 0
+    assert stand.calls[0][1][:2] == (("t5a", "t4"), True)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["fly"],
+        ["run"],
+        ["run", "t4", "t5a"],
+        ["study", "sets", "--fast"],
+        ["study", "cats"],
+        ["study", "sets", "--workers", "0"],
+    ],
+)
 def test_a_line_that_is_not_understood_ends_with_2(cli, words):
     assert cli(*words)[0] == 2
 
