@@ -6,13 +6,18 @@ Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``expe
 """
 
 from .arms import Arms, corner_arms
+from .closure import closure_defect
 from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
 from .errors import DataError, ImpactError, RigidError, ShapeError
+from .finite import FreeMotion, solve_free
+from .general import General
 from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
 from .massive import Motion, critical_ratio, phi, solve
+from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_path
 from .projectile import TIPS, Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
+from .uncertainty import Errors, Estimate, bootstrap, first_order
 
 __all__ = [
     "GRAVITY",
@@ -22,6 +27,11 @@ __all__ = [
     "Arms",
     "Coefficients",
     "DataError",
+    "End",
+    "Errors",
+    "Estimate",
+    "FreeMotion",
+    "General",
     "ImpactError",
     "Losses",
     "Motion",
@@ -29,18 +39,26 @@ __all__ = [
     "Projectile",
     "RigidError",
     "ShapeError",
+    "SlidingPath",
     "behaves_rigidly",
+    "bootstrap",
+    "closure_defect",
     "coefficients",
     "corner_arms",
     "critical_ratio",
     "drop_velocities",
+    "first_order",
     "impulse_ratio",
     "in_millimetres",
+    "interval_ratio",
     "kinetic_energy",
     "losses",
+    "painleve_threshold",
     "phi",
     "predicted_losses",
     "restitution",
     "slenderness",
+    "sliding_path",
     "solve",
+    "solve_free",
 ]

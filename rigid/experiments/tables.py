@@ -23,13 +23,24 @@ def _lines(name: str) -> tuple[dict[str, str], ...]:
     return tuple(csv.DictReader(text.splitlines()))
 
 
-def _columns(name: str, select: Mapping[str, str]) -> dict[str, Floats]:
-    """Give the numeric columns of the lines whose labels match `select`."""
+def _select(name: str, select: Mapping[str, str]) -> list[dict[str, str]]:
+    """Give the lines whose labels match `select`."""
     lines = [line for line in _lines(name) if all(line.get(k) == v for k, v in select.items())]
     if not lines:
         raise DataError(f"{name} has no row with {dict(select)}")
+    return lines
+
+
+def _columns(name: str, select: Mapping[str, str]) -> dict[str, Floats]:
+    """Give the numeric columns of the selected lines."""
+    lines = _select(name, select)
     numeric = [key for key in lines[0] if key not in LABELS]
     return {key: np.array([float(line[key]) for line in lines]) for key in numeric}
+
+
+def _decimals(text: str) -> int:
+    """Count the digits after the point."""
+    return len(text.partition(".")[2])
 
 
 def table(number: int, select: Mapping[str, str] | None = None) -> dict[str, Floats]:
@@ -59,11 +70,15 @@ def table(number: int, select: Mapping[str, str] | None = None) -> dict[str, Flo
 
 def decimals(number: int, column: str, select: Mapping[str, str] | None = None) -> tuple[int, ...]:
     """Give the decimals with which each row of a column was printed."""
-    wanted = (select or {}).items()
-    lines = [x for x in _lines(f"table{number}.csv") if all(x.get(k) == v for k, v in wanted)]
-    return tuple(len(line[column].partition(".")[2]) for line in lines)
+    return tuple(_decimals(line[column]) for line in _select(f"table{number}.csv", select or {}))
 
 
 def printed_statistics(number: int, which: str, select: Mapping[str, str] | None = None) -> dict[str, Floats]:
     """Give the printed "mean" or "sd" line of a table (misprints included), as one-element columns."""
     return _columns(f"table{number}_printed_statistics.csv", {**(select or {}), "statistic": which})
+
+
+def statistic_decimals(number: int, which: str, column: str, select: Mapping[str, str] | None = None) -> int:
+    """Give the decimals of one number of the printed "mean" or "sd" line."""
+    wanted = {**(select or {}), "statistic": which}
+    return _decimals(_select(f"table{number}_printed_statistics.csv", wanted)[0][column])

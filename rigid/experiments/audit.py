@@ -1,0 +1,183 @@
+"""Every printed column against its recomputation from the velocities, row by row."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Floats, floats
+from ..coefficients import coefficients
+from ..losses import losses
+from ..uncertainty import sensitivities
+from .sets import MOTION, MeasuredSet, measured_sets
+from .statistics import statistic
+from .tables import decimals, printed_statistics, statistic_decimals
+
+COLUMNS = ("V_cn", "V_ct", "e", "mu", "e_m", "E_lt", "E_ln", "E_r")
+CONSTANTS = {"d_c": 5e-5, "d_d": 5e-5, "mass": 5e-4, "k2": 1e-3}
+"""Rounding of the constants: 0.05 mm, 0.5 g, and a thousandth of k2 itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class AuditRecord:
+    """One printed number and its recomputation.
+
+    Attributes
+    ----------
+    set_id, column, row : str
+        Where it stands; `row` is the test's number, "mean" or "sd".
+    table : int
+        Of the paper.
+    printed, recomputed : float
+        In the column's unit.
+    tolerance : float
+        Largest difference that the rounding of all numbers involved can make.
+    explanation : str
+        What is known of a number that does not agree; empty if it does, or if nothing is known.
+    """
+
+    set_id: str
+    table: int
+    row: str
+    column: str
+    printed: float
+    recomputed: float
+    tolerance: float
+    explanation: str
+
+    @property
+    def agrees(self) -> bool:
+        """Whether rounding accounts for the difference."""
+        return abs(self.printed - self.recomputed) <= self.tolerance
+
+
+def audit() -> tuple[AuditRecord, ...]:
+    """Recompute Tables 2 and 4-6 with the arms, masses and k2 that they really used.
+
+    Returns
+    -------
+    tuple of AuditRecord
+        One for every number in the columns V_cn, V_ct (as the velocity of the contact point, Eq 14-15), e,
+        mu, e_m, E_lt, E_ln, E_r and E_total (the sum of the three before). Table 3 prints nothing that
+        could be recomputed.
+
+    Examples
+    --------
+    >>> records = audit()
+    >>> len(records), [r.row for r in records if r.column == "mu" and not r.agrees]
+    (918, ['16', '25'])
+    """
+    sets = [s for s in measured_sets() if not s.reconstructed]
+    return tuple(record for s in sets for part in (_columns(s), _totals(s)) for record in part)
+
+
+def audit_statistics() -> tuple[AuditRecord, ...]:
+    """Recompute the printed mean and SD lines of all tables from the printed rows."""
+    return tuple(record for s in measured_sets() for record in _statistics(s))
+
+
+def recompute(
+    v_n: ArrayLike,
+    v_t: ArrayLike,
+    V_n: ArrayLike,
+    V_t: ArrayLike,
+    Omega: ArrayLike,
+    *,
+    d_c: ArrayLike,
+    d_d: ArrayLike,
+    k2: ArrayLike,
+    mass: ArrayLike,
+) -> dict[str, Floats]:
+    """Give every derived column of a row: Eq 14-18, 20, 21 and 26 (SI units)."""
+    V_n, V_t, Omega, d_c, d_d = floats(V_n, V_t, Omega, d_c, d_d)
+    motion = (v_n, v_t, V_n, V_t, Omega)
+    markers = {"V_cn": V_n + d_c * Omega, "V_ct": V_t - d_d * Omega}
+    found = coefficients(*motion, d_c=d_c, d_d=d_d, k2=k2)._asdict()
+    energies = losses(*motion, d_c=d_c, d_d=d_d, k2=k2, mass=mass)._asdict()
+    return {**markers, **found, **energies}
+
+
+def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
+    """Audit the columns that follow from the velocities."""
+    for column in COLUMNS:
+        at, half = _inputs(s, column)
+        slopes = sensitivities(recompute, at)[column]
+        tolerance = _half_units(s, column) + sum(np.abs(slopes[k]) * half[k] for k in at)
+        yield from _records(s, column, recompute(**at)[column], tolerance)
+
+
+def _totals(s: MeasuredSet) -> Iterator[AuditRecord]:
+    """Audit E_total as the sum of the three energies printed before it."""
+    parts = ("E_lt", "E_ln", "E_r")
+    total = sum(s.printed[name] for name in parts)
+    tolerance = sum(_half_units(s, name) for name in (*parts, "E_total"))
+    yield from _records(s, "E_total", np.asarray(total), np.asarray(tolerance))
+
+
+def _inputs(s: MeasuredSet, column: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Give the inputs of every row and the half unit of their last digit."""
+    d_c = _knowledge()["arms"].get(s.id, {}).get(column, s.arms.d_c)
+    constants = {"d_c": d_c, "d_d": s.arms.d_d, "k2": s.k2, "mass": s.mass}
+    shape = s.motion["v_n"].shape
+    at = {name: s.motion[name] for name in MOTION}
+    half = {name: _half_units(s, name) for name in MOTION}
+    scale = {**dict.fromkeys(constants, 1.0), "k2": s.k2}
+    at |= {name: np.full(shape, value) for name, value in constants.items()}
+    half |= {name: np.full(shape, CONSTANTS[name] * scale[name]) for name in constants}
+    return at, half
+
+
+def _half_units(s: MeasuredSet, column: str) -> Floats:
+    """Half a unit in the last printed digit of each row (a hair more, for binary fractions)."""
+    return 0.5001 * 10.0 ** -np.array(decimals(s.table, column, s.select), dtype=np.float64)
+
+
+def _records(s: MeasuredSet, column: str, found: Floats, tolerance: Floats) -> Iterator[AuditRecord]:
+    """Pair the printed rows with what was found."""
+    tests = (f"{test:.0f}" for test in s.printed["test"])
+    for row, printed, value, half in zip(tests, s.printed[column], found, tolerance, strict=True):
+        yield _record(s, row, column, printed, value, half)
+
+
+def _statistics(s: MeasuredSet) -> Iterator[AuditRecord]:
+    """Audit the mean and SD lines below a set's rows."""
+    for which in ("mean", "sd"):
+        printed = printed_statistics(s.table, which, s.select)
+        for column in (name for name in printed if name != "alpha_deg"):
+            value = getattr(statistic(s.printed[column]), which)
+            last = statistic_decimals(s.table, which, column, s.select)
+            tolerance = 0.5001 * 10.0**-last + _half_units(s, column).max()
+            yield _record(s, which, column, printed[column][0], value, tolerance)
+
+
+def _record(
+    s: MeasuredSet, row: str, column: str, printed: float, value: float, tolerance: float
+) -> AuditRecord:
+    """Make a record, with an explanation where it is needed and known."""
+    record = AuditRecord(s.id, s.table, row, column, float(printed), float(value), float(tolerance), "")
+    if record.agrees:
+        return record
+    why = next((k["why"] for k in _knowledge()["known"] if _applies(k, record)), "")
+    return AuditRecord(s.id, s.table, row, column, record.printed, record.recomputed, record.tolerance, why)
+
+
+def _applies(known: dict[str, Any], record: AuditRecord) -> bool:
+    """Tell whether a piece of knowledge is about this record."""
+    return (
+        known["set"] in ("*", record.set_id)
+        and known["column"] in ("*", record.column)
+        and bool({"*", record.row} & set(known["rows"]))
+    )
+
+
+@cache
+def _knowledge() -> dict[str, Any]:
+    """Read the packaged knowledge about the tables."""
+    return tomllib.loads((files(__package__) / "data" / "audit.toml").read_text(encoding="utf-8"))

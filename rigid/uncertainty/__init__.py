@@ -1,0 +1,8 @@
+"""How well measured velocities determine the impact coefficients."""
+
+from .bootstrap import bootstrap
+from .estimate import Errors, Estimate
+from .first_order import first_order
+from .propagate import sensitivities
+
+__all__ = ["Errors", "Estimate", "bootstrap", "first_order", "sensitivities"]

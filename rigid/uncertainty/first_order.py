@@ -1,0 +1,70 @@
+"""Uncertainty of e, mu and e_m to first order."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.special import stdtrit
+
+from ..arrays import Floats
+from .estimate import MOTION, Errors, Estimate, named, stack_tests
+from .propagate import sensitivities
+
+ARMS = ("d_c", "d_d")
+
+
+def first_order(
+    motion: Mapping[str, ArrayLike],
+    *,
+    d_c: float,
+    d_d: float,
+    k2: float,
+    errors: Errors | None = None,
+) -> dict[str, Estimate]:
+    """Coefficients of the mean motion with their uncertainty, propagated linearly.
+
+    The scatter of the velocities enters with their covariance (V_n, V_t and Omega vary together), divided
+    by the number of tests; contact point and tracking are common to all tests and do not
+    average out. Where the moment arm d_c - mu d_d nearly vanishes e_m is ill-conditioned, and its bar
+    says so (to first order: `bootstrap` shows how skewed it is).
+
+    Parameters
+    ----------
+    motion : mapping of str to (n,) array_like
+        v_n, v_t, V_n, V_t (m/s), Omega (rad/s); n >= 2.
+    d_c, d_d : float
+        Arms, m.
+    k2 : float
+        Squared radius of gyration, m2.
+    errors : Errors, optional
+        +-0.5 mm and +-2 % unless given.
+
+    Returns
+    -------
+    dict of str to Estimate
+        For e, mu and e_m.
+    """
+    errors = errors or Errors()
+    rows = stack_tests(motion)
+    mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
+    at = {k: np.asarray(v, dtype=np.float64) for k, v in {**mean, "d_c": d_c, "d_d": d_d}.items()}
+    values = named(**at, k2=np.asarray(k2))
+    slopes = sensitivities(lambda **x: named(**x, k2=np.asarray(k2)), at)
+    return {name: _estimate(float(values[name]), slopes[name], rows, errors) for name in values}
+
+
+def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: Errors) -> Estimate:
+    """Add the three sources in squares."""
+    n = rows.shape[1]
+    g = np.array([slope[name] for name in MOTION])
+    arms = np.array([slope[name] for name in ARMS])
+    parts = {
+        "scatter": float(np.sqrt(g @ np.cov(rows) @ g / n)),
+        "contact": errors.contact_sd * float(np.hypot(*arms)),
+        "tracking": errors.tracking_sd * float(np.linalg.norm(g * rows.mean(axis=1))),
+    }
+    fixed = float(np.hypot(parts["contact"], parts["tracking"]))
+    half = float(np.hypot(stdtrit(n - 1, 0.975) * parts["scatter"], 1.96 * fixed))
+    return Estimate(value, float(np.hypot(parts["scatter"], fixed)), value - half, value + half, parts)
