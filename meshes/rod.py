@@ -123,9 +123,9 @@ def _slices(length: float, start: float, wanted: float, pitch: float) -> int:
 
 
 def _body(half: Section, radius: float, start: float, slab: float, count: int) -> tuple[FloatArray, IntArray]:
-    """Points and cells of the slices, layer after layer."""
+    """Points and cells of the slices, layer after layer, with the exact area of the round section."""
     z = start + slab * np.arange(count + 1)
-    flat = radius * half.unit
+    flat = half.swell * radius * half.unit
     layers = np.broadcast_to(flat, (count + 1, *flat.shape))
     height = np.broadcast_to(z[:, None, None], (count + 1, len(flat), 1))
     points = np.concatenate([layers, height], axis=2).reshape(-1, 3)

@@ -42,6 +42,14 @@ class Section:
     plug_quads: int
 
     @property
+    def swell(self) -> float:
+        """Factor that gives the section, a polygon inside the unit circle, the circle's area."""
+        corners = self.unit[self.quads]
+        across, along = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+        area = 0.5 * (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]).sum()
+        return float(np.sqrt(0.5 * np.pi / area))
+
+    @property
     def radius(self) -> FloatArray:
         """(n,) distance from the axis; exact on the two circles."""
         return np.asarray(np.hypot(self.unit[:, 0], self.unit[:, 1]))

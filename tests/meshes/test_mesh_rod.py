@@ -60,16 +60,16 @@ def test_nose_joins_the_body_without_a_gap(fine):
     assert mask[first[inside]].all()
 
 
-def test_free_skin_nodes_lie_on_the_exact_surface(fine):
+def test_free_nose_nodes_lie_on_the_exact_surface(fine):
     meridian, _, rod = fine
     mesh = rod.mesh
     skin = np.unique(mesh.faces_with(meshes.SKIN))
     skin = skin[~mesh.is_hanging[skin]]
     place = mesh.points[skin]
-    place = place[place[:, 2] < LENGTH - 1e-9]
+    place = place[place[:, 2] < rod.body_start - 1e-9]
     rho_z = np.stack([np.hypot(place[:, 0], place[:, 1]), place[:, 2]], axis=1)
     line = np.concatenate([meridian, [[RADIUS, LENGTH]]])
-    assert len(place) > 300
+    assert len(place) > 200
     assert np.linalg.norm(closest_on(line, rho_z) - rho_z, axis=1).max() < 1e-12
 
 
@@ -152,8 +152,7 @@ def test_slices_alone_make_a_flat_bar():
     assert rod.body_start == 0.0
     assert rod.body_cells.shape == (24, 20)
     assert rod.body_cells.size == len(rod.mesh.cells)
-    area = 0.5 * 16 * RADIUS**2 * np.sin(2.0 * np.pi / 16)
-    assert meshes.volume(rod.mesh) == pytest.approx(0.5 * area * LENGTH, rel=1e-12)
+    assert meshes.volume(rod.mesh) == pytest.approx(0.5 * np.pi * RADIUS**2 * LENGTH, rel=1e-12)
 
 
 @pytest.mark.parametrize(
