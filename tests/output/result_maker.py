@@ -1,11 +1,12 @@
 """A made-up but plausible result directory: a bending, ringing half rod that strikes a block twice."""
 
+import json
 from pathlib import Path
 
 import numpy as np
 
 from fem_impact.outcome import KEYS, Outcome
-from fem_impact.output import CONTACTS, HISTORY, FieldWriter, write_table
+from fem_impact.output import COMPARISON, CONTACTS, HISTORY, FieldWriter, write_table, write_text
 
 LENGTH, RADIUS, ALPHA, SPEED = 0.08, 9.5e-3, np.radians(45.0), 2.1
 MASS, E_0 = 0.1766, 0.1766 * SPEED**2 / 2
@@ -206,3 +207,49 @@ def write_result(folder, frames=0, across=6, along=36, **changes):
     if frames:
         write_fields(folder / "fields.vtkhdf", frames, across, along)
     return folder
+
+
+SETS = ("t3-machined", "t3-contaminated", "t4", "t5a", "t5b", "t5c", "t6-17", "t6-25", "t6-60")
+QUANTITIES = (("e", "-", 0.35), ("mu", "-", 0.55), ("Omega", "rad/s", 8.0), ("V_n", "m/s", 0.5),
+              ("V_t", "m/s", -0.4), ("E_ln/E_0", "-", 0.45), ("E_lt/E_0", "-", 0.44),
+              ("E_r/E_0", "-", 0.1))  # fmt: skip
+
+
+def comparison(sets=SETS):
+    """Rows of a comparison: scattered around plausible values, some unknown."""
+    chance = np.random.default_rng(7)
+    rows = []
+    for name in sets:
+        for quantity, unit, value in QUANTITIES:
+            mean = value * (1 + 0.25 * chance.standard_normal())
+            spread = abs(value) * 0.12
+            half = 2.26 * spread / np.sqrt(10)
+            model = mean + spread * chance.standard_normal()
+            inside = "inside" if abs(model - mean) <= half else "outside"
+            rows.append({
+                "set": name, "quantity": quantity, "unit": unit, "model": model,
+                "band": abs(value) * 0.05 if quantity in ("e", "mu", "Omega") else None,
+                "measured_mean": mean, "measured_sd": spread, "measured_low": mean - half,
+                "measured_high": mean + half, "n": 10, "verdict": f"{inside} the 95 % interval",
+            })  # fmt: skip
+    return rows
+
+
+def study_rows(sets=SETS):
+    """Outcomes of a study as plain records, the shares of E_0 varied."""
+    chance = np.random.default_rng(3)
+    rows = []
+    for name in sets:
+        friction = float(0.2 + 0.2 * chance.random())
+        rest = 1.0 - friction - 0.06 - 0.0004 - 0.03 - 0.021 - 0.0236 - 0.004 - 0.001
+        changes = {"W_friction_over_E_0": friction, "E_plastic_barrier_over_E_0": rest, "scene_id": name}
+        rows.append(Outcome(values(**changes)).to_dict())
+    return rows
+
+
+def write_study(folder, sets=SETS):
+    """Write study.json and comparison.csv; return the folder."""
+    study = {"schema": "fem-impact/study/1", "rows": study_rows(sets), "comparison": comparison(sets)}
+    write_text(Path(folder) / "study.json", json.dumps(study))
+    write_table(Path(folder) / "comparison.csv", COMPARISON, study["comparison"])
+    return Path(folder)

@@ -1,0 +1,88 @@
+"""The energy ledger over time as stacked areas."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.figures.accounts import RUNNING
+from fem_impact.figures.style import QUIET, Shape, figure, percent
+from fem_impact.output import Table, write_table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["ledger_figure"]
+
+
+def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "wide") -> Path:
+    """Draw where the energy is at every time, as fractions of E_0.
+
+    Parameters
+    ----------
+    history : Table
+        history.csv, energies in J.
+    e_0 : float, J
+        Kinetic energy at first contact.
+    path : path
+        The picture; its suffix is the format. The data go to the same name with ``.csv``.
+    shape : "wide" or "narrow"
+        For a desktop or a phone.
+
+    Raises
+    ------
+    ResultError
+        A column is missing or holds no numbers.
+    """
+    path, time = Path(path), history.numbers("time_s")
+    shares = {account.key: history.numbers(account.key) / e_0 for account in RUNNING}
+    gravity = history.numbers("E_gravity_J") / e_0
+    worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
+    _write_data(path, time, shares, gravity, worst)
+    with figure(path, shape, 4.6 if shape == "wide" else 5.4) as drawn:
+        axes = drawn.add_subplot()
+        _areas(axes, time * 1e6, shares)
+        _total(axes, time * 1e6, gravity)
+        _name_axes(axes, time * 1e6, worst)
+        handles, labels = axes.get_legend_handles_labels()
+        columns = 3 if shape == "wide" else 2
+        drawn.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
+    return path
+
+
+def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
+    ends = {key: percent(float(share[-1])) if len(share) else "-" for key, share in shares.items()}
+    axes.stackplot(
+        time,
+        list(shares.values()),
+        labels=[f"{account.label}  {ends[account.key]}" for account in RUNNING],
+        colors=[account.colour for account in RUNNING],
+        edgecolor="white",
+        linewidth=0.4,
+    )
+
+
+def _total(axes: Axes, time: np.ndarray, gravity: np.ndarray) -> None:
+    label = "E₀ less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E₀"
+    axes.plot(time, 1.0 - gravity, color="black", linewidth=1.0, linestyle=(0, (4, 2)), label=label)
+
+
+def _name_axes(axes: Axes, time: np.ndarray, worst: float) -> None:
+    axes.set(xlabel="time, µs", ylabel="fraction of E₀", ylim=(0.0, None))
+    if len(time) > 1:
+        axes.set_xlim(time[0], time[-1])
+    axes.grid(axis="y")
+    axes.set_title(
+        f"largest residual {worst:.1e} of E₀", fontsize=8.0, color=QUIET, loc="right", weight="normal"
+    )
+
+
+def _write_data(
+    path: Path, time: np.ndarray, shares: dict[str, np.ndarray], gravity: np.ndarray, worst: float
+) -> None:
+    names = [key.removesuffix("_J") + "_over_E_0" for key in shares]
+    columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
+    rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
+    write_table(path.with_suffix(".csv"), columns, rows)

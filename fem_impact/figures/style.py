@@ -1,0 +1,108 @@
+"""One look for all figures: sizes, colours that colour-blind readers can tell apart, and saving."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from fem_impact.errors import MissingLibraryError
+from fem_impact.output import atomic_path
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["INK", "PALETTE", "QUIET", "Shape", "figure", "new_figure", "percent", "save"]
+
+Shape = Literal["wide", "narrow"]
+"""Wide for paper and desktop, narrow for a phone."""
+
+PALETTE = {
+    "blue": "#0072B2",
+    "sky": "#56B4E9",
+    "orange": "#E69F00",
+    "vermilion": "#D55E00",
+    "green": "#009E73",
+    "purple": "#CC79A7",
+    "yellow": "#F0E442",
+    "grey": "#999999",
+    "sand": "#F3CF8E",
+    "night": "#1B3A57",
+}
+"""Okabe and Ito's colours and three fillers that keep their lightness apart."""
+
+INK, QUIET = "#1f2328", "#6b7280"
+WIDTH = {"wide": 8.4, "narrow": 4.3}
+
+_STYLE = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9.0,
+    "axes.edgecolor": QUIET,
+    "axes.labelcolor": INK,
+    "axes.linewidth": 0.7,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.axisbelow": True,
+    "grid.color": "#e2e5e9",
+    "grid.linewidth": 0.7,
+    "legend.frameon": False,
+    "legend.fontsize": 8.0,
+    "text.color": INK,
+    "xtick.color": QUIET,
+    "ytick.color": QUIET,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "svg.hashsalt": "fem-impact",
+}
+
+
+@contextmanager
+def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
+    """Lend an empty figure in the house style and save it to ``path`` at the end.
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib is not installed.
+    OutputPathError
+        The place cannot be written.
+    """
+    matplotlib = _matplotlib()
+    with matplotlib.rc_context(_STYLE):
+        drawn = new_figure(shape, height)
+        yield drawn
+        save(drawn, path)
+
+
+def new_figure(shape: Shape, height: float) -> Figure:
+    """Return an empty figure, ``height`` in inches, without any global plotting state."""
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(WIDTH[shape], height), layout="constrained")
+
+
+def save(drawn: Figure, path: Path) -> None:
+    """Write the figure in one step, in the format of the suffix, the same bytes for the same data."""
+    dated: dict[str, Any] = {"Date": None} if path.suffix in (".svg", ".pdf") else {}
+    with atomic_path(path) as draft:
+        drawn.savefig(draft, format=path.suffix.lstrip("."), dpi=150, metadata=dated)
+
+
+def percent(fraction: float) -> str:
+    """Return a fraction of E_0 as text in per cent, with as many digits as it deserves."""
+    value = 100.0 * fraction
+    if abs(value) >= 0.095:
+        return f"{value:.1f} %"
+    return f"{value:.2g} %" if value else "0 %"
+
+
+def _matplotlib() -> Any:
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
+    return matplotlib
