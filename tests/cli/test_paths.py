@@ -57,6 +57,12 @@ def test_results_are_replaced_by_a_second_run(cli, stand):
     assert cli("run", "t5b", "--out", "here", "--quiet")[0] == 0
 
 
+def test_a_study_that_was_stopped_goes_on_in_its_directory(cli, stand):
+    Path("sets/t4").mkdir(parents=True)
+    Path("sets/t4/history.csv").write_text("")
+    assert cli("study", "sets", "--out", "sets", "--quiet")[0] == 0
+
+
 def test_a_bad_scene_makes_no_directory(cli, stand):
     code, err = refused(cli, stand, "run", "t5b", "--set", "impact.v_n=1 m/s", "--out", "here")
     assert code == 3

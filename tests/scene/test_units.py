@@ -92,6 +92,11 @@ def test_writing_and_reading_gives_the_same_float(value, dimension):
     assert parse_quantity(text, dimension, "key") == value
 
 
+@pytest.mark.parametrize("degrees", ["17", "33.3", "12.345678901234567"])
+def test_angles_are_written_in_degrees(degrees):
+    assert format_quantity(math.radians(float(degrees)), "angle") == f"{degrees} deg"
+
+
 @given(st.decimals(-1_000_000, 1_000_000, places=6), st.sampled_from(DECIMAL))
 def test_decimal_units_round_once(number, unit):
     dimension, symbol, power = unit
