@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.effects.spec import ModelSpec
+from fem_impact.estimates import projectile
 from fem_impact.solid.boundary import spread_boundary
 from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
@@ -20,7 +21,7 @@ from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, RowProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import SKIN, HexMesh
 
@@ -69,10 +70,19 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     fine = geometry.levels > 0
     yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
     found = [_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
+    _complete_mass(found[0], geometry, scene)
     if barrier is not None:
         yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
         found.append(_body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields))
     return found
+
+
+def _complete_mass(rod: Body, geometry: Geometry, scene: Scene) -> None:
+    """Give the nose's cells what their flat faces cut off the round skin: the true mass of the rod."""
+    nose = np.ones(len(rod.mass), dtype=bool)
+    nose[geometry.rod.body_cells] = False
+    missing = projectile(scene).mass / 2 - rod.mass.sum()
+    rod.mass[nose] *= 1 + missing / rod.mass[nose].sum()
 
 
 def _masses(bodies: list[Body], layout: Layout) -> Array:
@@ -124,7 +134,7 @@ def _elastic_rod(body: Body, geometry: Geometry, layout: Layout, mass: Array, x:
     linear = ~body.yields
     linear[rod.body_cells] = False
     T = tie_operator(body.mesh.tie, body.places, n)
-    nose = RowProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T))
+    nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), body.places[~body.mesh.is_hanging])
     frame = _frame(body, layout, mass, x, turning)
     return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
 
@@ -150,7 +160,7 @@ def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, 
     K = assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T)
     K.setdiag(K.diagonal() + T.T @ spring.ravel())
     n = K.shape[0]
-    block = ElasticBlock(RowProduct.of(K), x[place].copy(), place, np.zeros(n), np.zeros(n))
+    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n))
     return block, T.T @ damping.ravel()
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import RowProduct
+from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
@@ -21,7 +21,7 @@ class ElasticRod:
     """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
 
     slices: SliceOperator
-    nose: RowProduct
+    nose: NodeProduct
     frame: FixedFrame | TurningFrame
     body_shape: tuple[int, int]
     d: Array
@@ -46,7 +46,7 @@ class ElasticRod:
 class ElasticBlock:
     """The barrier's linear part; its rows start at ``place.start`` of the flat vector."""
 
-    stiffness: RowProduct
+    stiffness: NodeProduct
     reference: Array
     place: slice
     d: Array
