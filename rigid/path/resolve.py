@@ -164,7 +164,8 @@ def _result(path: Segments, motion: Motion, p_c: Floats, p_f: Floats, q: Floats)
     """Gather what the path says, and refuse a rebound stronger than the compression could pay for."""
     works = path.normal_work(p_f)
     stored = -sum(path.normal_work(p_c))
-    e_energetic = np.sqrt((sum(works) + stored) / stored)
+    returned = np.maximum(sum(works) + stored, 0.0)  # round-off can leave it a hair below zero
+    e_energetic = np.sqrt(returned / stored)
     gain = (
         "this restitution needs an energetic one of {value} > 1, energy from nothing: state it as energetic"
     )

@@ -79,7 +79,7 @@ def test_friction_takes_and_energy_never_grows(case):
 @given(paths(f=(0.0, 1.0)))
 def test_the_path_is_the_algebraic_solution_while_sliding_never_stops(case):
     v_n, v_t, case = case
-    path = sliding_path(v_n, v_t, law="kinetic", **case)
+    path = sliding_path(v_n, v_t, **case)
     assume(path.end == End.SLIP and path.p_s > 0)
     mu = -case["f"] * np.sign(v_t - case["d_d"] * case["omega"])
     body = {k: case[k] for k in ("omega", "d_c", "d_d", "k2")}
@@ -169,6 +169,14 @@ def test_stick_slip_and_reversal():
     assert back.end == End.REVERSE
     assert back.motion.V_t - 0.035 * back.motion.Omega > 0
     assert abs(back.mu) < 0.1 and back.tangential_work[1] < 0
+
+
+def test_a_tip_that_friction_holds_does_no_work_to_the_last_bit():
+    rng = np.random.default_rng(2)
+    d_c, d_d = rng.uniform(0.001, 0.1, 2000), rng.uniform(0.005, 0.12, 2000)
+    path = sliding_path(-2.0, -0.01, e=0.5, f=3.0, d_c=d_c, d_d=d_d, k2=1e-3)
+    assert set(path.end.tolist()) == {int(End.STICK)}
+    assert not path.tangential_work[1].any()
 
 
 def test_the_ratio_of_a_sticking_tip_is_the_critical_one():
