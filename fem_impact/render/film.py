@@ -1,0 +1,142 @@
+"""From a result directory to a film."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.outcome import Outcome
+from fem_impact.output import Fields, read_fields, read_table
+from fem_impact.render.encode import best_suffix, encode
+from fem_impact.render.layout import Layout
+from fem_impact.render.motion import Motion, prepare
+from fem_impact.render.probe import require_gl
+
+__all__ = ["RenderResult", "render"]
+
+
+@dataclass(frozen=True, slots=True)
+class RenderResult:
+    """A film that was made.
+
+    Parameters
+    ----------
+    path : Path
+        The film, or the folder of frames.
+    notes : tuple of str
+        Sentences on what a viewer should know: another format than MP4, a missing curve.
+    frames : int
+        Number of frames.
+    """
+
+    path: Path
+    notes: tuple[str, ...]
+    frames: int
+
+
+def render(
+    result_dir: str | Path,
+    out: str | Path | None = None,
+    frames: int | None = None,
+    field: str = "mises",
+    size: tuple[int, int] = (1280, 720),
+    fps: int = 20,
+) -> RenderResult:
+    """Draw a film of the fields of a run.
+
+    Parameters
+    ----------
+    result_dir : path
+        Folder with fields.vtkhdf, and history.csv and outcome.json where they exist.
+    out : path, optional
+        The film; its suffix chooses the format (.mp4, .webp, .gif, .png for a folder of frames).
+        Without it ``film`` in the result folder, in the best format available.
+    frames : int, optional
+        Draw this many frames, evenly chosen; all when None.
+    field : "mises" or "velocity"
+        The colours: von Mises stress, or speed.
+    size : tuple of int, px
+        Width and height, multiples of 16.
+    fps : int, 1/s
+        Frames a second.
+
+    Raises
+    ------
+    ResultError
+        The folder holds no readable fields.
+    MissingLibraryError
+        Off-screen drawing or the asked encoder is missing; the result is kept.
+    OutputPathError
+        The film cannot be written.
+    """
+    folder = Path(result_dir)
+    fields = read_fields(folder / "fields.vtkhdf")
+    chosen = _choose(len(fields.times), frames)
+    motion = prepare(fields, field, chosen)
+    _require_libraries()
+    target, notes = _target(folder, out)
+    title, curve, missing = _context(folder, fields)
+    path = encode(_frames(motion, Layout(*size), chosen, title, curve), target, fps)
+    return RenderResult(path, (*notes, *missing), len(chosen))
+
+
+def _choose(held: int, wanted: int | None) -> Sequence[int]:
+    if wanted is not None and wanted < 1:
+        raise ResultError(f"frames = {wanted}: a film needs one frame at least.")
+    count = held if wanted is None else min(wanted, held)
+    return [int(number) for number in np.unique(np.linspace(0, max(held - 1, 0), count).round())]
+
+
+def _require_libraries() -> None:
+    try:
+        import matplotlib  # noqa: F401
+        import PIL  # noqa: F401
+    except ImportError as error:
+        raise MissingLibraryError(f"A film needs {error.name}: pip install {error.name}.") from error
+    require_gl()
+
+
+def _target(folder: Path, out: str | Path | None) -> tuple[Path, list[str]]:
+    if out is not None:
+        return Path(out), []
+    suffix = best_suffix()
+    other = f"The film is {suffix[1:].upper()}, as no MP4 encoder is installed (extra: fem-impact[mp4])."
+    return folder / f"film{suffix}", [] if suffix == ".mp4" else [other]
+
+
+def _context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
+    """Return title, force curve, and a sentence on each of them that is missing."""
+    title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
+    try:
+        title = Outcome.read(folder / "outcome.json")["scene_title"]
+    except ResultError as error:
+        missing.append(f"The film is named after its folder: {error}")
+    try:
+        history = read_table(folder / "history.csv")
+        curve = (history.numbers("time_s"), history.numbers("force_n_N"))
+    except ResultError as error:
+        missing.append(f"The film has no force curve: {error}")
+    return title, curve, missing
+
+
+def _frames(
+    motion: Motion, layout: Layout, chosen: Sequence[int], title: str, curve: tuple[np.ndarray, np.ndarray]
+) -> Iterator[np.ndarray]:
+    from fem_impact.render.board import Board
+    from fem_impact.render.views import CloseView, RodView
+
+    board = Board.make(layout, motion, title, curve)
+    whole, near = RodView(motion, layout.rod.size), CloseView(motion, layout.close.size)
+    try:
+        for frame in chosen:
+            true, shown = motion.positions(frame)
+            colours = motion.colours(frame)
+            pictures = whole.draw(shown, colours), near.draw(true, colours)
+            yield board.compose(*pictures, float(motion.fields.times[frame]))
+    finally:
+        whole.close()
+        near.close()

@@ -1,0 +1,68 @@
+"""Where things stand on a frame, in pixels from the upper left corner."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+__all__ = ["Layout", "Rectangle"]
+
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A rectangle in pixels."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """The upper left corner."""
+        return (self.left, self.top)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return (self.width, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """A frame of two views side by side over a strip with the force curve.
+
+    Parameters
+    ----------
+    width, height : int, px
+        Multiples of 16, as video encoders want them.
+    """
+
+    width: int
+    height: int
+
+    def __post_init__(self) -> None:
+        if self.width % 16 or self.height % 16 or self.width < 640 or self.height < 480:
+            raise ValueError(
+                f"a frame of {self.width} x {self.height} px cannot be made: "
+                "use multiples of 16, 640 x 480 at least."
+            )
+
+    @property
+    def rod(self) -> Rectangle:
+        """The view of the whole rod."""
+        return Rectangle(24, 74, self.width // 2 - 36, self.height - 310)
+
+    @property
+    def close(self) -> Rectangle:
+        """The view of the contact."""
+        return Rectangle(self.width // 2 + 12, 74, self.width // 2 - 36, self.height - 310)
+
+    @property
+    def strip(self) -> Rectangle:
+        """The strip of the force curve."""
+        return Rectangle(24, self.height - 176, self.width - 48, 132)
+
+    def share(self, left: int, top: int, width: int, height: int) -> tuple[float, float, float, float]:
+        """Return a rectangle as matplotlib wants it: shares of the frame from the lower left corner."""
+        across, down = self.width, self.height
+        return (left / across, 1.0 - (top + height) / down, width / across, height / down)

@@ -1,0 +1,146 @@
+"""What the film needs of each frame: positions and colours, with ranges fixed over the whole film."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.output import Fields
+from fem_impact.render.kinematics import magnified, nice_factor, nodal_volumes, rigid_motion
+
+__all__ = ["FIELDS", "Motion", "prepare"]
+
+FIELDS = {"mises": ("von Mises stress", "MPa", 1e-6), "velocity": ("speed", "m/s", 1.0)}
+"""Field name to label, shown unit and factor from SI."""
+
+_VISIBLE = 0.35
+"""Share of the rod's diameter that the largest deformation away from the tip is magnified to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A field file made ready to be drawn.
+
+    Parameters
+    ----------
+    fields : Fields
+    field : str
+        One of ``FIELDS``.
+    rod_nodes : (n,) bool
+        Points of the rod.
+    weights : (n,) float64, m3
+        Volume at each point, zero off the rod.
+    factor : (n,) float64
+        Magnification of the deformation: ``peak`` in the rod, fading to 1 at the contact.
+    peak : float
+        The factor that is written on the picture.
+    contact : (3,) float64, m
+        Where the rod first touches, on the barrier's surface.
+    span : float, m
+        Diameter of the rod.
+    near, far : tuple of float
+        Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
+    """
+
+    fields: Fields
+    field: str
+    rod_nodes: np.ndarray
+    weights: np.ndarray
+    factor: np.ndarray
+    peak: float
+    contact: np.ndarray
+    span: float
+    near: tuple[float, float]
+    far: tuple[float, float]
+
+    def positions(self, frame: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return ``(n, 3) m`` positions as they are, and with the rod's deformation magnified."""
+        true = self.fields.points + self.fields.point_data("displacement", frame)
+        shown, rod = true.copy(), self.rod_nodes
+        rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
+        shown[rod] = magnified(rigid, true[rod], self.factor[rod])
+        return true, shown
+
+    def colours(self, frame: int) -> np.ndarray:
+        """Return the field at the points ``(n,)`` or in the cells ``(m,)``, in the shown unit."""
+        return _colours(self.fields, self.field, frame)
+
+
+def prepare(fields: Fields, field: str, frames: Sequence[int]) -> Motion:
+    """Look through the frames once and fix magnification and colour ranges.
+
+    Raises
+    ------
+    ResultError
+        The file holds no frames, no such field or no rod.
+    """
+    if field not in FIELDS:
+        raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
+    if not len(frames):
+        raise ResultError(f"{fields.path}: holds no frames yet, so there is nothing to draw.")
+    body = fields.static.get("body", np.zeros(len(fields.cells)))
+    rod_cells = fields.cells[body == 0]
+    weights = nodal_volumes(fields.points, rod_cells)
+    rod = np.isin(np.arange(len(fields.points)), rod_cells)
+    if not rod.any():
+        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
+    lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
+    span = 2.0 * float(fields.points[rod, 1].max())
+    distance = np.linalg.norm(fields.points - lowest, axis=1) / span
+    peak = _peak(fields, frames, rod, weights, distance, span)
+    factor = 1.0 + (peak - 1.0) * _fade(distance)
+    near, far = _ranges(fields, field, frames, distance, rod)
+    contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
+    return Motion(fields, field, rod, weights, factor, peak, contact, span, near, far)
+
+
+def _fade(distance: np.ndarray) -> np.ndarray:
+    # no magnification within half a diameter of the contact, all of it beyond two diameters
+    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
+    fade: np.ndarray = share**2 * (3.0 - 2.0 * share)
+    return fade
+
+
+def _peak(
+    fields: Fields,
+    frames: Sequence[int],
+    rod: np.ndarray,
+    weights: np.ndarray,
+    distance: np.ndarray,
+    span: float,
+) -> float:
+    away, largest = distance[rod] > 2.0, 0.0
+    for frame in frames:
+        true = (fields.points + fields.point_data("displacement", frame))[rod]
+        bent = true - rigid_motion(fields.points[rod], true, weights[rod])
+        largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
+    return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
+
+
+def _colours(fields: Fields, field: str, frame: int) -> np.ndarray:
+    scale = FIELDS[field][2]
+    if field == "velocity":
+        speed: np.ndarray = scale * np.linalg.norm(fields.point_data("velocity", frame), axis=1)
+        return speed
+    return scale * fields.cell_data(field, frame)
+
+
+def _ranges(
+    fields: Fields, field: str, frames: Sequence[int], distance: np.ndarray, rod: np.ndarray
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    in_cells = field != "velocity"
+    place = distance[fields.cells].mean(axis=1) if in_cells else distance
+    on_rod = rod[fields.cells].all(axis=1) if in_cells else rod
+    tops = np.array([_tops(_colours(fields, field, frame), place, on_rod) for frame in frames])
+    near, far = np.maximum(tops.max(axis=0), 1e-12)
+    return (0.0, float(near)), (0.0, float(far))
+
+
+def _tops(colours: np.ndarray, distance: np.ndarray, rod: np.ndarray) -> tuple[float, float]:
+    close, body = colours[distance < 0.5], colours[rod & (distance > 1.0)]
+    near = float(np.percentile(close, 99.5)) if close.size else 0.0
+    far = float(np.percentile(body, 99.5)) if body.size else near
+    return near, far

@@ -1,0 +1,125 @@
+"""The two pictures of each frame: the whole rod, and the contact in section."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.render.kinematics import to_points
+from fem_impact.render.motion import Motion
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["CLOSE_WIDTH", "CloseView", "RodView"]
+
+COLOUR_MAP = "YlGnBu"
+CLOSE_WIDTH = 0.45
+"""Width of the close-up in diameters of the rod."""
+
+_MIRROR = np.array([1.0, -1.0, 1.0])
+
+
+class _View:
+    """A surface in an off-screen window; each frame moves its points and colours."""
+
+    def __init__(self, motion: Motion, size: tuple[int, int], span: tuple[float, float], **look: Any) -> None:
+        import pyvista
+
+        self.motion = motion
+        self.surface = _surface(motion)
+        self.nodes = np.asarray(self.surface.point_data["vtkOriginalPointIds"])
+        self.cells = np.asarray(self.surface.cell_data["vtkOriginalCellIds"])
+        self.plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
+        self.plotter.renderer.set_background("white")
+        self.look = {"cmap": COLOUR_MAP, "clim": list(span), "show_scalar_bar": False, **look}
+
+    def close(self) -> None:
+        """Give the window back."""
+        self.plotter.close()
+
+    def _put(self, mesh: Any, points: np.ndarray, colours: np.ndarray) -> None:
+        mesh.points = points[self.nodes]
+        data = mesh.point_data if len(colours) == len(points) else mesh.cell_data
+        data["colour"] = colours[self.nodes if len(colours) == len(points) else self.cells]
+
+    def _picture(self) -> np.ndarray:
+        self.plotter.render()
+        picture: np.ndarray = self.plotter.screenshot(return_img=True)
+        return picture
+
+
+class RodView(_View):
+    """The half model and its mirror image: the whole rod on the barrier, deformation magnified."""
+
+    def __init__(self, motion: Motion, size: tuple[int, int]) -> None:
+        super().__init__(motion, size, motion.far, ambient=0.25, diffuse=0.8)
+        self.mirrored = self.surface.copy()
+        for mesh in (self.surface, self.mirrored):
+            self._put(mesh, motion.fields.points, np.zeros(len(motion.fields.points)))
+            self.plotter.add_mesh(mesh, scalars="colour", **self.look)
+        _add_plane(self.plotter, motion)
+        self._aim(size)
+
+    def draw(self, shown: np.ndarray, colours: np.ndarray) -> np.ndarray:
+        """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
+        fields = self.motion.fields
+        in_cells = len(colours) == len(fields.cells)
+        smooth = to_points(fields.cells, colours, len(shown)) if in_cells else colours
+        self._put(self.surface, shown, smooth)
+        self._put(self.mirrored, shown * _MIRROR, smooth)
+        return self._picture()
+
+    def _aim(self, size: tuple[int, int]) -> None:
+        points = self.motion.fields.points[self.motion.rod_nodes]
+        low, high = points.min(axis=0), points.max(axis=0)
+        middle = np.array([(low[0] + high[0]) / 2, 0.0, (low[2] + high[2]) / 2])
+        extent = np.array([high[0] - low[0], high[2] - low[2]]) + 0.9 * self.motion.span
+        side, height = np.radians(-20.0), np.radians(14.0)
+        towards = [np.sin(side) * np.cos(height), -np.cos(side) * np.cos(height), np.sin(height)]
+        _look_at(self.plotter, middle, np.array(towards), max(extent[1], extent[0] * size[1] / size[0]))
+
+
+class CloseView(_View):
+    """The contact in section on the symmetry plane, true scale, with the mesh."""
+
+    def __init__(self, motion: Motion, size: tuple[int, int]) -> None:
+        look = {"show_edges": True, "edge_color": "#30343a", "line_width": 0.5, "edge_opacity": 0.35}
+        super().__init__(motion, size, motion.near, lighting=False, **look)
+        self._put(self.surface, motion.fields.points, motion.colours(0))
+        self.plotter.add_mesh(self.surface, scalars="colour", **self.look)
+        _add_plane(self.plotter, motion)
+        height = CLOSE_WIDTH * motion.span * size[1] / size[0]
+        middle = motion.contact + np.array([0.0, 0.0, 0.1 * height])
+        _look_at(self.plotter, middle, np.array([0.0, -1.0, 0.0]), height)
+
+    def draw(self, true: np.ndarray, colours: np.ndarray) -> np.ndarray:
+        """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
+        self._put(self.surface, true, colours)
+        return self._picture()
+
+
+def _surface(motion: Motion) -> pyvista.PolyData:
+    import pyvista
+
+    cells = {pyvista.CellType.HEXAHEDRON: motion.fields.cells}
+    grid = pyvista.UnstructuredGrid(cells, motion.fields.points)
+    return grid.extract_surface(pass_pointid=True, pass_cellid=True, algorithm="dataset_surface")
+
+
+def _add_plane(plotter: Any, motion: Motion) -> None:
+    """Draw a rigid barrier as a grey slab; a meshed one is drawn as it is."""
+    import pyvista
+
+    if motion.rod_nodes.all():
+        t, reach = motion.contact[0], 1.2 * motion.span
+        slab = pyvista.Box((t - reach, t + reach, -reach, reach, -0.08 * motion.span, 0.0))
+        plotter.add_mesh(slab, color="#c9ced6")
+
+
+def _look_at(plotter: Any, middle: np.ndarray, towards: np.ndarray, height: float) -> None:
+    plotter.camera_position = [tuple(middle + towards), tuple(middle), (0.0, 0.0, 1.0)]
+    plotter.enable_parallel_projection()
+    plotter.camera.parallel_scale = height / 2.0
+    plotter.camera.clipping_range = (0.01, 3.0)
