@@ -21,8 +21,8 @@ def levels_for(base_size: float, target_size: float) -> int:
 
     Examples
     --------
-    >>> levels_for(2.4e-3, 0.3e-3), levels_for(2.4e-3, 0.35e-3), levels_for(1e-3, 2e-3)
-    (3, 3, 0)
+    >>> levels_for(2.4e-3, 0.3e-3), levels_for(2.4e-3, 0.52e-3), levels_for(1e-3, 2e-3)
+    (3, 2, 0)
     """
     if base_size <= 0.0 or target_size <= 0.0:
         raise MeshError(f"sizes must be positive, not {base_size} m and {target_size} m")

@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from mesh_shapes import area_vectors
+from mesh_shapes import area_vectors, flux_volume
 
 import meshes
 
@@ -18,6 +18,7 @@ def test_base_block_has_equal_cells_and_exact_volume():
     quality = meshes.quality(mesh)
     assert len(mesh.cells) == 8 * 4 * 3
     assert quality.volume == pytest.approx(16e-3 * 8e-3 * 6e-3, rel=1e-13)
+    assert flux_volume(mesh) == pytest.approx(quality.volume, rel=1e-13)
     assert quality.min_scaled_jacobian == pytest.approx(1.0)
     assert quality.min_edge == pytest.approx(2e-3)
 

@@ -41,6 +41,7 @@ def test_round_trip_keeps_every_bit_and_positive_volume(tmp_path, ending):
     assert (back.cells == mesh.cells).all()
     assert (back.point_data["displacement"] == 2.0 * mesh.points).all()
     assert (back.cell_data["mises"] == stress).all()
+    assert (back.cell_data["level"] == mesh.level).all()
     x = back.points[back.cells]
     triple = np.einsum("mi,mi->m", np.cross(x[:, 1] - x[:, 0], x[:, 3] - x[:, 0]), x[:, 4] - x[:, 0])
     assert triple.min() > 0.0
