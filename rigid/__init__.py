@@ -18,6 +18,7 @@ from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_
 from .projectile import TIPS, Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
 from .uncertainty import Errors, Estimate, bootstrap, first_order
+from .worst import WorstCase, worst_case
 
 __all__ = [
     "GRAVITY",
@@ -40,6 +41,7 @@ __all__ = [
     "RigidError",
     "ShapeError",
     "SlidingPath",
+    "WorstCase",
     "behaves_rigidly",
     "bootstrap",
     "closure_defect",
@@ -61,4 +63,5 @@ __all__ = [
     "sliding_path",
     "solve",
     "solve_free",
+    "worst_case",
 ]

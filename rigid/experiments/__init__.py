@@ -1,5 +1,6 @@
 """The published measurements as data: tables, measured sets and their statistics."""
 
+from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle, loss_against_angle
 from .audit import AuditRecord, audit, audit_statistics
 from .correlation import Correlation, correlation, correlations
 from .sets import MeasuredSet, measured_set, measured_sets, set_ids
@@ -7,14 +8,19 @@ from .statistics import Statistic, statistic
 from .tables import printed_statistics, table
 
 __all__ = [
+    "AtAngle",
     "AuditRecord",
     "Correlation",
     "MeasuredSet",
     "Statistic",
+    "angle_sets",
+    "at_angle",
     "audit",
     "audit_statistics",
     "correlation",
     "correlations",
+    "critical_ratio_against_angle",
+    "loss_against_angle",
     "measured_set",
     "measured_sets",
     "printed_statistics",

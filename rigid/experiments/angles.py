@@ -1,0 +1,89 @@
+"""The short rod against the angle of the barrier: means, critical ratio, and Eq 23-25 in between.
+
+Five sets of the 0.08 m rod dropped at about 2.1 m/s: 17, 25, 37, 60 degrees (Table 6) and 45 (Table 5, b).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..arrays import Floats
+from ..errors import DataError, refuse
+from ..losses import PredictedLosses, predicted_losses
+from ..massive import critical_ratio
+from .sets import MeasuredSet, measured_set
+
+IDS = ("t6-17", "t6-25", "t6-37", "t5b", "t6-60")
+
+
+class AtAngle(NamedTuple):
+    """Mean coefficients and arms (m) of the short rod at each angle."""
+
+    e: Floats
+    mu: Floats
+    e_m: Floats
+    d_c: Floats
+    d_d: Floats
+
+
+def angle_sets() -> tuple[MeasuredSet, ...]:
+    """Give the five sets in the order of their angle."""
+    return tuple(measured_set(id) for id in IDS)
+
+
+def at_angle(alpha: ArrayLike) -> AtAngle:
+    """Interpolate the measured means linearly in the angle.
+
+    Parameters
+    ----------
+    alpha : array_like
+        Inclination, rad, between 17 and 60 degrees: nothing was measured outside.
+
+    Examples
+    --------
+    >>> f"{at_angle(np.radians(41.0)).e:.3f}"
+    '0.335'
+    """
+    x = np.asarray(alpha, dtype=np.float64)
+    angles = np.array([s.alpha for s in angle_sets()])
+    outside = ~((x >= angles[0]) & (x <= angles[-1]))
+    refuse(outside, "the short rod was measured from 17 to 60 degrees, not at {value} rad", x, DataError)
+    rows = [(s.statistics(), s.arms) for s in angle_sets()]
+    means = [[found[name].mean for found, _ in rows] for name in ("e", "mu", "e_m")]
+    arms = [[float(pair[i]) for _, pair in rows] for i in (0, 1)]
+    return AtAngle(*(np.interp(x, angles, column)[()] for column in (*means, *arms)))
+
+
+def loss_against_angle(alpha: ArrayLike) -> PredictedLosses:
+    """Losses as fractions of E_0 from Eq 23-25 with interpolated coefficients (the curves of Fig 7).
+
+    Parameters and limits as in `at_angle`; the result does not depend on speed or mass.
+    """
+    v_n, v_t = -np.cos(alpha), -np.sin(alpha)
+    k2 = angle_sets()[0].k2
+    return predicted_losses(v_n, v_t, **at_angle(alpha)._asdict(), k2=k2, mass=2.0)
+
+
+def critical_ratio_against_angle(e_m: float | None = -1.0) -> tuple[Floats, Floats]:
+    """Critical ratio at the five angles, beside the mean measured ratio (Fig 5).
+
+    Parameters
+    ----------
+    e_m : float or None
+        Moment restitution; None takes the mean measured one of each set.
+
+    Returns
+    -------
+    mu_c, mu : (5,) float64
+        In the order of `angle_sets`.
+    """
+    rows = [(s, s.statistics()) for s in angle_sets()]
+    column = {k: np.array([m[k].mean for _, m in rows]) for k in ("v_n", "v_t", "e", "mu", "e_m")}
+    d_c, d_d = np.array([[float(x) for x in s.arms] for s, _ in rows]).T
+    moment = column["e_m"] if e_m is None else e_m
+    motion = column["v_n"], column["v_t"]
+    mu_c = critical_ratio(*motion, e=column["e"], e_m=moment, d_c=d_c, d_d=d_d, k2=rows[0][0].k2)
+    return mu_c, column["mu"]
