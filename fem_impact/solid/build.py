@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fem_impact.effects.spec import ModelSpec
 from fem_impact.estimates import projectile
 from fem_impact.solid.boundary import spread_boundary
-from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
+from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, largest_frequency, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame
@@ -188,7 +188,9 @@ def _skin(body: Body, geometry: Geometry) -> Ints:
     return found[:, ::-1] if body.name == "rod" else found
 
 
-def _contact(bodies: list[Body], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array) -> Impulse:
+def _contact(
+    bodies: list[Body], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array
+) -> PlaneContact | SurfaceContact:
     f = spec.friction or 0.0
     if len(bodies) == 1:
         skin = np.unique(bodies[0].mesh.faces_with(SKIN))
@@ -234,7 +236,18 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])
-    book: ContactBook = contact.book
+    T = tie_operator(rod.mesh.tie, rod.places, layout.rod_size)
     return Model(
-        geometry, layout, mass, inverse_mass, forces, impulses, hanging, zones, book, SAFETY * stable_step(bodies), (x, v)
+        geometry=geometry,
+        layout=layout,
+        mass=mass,
+        inverse_mass=inverse_mass,
+        forces=forces,
+        impulses=impulses,
+        hanging=hanging,
+        zones=zones,
+        book=contact.book,
+        rod_stiffness=assemble(rod.stiffness, rod.mesh.cells, T),
+        step=SAFETY * stable_step(bodies),
+        start=(x, v),
     )

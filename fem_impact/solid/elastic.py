@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ Array = NDArray[np.float64]
 class ElasticRod:
     """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
 
+    body: ClassVar[str] = "rod"
     slices: SliceOperator
     nose: NodeProduct
     frame: FixedFrame | TurningFrame
@@ -46,6 +48,7 @@ class ElasticRod:
 class ElasticBlock:
     """The barrier's linear part; its rows start at ``place.start`` of the flat vector."""
 
+    body: ClassVar[str] = "barrier"
     stiffness: NodeProduct
     reference: Array
     place: slice
@@ -95,6 +98,7 @@ class Weight:
     ``weight`` is m g per unknown, N (zero where there is none).
     """
 
+    body: ClassVar[str] = "rod"
     weight: Array
     reference: Array
 

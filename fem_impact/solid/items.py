@@ -21,7 +21,12 @@ class Account(Protocol):
 
 
 class Force(Account, Protocol):
-    """An item that adds forces at the present positions."""
+    """An item that adds forces at the present positions; ``body`` is rod or barrier."""
+
+    @property
+    def body(self) -> str:
+        """Return the body it acts on."""
+        ...
 
     def add_force(self, state: State) -> None:
         """Add to ``state.force``."""
@@ -33,12 +38,4 @@ class Impulse(Account, Protocol):
 
     def resolve(self, state: State) -> None:
         """Change ``state.v`` and book the work done with the mean of old and new velocity."""
-        ...
-
-
-class StepLimit(Protocol):
-    """An item whose stable step changes as it deforms."""
-
-    def step_factor(self) -> float:
-        """Return the present stable step over the initial one."""
         ...

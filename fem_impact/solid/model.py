@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem_impact.solid.contact import ContactBook
@@ -33,6 +34,7 @@ class Model:
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
+    rod_stiffness : (n, n) elastic stiffness of the whole half rod over its free unknowns, N/m
     step : stable step with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
     """
@@ -46,6 +48,7 @@ class Model:
     hanging: Hanging
     zones: Sequence[YieldingZone]
     book: ContactBook
+    rod_stiffness: sp.csr_matrix
     step: float
     start: tuple[Array, Array]
 
@@ -55,6 +58,11 @@ class Model:
         state = State(x.copy(), v.copy(), np.zeros_like(x))
         state.dt_next = self.step
         return state
+
+    def coasting(self) -> Model:
+        """Return the rod alone, for free flight after the last contact."""
+        rod_forces = [f for f in self.forces if f.body == "rod"]
+        return replace(self, forces=rod_forces, impulses=())
 
     def ledger(self) -> Ledger:
         """Return an empty ledger over all items."""

@@ -1,0 +1,73 @@
+"""The rod's share of the flat vectors, as nodes, in the barrier frame or turned back with the rod."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.modes import Flight, RigidMotion, RodModes, flight, rigid_motion, rod_modes
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+from meshes import SKIN
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+TIP_NODES = 60
+
+
+@dataclass(frozen=True, slots=True)
+class RodView:
+    """Reads the rod out of a state.
+
+    Attributes
+    ----------
+    places : (n, 3) unknowns of the rod's free nodes; mass : (n,) kg of the half rod
+    size : length of the rod's part of the flat vectors
+    tip : (k, 3) unknowns of the skin nodes that may touch
+    modes : free-free modes of the undeformed rod
+    """
+
+    places: Ints
+    mass: Array
+    size: int
+    tip: Ints
+    modes: RodModes
+
+    @classmethod
+    def of(cls, model: Model) -> RodView:
+        """Compute the modes and pick the tip nodes."""
+        mesh, n = model.geometry.rod.mesh, model.layout.rod_size
+        places = model.layout.rod[~mesh.is_hanging]
+        modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0)
+        skin = np.unique(mesh.faces_with(SKIN))
+        skin = skin[~mesh.is_hanging[skin]]
+        low = skin[np.argsort(model.geometry.rod_points[skin, 2])[:TIP_NODES]]
+        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[low], modes)
+
+    def rigid(self, state: State) -> RigidMotion:
+        """Return the rigid part of the present motion."""
+        return rigid_motion(state.x[self.places], state.v[self.places], self.mass)
+
+    def angle(self, state: State, model: Model) -> float:
+        """Return the angle, rad, by which the rod has turned from t towards n (best fit by mass)."""
+        X, x = model.start[0][self.places], state.x[self.places]
+        X = X - self.mass @ X / self.mass.sum()
+        along = self.mass @ (X[:, 0] * x[:, 0] + X[:, 2] * x[:, 2])
+        return float(np.arctan2(self.mass @ (X[:, 0] * x[:, 2] - X[:, 2] * x[:, 0]), along))
+
+    def turned_back(self, vector: Array, angle: float) -> Array:
+        """Return the rod's part of a flat vector seen in the turned frame."""
+        result = vector[: self.size].copy()
+        t, n = self.places[:, 0], self.places[:, 2]
+        result[t] = cos(angle) * vector[t] + sin(angle) * vector[n]
+        result[n] = cos(angle) * vector[n] - sin(angle) * vector[t]
+        return result
+
+    def flight(self, state: State, model: Model) -> Flight:
+        """Return the vibration of the present motion; forces must be those of a free rod."""
+        angle = self.angle(state, model)
+        return flight(self.modes, self.turned_back(state.v, angle), self.turned_back(state.force, angle))
