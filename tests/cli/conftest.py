@@ -29,6 +29,7 @@ def an_outcome(**changed):
 class Stand:
     """What the stand-ins were called with, and what they do."""
 
+    an_outcome = staticmethod(an_outcome)
     calls: list = field(default_factory=list)
     outcome: object = None
     error: BaseException | None = None
