@@ -1,0 +1,71 @@
+"""Pictures and films as data inside the page."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Callable
+from html import escape
+from pathlib import Path
+
+from fem_impact.errors import ResultError
+from fem_impact.figures import Shape
+from fem_impact.report.html import Markup
+
+__all__ = ["FILMS", "film", "picture"]
+
+TYPES = {
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".gif": "image/gif",
+    ".webp": "image/webp",
+    ".mp4": "video/mp4",
+}
+FILMS = ("film.mp4", "film.webp", "film.gif")
+"""Names under which a run's film is looked for, best first."""
+
+Draw = Callable[[Path, Shape], Path]
+
+
+def picture(draw: Draw, stem: Path, alt: str, caption: str) -> Markup:
+    """Draw a figure twice, for desktop and phone, and return it embedded.
+
+    Parameters
+    ----------
+    draw : callable
+        Draws to a path in a shape and returns the path.
+    stem : Path
+        Where the pictures and their data stay: ``stem.svg``, ``stem.csv``, ``stem-narrow.svg``.
+    alt : str
+        For who cannot see it.
+    caption : str
+        Below the figure.
+    """
+    wide = _data(draw(stem.with_suffix(".svg"), "wide"))
+    slim = draw(stem.with_name(f"{stem.name}-narrow.svg"), "narrow")
+    narrow = _data(slim)
+    slim.with_suffix(".csv").unlink(missing_ok=True)  # the same numbers stand beside the wide one
+    inner = (
+        f'<picture><source media="(max-width: 640px)" srcset="{narrow}">'
+        f'<img src="{wide}" alt="{escape(alt)}"></picture>'
+    )
+    return Markup(f"<figure>{inner}<figcaption>{escape(caption)}</figcaption></figure>")
+
+
+def film(folder: Path, caption: str) -> Markup:
+    """Return the run's film embedded, nothing when there is none."""
+    found = next((folder / name for name in FILMS if (folder / name).is_file()), None)
+    if found is None:
+        return Markup("")
+    data = _data(found)
+    shown = f'<img src="{data}" alt="{escape(caption)}">'
+    if found.suffix == ".mp4":
+        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
+    return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
+
+
+def _data(path: Path) -> str:
+    try:
+        held = path.read_bytes()
+    except OSError as error:
+        raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(held).decode('ascii')}"

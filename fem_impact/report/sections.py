@@ -1,0 +1,58 @@
+"""Sections that the report of a run and of a study share."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fem_impact.errors import ResultError
+from fem_impact.figures import force_figure, ledger_figure
+from fem_impact.outcome import Outcome
+from fem_impact.output import make_directory, read_table
+from fem_impact.report.embed import FILMS, film, picture
+from fem_impact.report.html import Markup, bullets, join, paragraph, section
+from fem_impact.report.tables import sentences
+
+__all__ = ["film_section", "has_film", "history_figures", "notices"]
+
+
+def notices(rows: list[Outcome]) -> Markup:
+    """Return the warnings where they cannot be missed."""
+    warned = sentences(rows, "warnings")
+    cut = [f"{row['scene_id']} was cut off: {row['stopped_because']}" for row in rows if not row["finished"]]
+    listed = bullets([*cut, *warned]).text
+    return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
+
+
+def history_figures(outcome: Outcome, folder: Path) -> Markup:
+    """Return ledger and contact force over time, or the sentence that says why they are missing."""
+    try:
+        history = read_table(folder / "history.csv")
+        if outcome["E_0_J"] is None:
+            raise ResultError("E_0 is not known, so no fractions can be drawn.")
+        figures = make_directory(folder / "figures")
+        ledger = picture(
+            lambda path, shape: ledger_figure(history, outcome["E_0_J"], path, shape),
+            figures / "ledger",
+            "Stacked areas of the energy accounts over time",
+            "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
+            "Strain energies include what stays locked in.",
+        )
+        force = picture(
+            lambda path, shape: force_figure(history, outcome["contacts"] or [], path, shape),
+            figures / "force",
+            "Normal and tangential contact force over time",
+            "Contact force on the whole rod; contact intervals shaded, with their normal impulse.",
+        )
+    except ResultError as error:
+        return section("Over time", paragraph(f"No curves over time: {error}"))
+    return join([section("Ledger over time", ledger), section("Contact force", force)])
+
+
+def film_section(folder: Path) -> Markup:
+    """Return the film of the run, nothing when there is none."""
+    return section("Film of the waves", film(folder, "Waves in the rod; scales are written on the picture."))
+
+
+def has_film(folder: Path) -> bool:
+    """Return whether the run was filmed in a format that a page can show."""
+    return any((folder / name).is_file() for name in FILMS)

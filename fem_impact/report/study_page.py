@@ -1,0 +1,185 @@
+"""The report of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from fem_impact.figures import comparison_figure, study_partition_figure
+from fem_impact.figures.accounts import FINAL
+from fem_impact.figures.style import percent
+from fem_impact.outcome import Outcome
+from fem_impact.output import make_directory
+from fem_impact.report.embed import picture
+from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table, with_band
+from fem_impact.report.page import page, sources
+from fem_impact.report.sections import film_section, has_film, history_figures, notices
+from fem_impact.report.study_data import Study, read_study
+from fem_impact.report.tables import card, sentences, unknown
+
+__all__ = ["study_page"]
+
+ENERGIES = (*(account.key for account in FINAL), "residual_over_E_0")
+
+
+def study_page(folder: Path) -> str:
+    """Return the HTML of the study in ``folder``; figures with their data stay in ``folder/figures``.
+
+    Raises
+    ------
+    ResultError
+        study.json is missing, damaged or wrong.
+    """
+    study = read_study(folder / "study.json")
+    rows = list(study.rows)
+    body = (
+        _cards(study),
+        notices(rows),
+        section("Notes", bullets(study.notes)),
+        section("Model beside measurement", _comparison(study, folder), _tables(study.comparison)),
+        section("Where the energy went", _partition(study, folder), _energies(rows)),
+        section("Runs that failed", _failures(study)),
+        section("Over time, run by run", *(_run(row, folder) for row in rows)),
+        unknown(rows),
+        section("Range of validity", bullets(sentences(rows, "validity"))),
+        section("Cost", _costs(rows)),
+        sources(_used(study, folder)),
+    )
+    return page(study.title, "Study", _lead(study), _footer(rows), body)
+
+
+def _cards(study: Study) -> Markup:
+    inside = sum(_is_inside(row["verdict"]) for row in study.comparison)
+    residuals = [abs(row["residual_over_E_0"]) for row in study.rows if row["residual_over_E_0"] is not None]
+    seconds = sum(row["wall_s"] or 0.0 for row in study.rows)
+    cards = [
+        card("runs", str(len(study.rows)), f"{len(study.failures)} failed"),
+        card("inside 95 % intervals", f"{inside} of {len(study.comparison)}", "compared quantities"),
+        card("largest residual", f"{max(residuals):.1e}" if residuals else "–", "of E₀"),
+        card("computing time", f"{seconds:.0f} s", "wall time of the runs, added"),
+    ]
+    return Markup(f'<div class="cards">{join(cards).text}</div>')
+
+
+def _comparison(study: Study, folder: Path) -> Markup:
+    if not study.comparison:
+        return Markup("")
+    return picture(
+        partial(comparison_figure, study.comparison),
+        make_directory(folder / "figures") / "comparison",
+        "Model and measured values with intervals, a panel for each quantity",
+        "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
+        "two-mesh band where two meshes were run.",
+    )
+
+
+def _tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
+    quantities = dict.fromkeys(row["quantity"] for row in rows)
+    tables = [_quantity(name, [row for row in rows if row["quantity"] == name]) for name in quantities]
+    return Markup(f'<div class="pairs">{join(tables).text}</div>' if tables else "")
+
+
+def _quantity(name: str, rows: Sequence[Mapping[str, Any]]) -> Markup:
+    unit = rows[0]["unit"]
+    shown = name if unit in ("", "-") else f"{name}, {unit}"
+    head = ("set", "model", "measured", "95 % interval", "n", "verdict")
+    inner = table(head, [_comparison_row(row) for row in rows], shown, numbers=(1, 2, 3, 4))
+    return Markup(f"<div>{inner.text}</div>")
+
+
+def _comparison_row(row: Mapping[str, Any]) -> list[str | Markup]:
+    low, high = row["measured_low"], row["measured_high"]
+    between = "–" if low is None or high is None else f"{_three(low)} to {_three(high)}"
+    kind = "inside" if _is_inside(row["verdict"]) else "outside" if row["verdict"] else ""
+    model = _three(row["model"]) + ("" if row["band"] is None else f" ± {row['band']:.2g}")
+    count = "–" if row["n"] is None else str(row["n"])
+    spread = "" if row["measured_sd"] is None else f" ± {row['measured_sd']:.2g}"
+    verdict = cell(str(row["verdict"] or "–"), kind)
+    return [str(row["set"]), model, _three(row["measured_mean"]) + spread, between, count, verdict]
+
+
+def _three(value: float | None) -> str:
+    return "–" if value is None else f"{value:.3g}".replace("-", "−")
+
+
+def _is_inside(verdict: Any) -> bool:
+    return str(verdict).startswith("inside")
+
+
+def _partition(study: Study, folder: Path) -> Markup:
+    if not study.rows:
+        return Markup("")
+    return picture(
+        partial(study_partition_figure, study.rows),
+        make_directory(folder / "figures") / "partition",
+        "Stacked bars of the shares of the energy, one a run",
+        "Shares of E₀ after the last separation; a white rest is not known.",
+    )
+
+
+def _energies(rows: Sequence[Outcome]) -> Markup:
+    head = ("run", *(account.label for account in FINAL), "residual")
+    shown = [[row["scene_id"], *(_share(row, key) for key in ENERGIES)] for row in rows]
+    return table(head, shown, "Shares of E₀.", numbers=range(1, len(head)))
+
+
+def _share(row: Outcome, key: str) -> str:
+    if key == "E_vib_over_E_0" and row["E_vib_below_floor"]:
+        return "below floor"
+    if row[key] is None:
+        return "–"
+    width = (row["bands"] or {}).get(key)
+    return percent(row[key]) if width is None else f"{percent(row[key])} ± {percent(width)}"
+
+
+def _failures(study: Study) -> Markup:
+    return table(("run", "why"), [(item["scene_id"], item["error"]) for item in study.failures])
+
+
+def _run(row: Outcome, folder: Path) -> Markup:
+    place = folder / row["scene_id"]
+    if not (place / "history.csv").is_file():
+        return Markup("")
+    bands = row["bands"] or {}
+    e, mu = with_band(row["e_paper"], bands.get("e_paper")), with_band(row["mu"], bands.get("mu"))
+    title = f"{row['scene_id']}: {row['scene_title']} (e = {e}, µ = {mu})"
+    return details(title, history_figures(row, place), film_section(place))
+
+
+def _costs(rows: Sequence[Outcome]) -> Markup:
+    keys = (
+        "tip_size_m",
+        "steps",
+        "element_steps",
+        "elements_rod",
+        "elements_barrier",
+        "wall_s",
+        "peak_memory_MB",
+    )
+    head = ("run", "tip, mm", "steps", "element-steps", "rod", "barrier", "wall, s", "memory, MB")
+    shown = [[row["scene_id"], *(_cost(row, key) for key in keys)] for row in rows]
+    return table(head, shown, numbers=range(1, len(head)))
+
+
+def _cost(row: Outcome, key: str) -> str:
+    value = row[key]
+    return number(value * 1e3 if key == "tip_size_m" and value is not None else value)
+
+
+def _used(study: Study, folder: Path) -> set[str]:
+    films = any(has_film(folder / row["scene_id"]) for row in study.rows)
+    return {effect for row in study.rows for effect in row["effects"]} | ({"film"} if films else set())
+
+
+def _lead(study: Study) -> str:
+    sets = len({row["set"] for row in study.comparison})
+    return f"{len(study.rows)} runs, {len(study.comparison)} comparisons with {sets} measured sets."
+
+
+def _footer(rows: Sequence[Outcome]) -> str:
+    if not rows:
+        return "No run gave a record."
+    versions = ", ".join(f"{name} {version}" for name, version in rows[0]["versions"].items())
+    return f"Computed up to {max(row['created_utc'] for row in rows)} with {versions}."

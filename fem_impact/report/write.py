@@ -1,0 +1,42 @@
+"""Write the report of whatever a folder holds."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from fem_impact.errors import ResultError
+from fem_impact.output import write_text
+from fem_impact.report.run_page import run_page
+from fem_impact.report.study_page import study_page
+
+__all__ = ["write_report"]
+
+
+def write_report(result_dir: str | Path) -> Path:
+    """Write ``report.html`` into a result folder and return its path.
+
+    The file carries its figures and film inside and refers to nothing outside. The figures and
+    their data are also left in ``figures/``.
+
+    Parameters
+    ----------
+    result_dir : path
+        The folder of a study (study.json) or of a run (outcome.json).
+
+    Raises
+    ------
+    ResultError
+        The folder holds neither, or its files are damaged.
+    MissingLibraryError
+        matplotlib is not installed.
+    OutputPathError
+        The folder cannot be written.
+    """
+    folder = Path(result_dir)
+    if (folder / "study.json").is_file():
+        return write_text(folder / "report.html", study_page(folder))
+    if (folder / "outcome.json").is_file():
+        return write_text(folder / "report.html", run_page(folder))
+    raise ResultError(
+        f"{folder}: holds neither outcome.json nor study.json; give the folder of a run or a study."
+    )
