@@ -34,7 +34,10 @@ def hanging_births(forest: Forest) -> list[tuple[IntArray, IntArray]]:
 
 
 def tie_matrix(count: int, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_matrix:
-    """Weights of every node in the free nodes; ties of ties are resolved.
+    """Weights of every node in the free nodes.
+
+    There is no tie of a tie: a master that hung itself would lie on a cell two levels coarser than the
+    finest cells around it, which the balance over faces, edges and corners excludes.
 
     Returns
     -------
@@ -49,14 +52,4 @@ def tie_matrix(count: int, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_m
     own = np.flatnonzero(free)
     entries = np.concatenate([np.ones(len(own)), *weights])
     places = (np.concatenate([own, *rows]), np.concatenate([own, *cols]))
-    tie = sp.csr_matrix(sp.coo_matrix((entries, places), shape=(count, count)))
-    return _resolved(tie, free)
-
-
-def _resolved(tie: sp.csr_matrix, free: npt.NDArray[np.bool_]) -> sp.csr_matrix:
-    """Square the map until it names free nodes only: each product resolves one more tie of a tie."""
-    while not free[tie.indices].all():
-        tie = sp.csr_matrix(tie @ tie)
-        tie.eliminate_zeros()
-    tie.sort_indices()
-    return tie
+    return sp.csr_matrix(sp.coo_matrix((entries, places), shape=(count, count)))

@@ -9,6 +9,8 @@ from mesh_shapes import area_vectors, contact_zone, edge_radius, flux_volume, in
 
 import meshes
 from meshes.gauss import GRADIENTS, jacobians
+from meshes.split import Birth
+from meshes.topology import CORNERS, EDGES, FACE_EDGES, FACES
 
 small = st.floats(0.0, 1.0)
 
@@ -137,3 +139,15 @@ def test_levels_for_examples_hold():
     assert result.failed == 0
     with pytest.raises(meshes.MeshError, match="positive"):
         meshes.levels_for(0.0, 1.0)
+
+
+def test_middles_follow_curved_edges_and_faces():
+    corners, faces = CORNERS.astype(float), CORNERS[FACES].mean(axis=1)
+    unit = np.concatenate([corners, CORNERS[EDGES].mean(axis=1), faces, [[0.5, 0.5, 0.5]]])
+    x, y, z = unit.T
+    bent = unit + np.stack([y**2 - z**2, x**2, x**2 * y], axis=1)
+    none = np.empty((6, 0), int)
+    centres = Birth(20, FACES, 8 + FACE_EDGES, none).middle(bent)
+    centre = Birth(26, np.arange(8)[None], np.arange(8, 20)[None], np.arange(20, 26)[None]).middle(bent)
+    assert centres == pytest.approx(bent[20:26], abs=1e-15)
+    assert centre[0] == pytest.approx(bent[26], abs=1e-15)
