@@ -1,0 +1,113 @@
+"""Observers of a run: histories, frames, progress, and the watch over the ledger."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.output import FieldWriter, HistoryWriter
+from fem_impact.progress import Progress
+from fem_impact.solid.fields import Fields
+from fem_impact.solid.ledger import ACCOUNTS, Ledger
+from fem_impact.solid.model import Model
+from fem_impact.solid.rodview import RodView
+from fem_impact.solid.state import State
+
+Array = NDArray[np.float64]
+
+TAKEN = {"friction", "closing", "radiated"}
+COLUMNS = {name: f"{'W' if name in TAKEN else 'E'}_{name}_J" for name in ACCOUNTS} | {"residual": "residual_J"}
+
+
+@dataclass(slots=True)
+class Watch:
+    """Samples the ledger; keeps the last accounts. The one place where energies are computed in a run."""
+
+    ledger: Ledger
+    every: int
+    accounts: dict[str, float] = field(default_factory=dict)
+
+    def observe(self, state: State) -> bool:
+        """Sample."""
+        self.accounts = self.ledger.sample(state)
+        return False
+
+    @property
+    def drift(self) -> float:
+        """Return the present residual over E_0."""
+        return self.accounts["residual"] / self.ledger.start
+
+
+@dataclass(slots=True)
+class History:
+    """Writes energies, contact force and rigid motion; stands after the watch and shares its rhythm."""
+
+    model: Model
+    view: RodView
+    watch: Watch
+    writer: HistoryWriter
+    every: int
+    last_time: float = 0.0
+    last_impulse: Array = field(default_factory=lambda: np.zeros(3))
+
+    def observe(self, state: State) -> bool:
+        """Append one row."""
+        motion = self.view.rigid(state)
+        force_t, force_n = self._force(state)
+        row: dict[str, float] = {COLUMNS[k]: v for k, v in self.watch.accounts.items()}
+        row |= {"time_s": state.time, "force_n_N": force_n, "force_t_N": force_t}
+        row |= {"contact_nodes": int(self.model.book.step[5])}
+        row |= {"V_n_m_per_s": motion.V_n, "V_t_m_per_s": motion.V_t, "Omega_rad_per_s": motion.Omega}
+        self.writer.append(row)
+        return False
+
+    def _force(self, state: State) -> tuple[float, float]:
+        """Return the mean force on the whole rod since the last row, N."""
+        span, now = state.time - self.last_time, self.model.book.impulse.copy()
+        gained = 2 * (now - self.last_impulse) / span if span > 0 else np.zeros(3)
+        self.last_time, self.last_impulse = state.time, now
+        return float(gained[0]), float(gained[1])
+
+
+@dataclass(slots=True)
+class Frames:
+    """Appends a frame of the fields at even times."""
+
+    fields: Fields
+    writer: FieldWriter
+    interval: float
+    every: int = 10
+    due: float = 0.0
+
+    def observe(self, state: State) -> bool:
+        """Append when a frame is due."""
+        if state.time >= self.due:
+            self.writer.append(state.time, *self.fields.sample(state))
+            self.due += self.interval
+        return False
+
+
+@dataclass(slots=True)
+class Meter:
+    """Tells how far the run is; the end is not known beforehand, so it gives the latest time."""
+
+    show: Callable[[Progress], None]
+    watch: Watch
+    model: Model
+    end: float
+    note: str
+    every: int = 200
+    begun: float = field(default_factory=clock.monotonic)
+
+    def observe(self, state: State) -> bool:
+        """Report."""
+        spent = clock.monotonic() - self.begun
+        eta = spent * (self.end / state.time - 1) if state.time > 0.02 * self.end else None
+        nodes = int(self.model.book.step[5])
+        words = f"{nodes} nodes touch" if nodes else "no contact"
+        self.show(Progress(state.time, self.end, state.step, self.watch.drift, words, eta, self.note))
+        return False
