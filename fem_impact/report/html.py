@@ -69,8 +69,9 @@ def table(
     rows: Iterable[Sequence[str | Markup]],
     caption: str = "",
     numbers: Iterable[int] = (),
+    compact: bool = False,
 ) -> Markup:
-    """Return a table that scrolls sideways where the screen is narrow.
+    """Return a table that scrolls sideways where the screen is narrow, nothing when it has no rows.
 
     Parameters
     ----------
@@ -82,13 +83,16 @@ def table(
         What the table shows.
     numbers : iterable of int
         Columns set flush right.
+    compact : bool
+        Whether each row is one line.
     """
     right = set(numbers)
     titles = "".join(f"<th{_kind(at in right)}>{escape(text)}</th>" for at, text in enumerate(head))
     body = "\n".join(_row(row, right) for row in rows)
     above = f"<caption>{escape(caption)}</caption>" if caption else ""
     inner = f"{above}<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}\n</tbody>"
-    return Markup(f'<div class="scroll"><table>{inner}</table></div>' if body else "")
+    look = ' class="compact"' if compact else ""
+    return Markup(f'<div class="scroll"><table{look}>{inner}</table></div>' if body else "")
 
 
 def number(value: Any) -> str:

@@ -77,16 +77,19 @@ def _comparison(study: Study, folder: Path) -> Markup:
 
 def _tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
     quantities = dict.fromkeys(row["quantity"] for row in rows)
-    tables = [_quantity(name, [row for row in rows if row["quantity"] == name]) for name in quantities]
-    return Markup(f'<div class="pairs">{join(tables).text}</div>' if tables else "")
+    return join(
+        _quantity(name, [row for row in rows if row["quantity"] == name], opened=at < 3)
+        for at, name in enumerate(quantities)
+    )
 
 
-def _quantity(name: str, rows: Sequence[Mapping[str, Any]]) -> Markup:
-    unit = rows[0]["unit"]
-    shown = name if unit in ("", "-") else f"{name}, {unit}"
-    head = ("set", "model", "measured", "95 % interval", "n", "verdict")
-    inner = table(head, [_comparison_row(row) for row in rows], shown, numbers=(1, 2, 3, 4))
-    return Markup(f"<div>{inner.text}</div>")
+def _quantity(name: str, rows: Sequence[Mapping[str, Any]], opened: bool) -> Markup:
+    unit = "" if rows[0]["unit"] in ("", "-") else f", {rows[0]['unit']}"
+    inside = sum(_is_inside(row["verdict"]) for row in rows)
+    title = f"{name}{unit}: {inside} of {len(rows)} inside"
+    head = ("set", "model", "measured", "95 % interval of the mean", "n", "verdict")
+    shown = table(head, map(_comparison_row, rows), numbers=(1, 2, 3, 4), compact=True)
+    return details(title, shown, opened=opened)
 
 
 def _comparison_row(row: Mapping[str, Any]) -> list[str | Markup]:
@@ -96,12 +99,17 @@ def _comparison_row(row: Mapping[str, Any]) -> list[str | Markup]:
     model = _three(row["model"]) + ("" if row["band"] is None else f" ± {row['band']:.2g}")
     count = "–" if row["n"] is None else str(row["n"])
     spread = "" if row["measured_sd"] is None else f" ± {row['measured_sd']:.2g}"
-    verdict = cell(str(row["verdict"] or "–"), kind)
-    return [str(row["set"]), model, _three(row["measured_mean"]) + spread, between, count, verdict]
+    shown = [_three(row["measured_mean"]) + spread, between, count]
+    return [
+        str(row["set"]),
+        cell(model, f"number {kind}".strip()),
+        *shown,
+        cell(str(row["verdict"] or "–"), kind),
+    ]
 
 
 def _three(value: float | None) -> str:
-    return "–" if value is None else f"{value:.3g}".replace("-", "−")
+    return "–" if value is None else f"{value:#.3g}".rstrip(".").replace("-", "−")
 
 
 def _is_inside(verdict: Any) -> bool:
@@ -122,7 +130,7 @@ def _partition(study: Study, folder: Path) -> Markup:
 def _energies(rows: Sequence[Outcome]) -> Markup:
     head = ("run", *(account.label for account in FINAL), "residual")
     shown = [[row["scene_id"], *(_share(row, key) for key in ENERGIES)] for row in rows]
-    return table(head, shown, "Shares of E₀.", numbers=range(1, len(head)))
+    return table(head, shown, "Shares of E₀.", numbers=range(1, len(head)), compact=True)
 
 
 def _share(row: Outcome, key: str) -> str:
@@ -160,7 +168,7 @@ def _costs(rows: Sequence[Outcome]) -> Markup:
     )
     head = ("run", "tip, mm", "steps", "element-steps", "rod", "barrier", "wall, s", "memory, MB")
     shown = [[row["scene_id"], *(_cost(row, key) for key in keys)] for row in rows]
-    return table(head, shown, numbers=range(1, len(head)))
+    return table(head, shown, numbers=range(1, len(head)), compact=True)
 
 
 def _cost(row: Outcome, key: str) -> str:

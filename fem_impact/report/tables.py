@@ -17,7 +17,7 @@ Row = Mapping[str, Any]
 def key_table(outcome: Row, names: Iterable[str], caption: str = "") -> Markup:
     """Return meaning, value with band, and unit of some keys; null ones are left to ``unknown``."""
     known = [name for name in names if outcome[name] is not None]
-    rows = [(_meaning(name), _value(outcome, name), KEY_TABLE[name].unit) for name in known]
+    rows = [(_meaning(name), _value(outcome, name), _unit(name)) for name in known]
     return table(("quantity", "value", "unit"), rows, caption, numbers=(1,))
 
 
@@ -69,7 +69,15 @@ def all_keys(outcome: Row) -> Markup:
 
 
 def _meaning(name: str) -> Markup:
-    return Markup(f"{escape(KEY_TABLE[name].meaning)} <code>{name}</code>")
+    meaning = KEY_TABLE[name].meaning.replace(", as a fraction of E_0.", ".")
+    return Markup(f"{escape(meaning)} <code>{name}</code>")
+
+
+def _unit(name: str) -> str:
+    if name.endswith("_over_E_0"):
+        return "of\u00a0E₀"
+    unit = KEY_TABLE[name].unit
+    return "" if unit == "-" else unit.replace("m2", "m²")
 
 
 def _value(outcome: Row, name: str) -> str:

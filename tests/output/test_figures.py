@@ -1,0 +1,118 @@
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+import result_maker
+
+from fem_impact.errors import OutputPathError, ResultError
+from fem_impact.figures import (
+    comparison_figure,
+    force_figure,
+    ledger_figure,
+    partition_figure,
+    study_partition_figure,
+)
+from fem_impact.figures.accounts import FINAL, RUNNING
+from fem_impact.figures.style import percent
+from fem_impact.output import HISTORY, read_table
+
+
+@pytest.fixture(scope="module")
+def history(result):
+    return read_table(result / "history.csv")
+
+
+def test_ledger_data_are_the_history_over_e_0(history, tmp_path):
+    ledger_figure(history, 2.0, tmp_path / "ledger.svg")
+    data = read_table(tmp_path / "ledger.csv")
+    assert np.allclose(data.numbers("W_friction_over_E_0"), history.numbers("W_friction_J") / 2.0)
+    assert data.numbers("time_s").tolist() == history.numbers("time_s").tolist()
+
+
+def test_ledger_areas_add_up_to_what_the_history_holds(history, tmp_path):
+    ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg")
+    data = read_table(tmp_path / "ledger.csv")
+    total = sum(data.numbers(account.key.removesuffix("_J") + "_over_E_0") for account in RUNNING)
+    assert np.allclose(total, 1.0, atol=3e-6)
+
+
+def test_every_energy_column_is_drawn_or_named():
+    energies = {name for name in HISTORY if name.startswith(("E_", "W_"))}
+    assert energies == {account.key for account in RUNNING} | {"E_gravity_J"}
+
+
+def test_accounts_differ_in_colour():
+    for accounts in (RUNNING, FINAL):
+        assert len({account.colour for account in accounts}) == len(accounts)
+
+
+@pytest.mark.parametrize("shape", ["wide", "narrow"])
+def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, record, shape):
+    paths = [
+        ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg", shape),
+        force_figure(history, record["contacts"], tmp_path / "force.svg", shape),
+        partition_figure(record, tmp_path / "partition.svg", shape),
+    ]
+    for path in paths:
+        root = ElementTree.parse(path).getroot()
+        assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > 10
+        assert len(read_table(path.with_suffix(".csv"))) > 5
+
+
+def test_figures_of_a_study(tmp_path):
+    rows, compared = result_maker.study_rows(), result_maker.comparison()
+    compared[0] |= {"model": None, "band": None, "measured_sd": None, "measured_low": None}
+    study_partition_figure(rows, tmp_path / "partition.png")
+    comparison_figure(compared, tmp_path / "comparison.png", "narrow")
+    assert (tmp_path / "comparison.png").stat().st_size > 20_000
+    shares = read_table(tmp_path / "partition.csv")
+    assert shares.texts("scene_id") == list(result_maker.SETS)
+    assert len(read_table(tmp_path / "comparison.csv")) == len(compared)
+
+
+def test_unknown_share_is_left_out(tmp_path, record):
+    record["E_vib_over_E_0"] = None
+    partition_figure(record, tmp_path / "partition.svg")
+    accounts = read_table(tmp_path / "partition.csv").texts("account")
+    assert "E_vib" not in accounts
+    assert len(accounts) == len(FINAL) - 1
+
+
+def test_same_data_give_the_same_bytes(history, tmp_path):
+    first = ledger_figure(history, 0.4, tmp_path / "a.svg").read_bytes()
+    assert ledger_figure(history, 0.4, tmp_path / "b.svg").read_bytes() == first
+
+
+def test_missing_column_is_named(tmp_path):
+    (tmp_path / "history.csv").write_text("time_s\n0.0\n")
+    with pytest.raises(ResultError, match=r"E_kinetic_rod_J.* is missing"):
+        ledger_figure(read_table(tmp_path / "history.csv"), 1.0, tmp_path / "ledger.svg")
+
+
+def test_place_that_cannot_be_written(history, tmp_path):
+    (tmp_path / "figures").write_text("a file")
+    with pytest.raises(OutputPathError, match="figures"):
+        force_figure(history, [], tmp_path / "figures" / "force.svg")
+
+
+@pytest.mark.parametrize(
+    ("fraction", "text"),
+    [
+        (0.4, "40.0 %"),
+        (0.001, "0.1 %"),
+        (0.0004, "0.04 %"),
+        (2e-7, "2e-05 %"),
+        (0.0, "0 %"),
+        (-0.02, "-2.0 %"),
+    ],
+)
+def test_percent(fraction, text):
+    assert percent(fraction) == text
+
+
+def test_import_stays_light():
+    code = "import sys, fem_impact.figures, fem_impact.render, fem_impact.report; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"matplotlib", "pyvista", "vtkmodules", "h5py", "PIL"} & set(done.stdout.split())

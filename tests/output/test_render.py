@@ -1,0 +1,184 @@
+import numpy as np
+import pytest
+import result_maker
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+import fem_impact.render.encode as encoding
+import fem_impact.render.probe as probe
+from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError
+from fem_impact.output import read_fields
+from fem_impact.render import render, require_gl
+from fem_impact.render.kinematics import (
+    hex_volumes,
+    magnified,
+    nice_factor,
+    nodal_volumes,
+    rigid_motion,
+    to_points,
+)
+from fem_impact.render.layout import Layout
+from fem_impact.render.motion import prepare
+
+POINTS, CELLS = result_maker.grid((3, 2, 4))
+WEIGHTS = nodal_volumes(POINTS, CELLS)
+
+
+def turned(points, angle):
+    """Points turned about b by an angle that carries n towards t."""
+    t, n = points[:, 0], points[:, 2]
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.column_stack([cosine * t - sine * n, points[:, 1], sine * t + cosine * n])
+
+
+def test_volumes_fill_the_body():
+    assert hex_volumes(POINTS * [2.0, 3.0, 0.5], CELLS).sum() == pytest.approx(3.0)
+    assert WEIGHTS.sum() == pytest.approx(1.0)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
+@settings(max_examples=30, deadline=None)
+def test_rigid_motion_is_recognised_whole(angle, along_t, along_n):
+    moved = turned(POINTS, angle) + np.array([along_t, 0.0, along_n])
+    assert np.allclose(rigid_motion(POINTS, moved, WEIGHTS), moved, atol=1e-12)
+
+
+def test_best_rigid_motion_leaves_no_drift_and_no_spin():
+    moved = turned(POINTS, 0.3)
+    moved[:, 0] += 0.05 * np.sin(3.0 * POINTS[:, 2])
+    rigid = rigid_motion(POINTS, moved, WEIGHTS)
+    arm, rest = rigid - np.average(rigid, axis=0, weights=WEIGHTS), moved - rigid
+    assert np.allclose(WEIGHTS @ rest, 0.0, atol=1e-12)
+    assert WEIGHTS @ (arm[:, 0] * rest[:, 2] - arm[:, 2] * rest[:, 0]) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_magnification_leaves_rigid_motion_alone():
+    moved = turned(POINTS, 0.2) + np.array([0.1, 0.0, 0.0])
+    rigid = rigid_motion(POINTS, moved, WEIGHTS)
+    assert np.allclose(magnified(rigid, moved, np.full(len(POINTS), 50.0)), moved)
+
+
+@pytest.mark.parametrize(
+    ("wanted", "factor"), [(0.3, 1), (1.0, 1), (4.9, 2), (5.0, 5), (99.0, 50), (100.0, 100), (np.inf, 1)]
+)
+def test_nice_factor(wanted, factor):
+    assert nice_factor(wanted) == factor
+
+
+def test_cell_values_at_points_keep_a_constant():
+    assert np.allclose(to_points(CELLS, np.full(len(CELLS), 3.5), len(POINTS)), 3.5)
+
+
+@pytest.mark.parametrize("size", [(1000, 720), (1280, 700), (320, 240)])
+def test_size_an_encoder_cannot_take_is_refused(size):
+    with pytest.raises(ValueError, match="multiples of 16"):
+        Layout(*size)
+
+
+def test_ranges_are_fixed_over_the_film(result):
+    fields = read_fields(result / "fields.vtkhdf")
+    motion = prepare(fields, "mises", range(4))
+    peak = max(fields.cell_data("mises", frame).max() for frame in range(4)) * 1e-6
+    assert 0.0 == motion.far[0] < motion.far[1] < motion.near[1] <= peak * (1 + 1e-6)
+    assert motion.far == prepare(fields, "mises", [3, 1, 2, 0]).far
+    assert motion.span == pytest.approx(2.0 * result_maker.RADIUS)
+
+
+def test_deformation_is_true_at_the_contact_and_magnified_far_from_it(result):
+    motion = prepare(read_fields(result / "fields.vtkhdf"), "mises", range(4))
+    distance = np.linalg.norm(motion.fields.points - motion.contact, axis=1)
+    assert np.allclose(motion.factor[distance < 0.4 * motion.span], 1.0)
+    assert np.allclose(motion.factor[distance > 2.1 * motion.span], motion.peak)
+    assert motion.peak > 1.0
+    true, shown = motion.positions(2)
+    near = distance < 0.4 * motion.span
+    assert np.allclose(true[near], shown[near])
+    assert np.abs(true - shown).max() > 1e-5
+
+
+@pytest.mark.parametrize(("field", "message"), [("heat", "choose one of mises, velocity")])
+def test_unknown_field(result, field, message):
+    with pytest.raises(ResultError, match=message):
+        prepare(read_fields(result / "fields.vtkhdf"), field, [0])
+
+
+def test_nothing_to_draw(tmp_path):
+    with pytest.raises(ResultError, match="no such field file"):
+        render(tmp_path)
+    result_maker.write_fields(tmp_path / "fields.vtkhdf", frames=0, along=4)
+    with pytest.raises(ResultError, match="no frames yet"):
+        render(tmp_path)
+
+
+def test_missing_gl_is_a_clear_error_and_the_result_is_kept(result, tmp_path, monkeypatch):
+    probe._trial.cache_clear()
+    monkeypatch.setattr(probe, "_TRIAL", "import os; os.kill(os.getpid(), 11)")
+    with pytest.raises(MissingLibraryError, match=r"code -11.*libegl1 and libgl1-mesa-dri.*result is kept"):
+        render(result, tmp_path / "film.gif")
+    probe._trial.cache_clear()
+    assert list(tmp_path.iterdir()) == []
+
+
+FRAMES = [np.full((64, 96, 3), shade, np.uint8) for shade in (0, 120, 240)]
+
+
+@pytest.mark.parametrize("suffix", [".webp", ".gif"])
+def test_free_formats_hold_every_frame(tmp_path, suffix):
+    path = encoding.encode(FRAMES, tmp_path / f"film{suffix}", fps=10)
+    with Image.open(path) as film:
+        assert film.n_frames == 3
+        film.seek(2)
+        assert abs(int(np.asarray(film.convert("RGB")).mean()) - 240) < 4
+
+
+def test_mp4_holds_every_frame(tmp_path):
+    import imageio_ffmpeg
+
+    path = encoding.encode(FRAMES, tmp_path / "film.mp4", fps=10)
+    assert imageio_ffmpeg.count_frames_and_secs(str(path))[0] == 3
+
+
+def test_png_frames_replace_older_ones(tmp_path):
+    encoding.encode(FRAMES, tmp_path / "film.png", fps=10)
+    folder = encoding.encode(FRAMES[:2], tmp_path / "film.png", fps=10)
+    assert sorted(path.name for path in folder.iterdir()) == ["frame_0000.png", "frame_0001.png"]
+
+
+def test_without_its_encoder_mp4_is_refused_and_webp_chosen(tmp_path, monkeypatch):
+    monkeypatch.setattr(encoding.importlib.util, "find_spec", lambda name: None)
+    assert encoding.best_suffix() == ".webp"
+    with pytest.raises(MissingLibraryError, match=r"fem-impact\[mp4\]"):
+        encoding.encode(FRAMES, tmp_path / "film.mp4", fps=10)
+
+
+def test_unknown_format_leaves_nothing(tmp_path):
+    with pytest.raises(OutputPathError, match=r"a film ends in \.mp4"):
+        encoding.encode(FRAMES, tmp_path / "film.avi", fps=10)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.render
+def test_film_shows_motion_and_carries_the_marker(result, tmp_path):
+    require_gl()
+    made = render(result, tmp_path / "film.png", frames=3, size=(640, 480))
+    assert (made.frames, made.notes) == (3, ())
+    pictures = [np.asarray(Image.open(path)).astype(int) for path in sorted(made.path.iterdir())]
+    layout = Layout(640, 480)
+    for view in (layout.rod, layout.close, layout.strip):
+        cut = np.s_[view.top : view.top + view.height, view.left : view.left + view.width]
+        for picture in pictures:
+            assert picture[cut].std() > 5
+        assert (np.abs(pictures[0][cut] - pictures[1][cut]) > 30).mean() > 1e-3
+
+
+@pytest.mark.render
+def test_velocity_film_without_barrier_history_or_record(tmp_path):
+    points, cells, body, rod = result_maker.mesh(4, 6)
+    fields = result_maker.FieldWriter(tmp_path / "fields.vtkhdf", points[:rod], cells[body == 0])
+    moved = np.zeros((rod, 3))
+    fields.append(0.0, {"displacement": moved, "velocity": moved - np.array([0.0, 0.0, 1.0])})
+    made = render(tmp_path, tmp_path / "film.gif", field="velocity", size=(640, 480))
+    assert made.frames == 1
+    assert any("no force curve" in note for note in made.notes)
+    assert any("named after its folder" in note for note in made.notes)

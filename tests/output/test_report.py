@@ -1,0 +1,223 @@
+import json
+import re
+from html.parser import HTMLParser
+
+import pytest
+import result_maker
+
+from fem_impact.errors import ResultError
+from fem_impact.output import write_bytes
+from fem_impact.report import read_study, write_report
+from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
+
+VOID = {"meta", "link", "img", "source", "br"}
+
+
+class Reader(HTMLParser):
+    """Collects tags, addresses and text; fails on tags that do not close in order."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.tags, self.addresses, self.words = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        self.addresses += [
+            value for name, value in attrs if name in ("src", "srcset", "href", "poster", "data")
+        ]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.fixture
+def run(tmp_path):
+    """A run's folder that may be written to."""
+    return result_maker.write_result(tmp_path)
+
+
+def read(path):
+    text = path.read_text(encoding="utf-8")
+    reader = Reader(text)
+    return reader, " ".join(" ".join(reader.words).split())
+
+
+def test_run_report_is_whole_and_refers_to_nothing_outside(run):
+    reader, words = read(write_report(run))
+    assert reader.addresses
+    assert all(address.startswith("data:") for address in reader.addresses)
+    assert not {"script", "link", "iframe"} & set(reader.tags)
+    for title in (
+        "Where the energy went",
+        "Ledger over time",
+        "Contact force",
+        "What is not known",
+        "Sources",
+    ):
+        assert title in words
+    for value in ("0.597", "fully integrated elements have no hourglass motion", "−1.485"):
+        assert value in words
+
+
+def test_run_report_warns_and_says_when_a_run_was_cut_off(run):
+    result_maker.write_result(run, finished=False, stopped_because="The time limit came first.")
+    words = read(write_report(run))[1]
+    assert "t5b was cut off: The time limit came first." in words
+    assert "Yield stress is uncertain" in words
+
+
+def test_figures_and_their_data_stay_beside_the_report(run):
+    write_report(run)
+    names = {path.name for path in (run / "figures").iterdir()}
+    assert {"ledger.svg", "ledger.csv", "force.csv", "partition.csv", "ledger-narrow.svg"} <= names
+
+
+def test_film_is_embedded_when_there_is_one(run):
+    assert "video" not in read(write_report(run))[0].tags
+    write_bytes(run / "film.mp4", b"not really a film")
+    reader, words = read(write_report(run))
+    assert "video" in reader.tags
+    assert any(address.startswith("data:video/mp4;base64,") for address in reader.addresses)
+    assert "PyVista" in words
+
+
+def test_everything_from_outside_is_escaped(run):
+    evil = '<script>alert("x")</script>&'
+    result_maker.write_result(
+        run,
+        scene_title=evil,
+        warnings=[evil],
+        validity=[evil],
+        stopped_because=evil,
+        effects=[evil],
+        versions={evil: evil},
+        reasons={**result_maker.REASONS, "bands": evil},
+    )
+    (run / "scene.toml").write_text(f"title = '{evil}'")
+    reader, words = read(write_report(run))
+    assert "script" not in reader.tags
+    assert words.count('<script>alert("x")</script>&') >= 8
+
+
+def test_missing_history_is_said_and_not_fatal(run):
+    (run / "history.csv").unlink()
+    words = read(write_report(run))[1]
+    assert "No curves over time" in words
+    assert "Coefficients and losses" in words
+
+
+def test_vibration_below_its_floor_is_not_given_a_number(run):
+    result_maker.write_result(run, E_vib_below_floor=True)
+    assert "below floor" in read(write_report(run))[1]
+
+
+def test_band_stands_beside_its_value(run):
+    reasons = {name: why for name, why in result_maker.REASONS.items() if name != "bands"}
+    result_maker.write_result(run, bands={"mu": 0.0123, "e_paper": 0.02}, reasons=reasons)
+    words = read(write_report(run))[1]
+    assert "0.597 ± 0.012" in words
+    assert "0.25 ± 0.02" in words
+
+
+def test_folder_without_a_result(tmp_path):
+    with pytest.raises(ResultError, match=r"neither outcome\.json nor study\.json"):
+        write_report(tmp_path)
+
+
+def test_damaged_outcome_gives_no_report(run):
+    (run / "outcome.json").write_text((run / "outcome.json").read_text()[:500])
+    with pytest.raises(ResultError, match=r"outcome\.json: not a readable JSON record"):
+        write_report(run)
+    assert not (run / "report.html").exists()
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A study's folder with one run's histories."""
+    (tmp_path / "t4").mkdir()
+    result_maker.write_result(tmp_path / "t4", scene_id="t4")
+    return result_maker.write_study(tmp_path, result_maker.SETS[:4])
+
+
+def edit(study, **changes):
+    path = study / "study.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | changes))
+
+
+def test_study_report_compares_every_row(study):
+    reader, words = read(write_report(study))
+    assert all(address.startswith("data:") for address in reader.addresses)
+    rows = json.loads((study / "study.json").read_text())["comparison"]
+    inside = sum(row["verdict"].startswith("inside") for row in rows)
+    assert f"{inside} of {len(rows)}" in words
+    assert words.count("outside the 95 % interval") == len(rows) - inside
+    assert re.search(r"t4: 0\.08 m rod", words)
+
+
+def test_study_report_names_failures_and_notes(study):
+    edit(
+        study,
+        failures=[{"scene_id": "t2", "error": "the ledger did not close"}],
+        notes=["Friction rule: 0.57."],
+    )
+    words = read(write_report(study))[1]
+    assert "t2 the ledger did not close" in words
+    assert "Friction rule: 0.57." in words
+
+
+def test_study_without_runs_or_comparison_still_reports(study):
+    edit(study, rows=[], comparison=[], failures=[{"scene_id": "t2", "error": "stopped"}])
+    assert "No run gave a record." in read(write_report(study))[1]
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"schema": "other/2"}, "\"schema\" = 'other/2' is not"),
+        ({"rows": "none"}, '"rows" must be a list'),
+        ({"rows": [{"schema_version": 1}]}, r"rows\[0\]: key .* is missing"),
+        ({"comparison": [{"set": "t2"}]}, r'comparison\[0\] lacks the key "quantity"'),
+    ],
+)
+def test_wrong_study_is_refused(study, change, message):
+    edit(study, **change)
+    with pytest.raises(ResultError, match=message):
+        read_study(study / "study.json")
+
+
+def test_comparison_with_a_text_for_a_number_is_refused(study):
+    rows = result_maker.comparison(("t2",))
+    rows[0]["model"] = "0.5"
+    edit(study, comparison=rows)
+    with pytest.raises(ResultError, match=r'comparison\[0\], key "model" = \'0\.5\''):
+        read_study(study / "study.json")
+
+
+def test_truncated_study_is_refused(study):
+    text = (study / "study.json").read_text()
+    (study / "study.json").write_text(text[: len(text) // 2])
+    with pytest.raises(ResultError, match=r"study\.json: not readable JSON"):
+        write_report(study)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(None, "–"), (True, "yes"), (40000, "40\u202f000"), (-1.48512, "−1.485"), (2e-6, "2e−06")],
+)
+def test_numbers_for_the_eye(value, text):
+    assert number(value) == text
+
+
+def test_pieces_escape_and_vanish_when_empty():
+    assert paragraph("a < b").text == "<p>a &lt; b</p>"
+    assert bullets([]).text == table(("a",), []).text == section("Title").text == ""
+    assert '<td class="inside">&amp;</td>' in table(("a",), [[cell("&", "inside")]]).text
+    assert with_band(0.5, None) == "0.5"
