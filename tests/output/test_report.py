@@ -123,7 +123,7 @@ def test_band_stands_beside_its_value(run):
     reasons = {name: why for name, why in result_maker.REASONS.items() if name != "bands"}
     result_maker.write_result(run, bands={"mu": 0.0123, "e_paper": 0.02}, reasons=reasons)
     words = read(write_report(run))[1]
-    assert "0.597 ± 0.012" in words
+    assert words.count("0.597 ± 0.012") == 3  # first figures, motion, whole record
     assert "0.25 ± 0.02" in words
 
 
@@ -171,6 +171,20 @@ def test_study_report_names_failures_and_notes(study):
     words = read(write_report(study))[1]
     assert "t2 the ledger did not close" in words
     assert "Friction rule: 0.57." in words
+
+
+def test_texts_of_a_study_are_escaped(study):
+    evil = "<script>x</script>"
+    result_maker.write_result(study / "t4", scene_id="t4", scene_title=evil)
+    rows = [result_maker.values(scene_id="t4", scene_title=evil)]
+    compared = [
+        row | {"quantity": evil, "set": evil, "verdict": evil} for row in result_maker.comparison(("t4",))
+    ]
+    failures = [{"scene_id": evil, "error": evil}]
+    edit(study, title=evil, rows=rows, comparison=compared, failures=failures, notes=[evil])
+    reader, words = read(write_report(study))
+    assert "script" not in reader.tags
+    assert words.count(evil) >= 8
 
 
 def test_study_without_runs_or_comparison_still_reports(study):
