@@ -90,7 +90,9 @@ def _words(drawn: Figure, layout: Layout, motion: Motion, title: str) -> None:
     drawn.text(24 / across, 1 - 27 / down, title, fontsize=14, weight="bold", color=INK, va="center")
     fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
     whole = f"whole rod, deformation × {motion.peak:g}{fade}"
-    near = f"section at the contact (n up, t right), true scale, {CLOSE_WIDTH * motion.span * 1e3:.1f} mm wide"
+    near = (
+        f"section at the contact (n up, t right), true scale, {CLOSE_WIDTH * motion.span * 1e3:.1f} mm wide"
+    )
     for view, text in ((layout.rod, whole), (layout.close, near)):
         drawn.text(
             view.left / across, 1 - (view.top - 10) / down, text, fontsize=9.5, color=QUIET, va="center"
