@@ -1,0 +1,138 @@
+"""The measured sets, each on two meshes, beside the experiments."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Iterable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.compare import Row, compare, text_table
+from fem_impact.outcome import Outcome
+from fem_impact.output import COMPARISON, make_directory, write_table, write_text
+from fem_impact.progress import Progress
+from fem_impact.scene import MEASURED_SETS, Scene, load, replace_all
+from fem_impact.study.bands import bands
+from fem_impact.study.cases import Case, Failure, compute, stored
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Meter
+
+SCHEMA = "fem-impact/study/1"
+QUICK_TIP = 0.6e-3  # m
+COARSER = 2.0  # tip size of the second mesh over that of the first
+
+
+@dataclass(frozen=True, slots=True)
+class StudyResult:
+    """Outcomes as plain rows, the comparison, its text table, and what failed."""
+
+    rows: list[dict[str, Any]]
+    comparison: list[Row]
+    table: str
+    failures: list[str]
+
+
+def cases_of(set_id: str, quick: bool, out: Path) -> tuple[Case, Case]:
+    """Return the set's case and its coarser twin."""
+    scene = load(set_id)
+    if quick:
+        scene = replace_all(scene, {"accuracy.tip_size": f"{QUICK_TIP * 1e3:g} mm"})
+    size = COARSER * scene.accuracy.tip_size
+    coarse = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:g} mm", "save.frames": 0})
+    return Case(scene, out / set_id), Case(coarse, out / f"{set_id}-coarse")
+
+
+def run_sets(
+    ids: Iterable[str],
+    quick: bool,
+    out: Path,
+    progress: Meter,
+    workers: int,
+    executor: Executor | None = None,
+) -> StudyResult:
+    """Compute measured sets and compare them.
+
+    Parameters
+    ----------
+    ids : set ids; all 13 when empty
+    quick : coarse tips, for a first look
+    out : study directory; finished cases in it are not computed again
+    progress : told after every case
+    workers : processes, one thread each
+    executor : any other executor to run the cases in
+    """
+    chosen = list(ids) or list(MEASURED_SETS)
+    pairs = {name: cases_of(name, quick, out) for name in chosen}
+    make_directory(out)
+    done = run_cases([case for pair in pairs.values() for case in pair], progress, workers, executor)
+    outcomes, failures = [], [f"{f.case.out.name}: {f.reason}" for f in done.values() if isinstance(f, Failure)]
+    for name in chosen:
+        fine, coarse = (done[case.out.name] for case in pairs[name])
+        if isinstance(fine, Outcome):
+            outcomes.append(with_bands(fine, coarse, out / name))
+    return write_study(outcomes, failures, out)
+
+
+def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
+    """Return the outcome with its two-mesh bands, and store it."""
+    if isinstance(coarse, Failure):
+        return fine.replace(reasons={"bands": f"the coarser mesh failed: {coarse.reason}"})
+    banded = fine.replace(bands=bands(fine, coarse))
+    banded.write(out / "outcome.json")
+    return banded
+
+
+def run_cases(
+    cases: list[Case], progress: Meter, workers: int, executor: Executor | None = None
+) -> dict[str, Outcome | Failure]:
+    """Return the result of every case by the name of its directory; stored ones are read."""
+    results: dict[str, Outcome | Failure] = {}
+    for case in cases:
+        found = stored(case)
+        if found is not None:
+            results[case.out.name] = found
+    waiting = [case for case in cases if case.out.name not in results]
+    if waiting:
+        owned = executor or ProcessPoolExecutor(min(workers, len(waiting)), mp_context=get_context("spawn"))
+        try:
+            _collect({owned.submit(compute, case): case for case in waiting}, results, len(cases), progress)
+        finally:
+            if executor is None:
+                owned.shutdown(cancel_futures=True)
+    return results
+
+
+def _collect(
+    futures: dict[Future[Any], Case], results: dict[str, Outcome | Failure], total: int, progress: Callable[[Progress], None]
+) -> None:
+    begun, first = time.monotonic(), len(results)
+    for future in as_completed(futures):
+        case = futures[future]
+        results[case.out.name] = future.result() or _read(case)
+        done = len(results)
+        eta = (time.monotonic() - begun) / (done - first) * (total - done)
+        progress(Progress(float(done), float(total), done, _drift(results[case.out.name]), "cases done", eta, case.out.name))
+
+
+def _read(case: Case) -> Outcome | Failure:
+    return stored(case) or Failure(case, "its result cannot be read back")
+
+
+def _drift(result: Outcome | Failure) -> float:
+    return float(result["residual_over_E_0"]) if isinstance(result, Outcome) else float("nan")
+
+
+def write_study(outcomes: list[Outcome], failures: list[str], out: Path) -> StudyResult:
+    """Write study.json and comparison.csv and return the study."""
+    comparison = [row for outcome in outcomes for row in compare(outcome)]
+    rows = [outcome.to_dict() for outcome in outcomes]
+    document = {"schema": SCHEMA, "rows": rows, "comparison": comparison, "failures": failures}
+    write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
+    write_table(out / "comparison.csv", COMPARISON, comparison)
+    table = "\n".join([text_table(comparison), *(f"failed: {line}" for line in failures)])
+    return StudyResult(rows, comparison, table, failures)
