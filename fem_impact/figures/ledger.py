@@ -54,9 +54,11 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
 
 def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
     ends = {key: percent(float(share[-1])) if len(share) else "-" for key, share in shares.items()}
+    # more corners than a page has pixels would only swell the file; the data keep every row
+    kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), 800)).astype(int))
     axes.stackplot(
-        time,
-        list(shares.values()),
+        time[kept],
+        [share[kept] for share in shares.values()],
         labels=[f"{account.label}  {ends[account.key]}" for account in RUNNING],
         colors=[account.colour for account in RUNNING],
         edgecolor="white",
