@@ -51,22 +51,22 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     Examples
     --------
     >>> verdict(0.33, 0.01, Statistic(0.32, 0.04, 0.29, 0.35, 8))
-    'agrees'
+    'inside'
     >>> verdict(0.45, 0.2, Statistic(0.32, 0.04, 0.29, 0.35, 8))
     'undecided: mesh band'
     >>> verdict(0.45, 0.01, Statistic(0.32, 0.04, 0.29, 0.35, 8))
-    'misses by +3.0 SD'
+    'miss by +3.0 SD'
     """
     half = band or 0.0
     if measured.low <= model <= measured.high:
-        return "agrees"
+        return "inside"
     if model - half <= measured.high and model + half >= measured.low:
         return "undecided: mesh band"
     away = model - measured.mean
     beyond = max(0.0, abs(away) - half) / measured.sd
     if beyond <= 2:
-        return "within the scatter"
-    return f"misses by {beyond if away > 0 else -beyond:+.1f} SD"
+        return "outside, within the scatter"
+    return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
 def compare(outcome: Mapping[str, Any]) -> list[Row]:
@@ -114,7 +114,10 @@ def _unseen_verdict(outcome: Mapping[str, Any], quantity: Quantity) -> str:
 
 def text_table(rows: list[Row]) -> str:
     """Return the rows as aligned text."""
-    head = f"{'set':<16}{'quantity':<22}{'model':>9} {'+- mesh':>8}  {'measured':>9} {'SD':>7}  {'95 % of mean':<18}verdict"
+    head = (
+        f"{'set':<16}{'quantity':<22}{'model':>9} {'+- mesh':>8}  {'measured':>9} {'SD':>7}  "
+        f"{'95 % of mean':<18}verdict"
+    )
     lines = [head, "-" * len(head)]
     for row in rows:
         if row["measured_mean"] is None:
@@ -123,5 +126,7 @@ def text_table(rows: list[Row]) -> str:
             span = f"{row['measured_low']:.3f} .. {row['measured_high']:.3f}"
             measured = f"{row['measured_mean']:9.3f} {row['measured_sd']:7.3f}  {span:<18}"
         band = f"{row['band']:8.4f}" if row["band"] is not None else f"{'-':>8}"
-        lines.append(f"{row['set']:<16}{row['quantity']:<22}{row['model']:9.4f} {band}  {measured}{row['verdict']}")
+        lines.append(
+            f"{row['set']:<16}{row['quantity']:<22}{row['model']:9.4f} {band}  {measured}{row['verdict']}"
+        )
     return "\n".join(lines)

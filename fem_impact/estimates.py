@@ -61,7 +61,9 @@ def effective_mass(scene: Scene) -> float:
     rod, f = projectile(scene), scene.surface.friction if "friction" in scene.effects else 0.0
     d_c, d_d = rod.arms(scene.impact.angle)
     frictionless = 1 + float(d_c) ** 2 / rod.k2
-    return float(rod.mass / min(frictionless, max(1.0, 1 + float(d_c) * (float(d_c) - f * float(d_d)) / rod.k2)))
+    return float(
+        rod.mass / min(frictionless, max(1.0, 1 + float(d_c) * (float(d_c) - f * float(d_d)) / rod.k2))
+    )
 
 
 def contact_modulus(scene: Scene) -> float:
@@ -86,4 +88,6 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     if elastic.pressure <= limit:
         return elastic
     depth = sqrt(energy / (pi * limit * R))
-    return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit)
+    return ContactEstimate(
+        depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit
+    )

@@ -7,7 +7,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, TextIO
 
-__all__ = ["LineMeter", "Meter", "NullMeter", "Progress", "TerminalMeter", "describe", "meter_for"]
+__all__ = [
+    "CaseProgress",
+    "LineMeter",
+    "Meter",
+    "NullMeter",
+    "Progress",
+    "TerminalMeter",
+    "describe",
+    "meter_for",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +35,20 @@ class Progress:
     note: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class CaseProgress:
+    """The state of a study: ``note`` names the case that was just done; ``eta_s`` covers all cases."""
+
+    note: str
+    done: int
+    total: int
+    eta_s: float
+
+
 class Meter(Protocol):
     """Anything that takes progress, and may be closed when the work is over or interrupted."""
 
-    def __call__(self, progress: Progress) -> None:
+    def __call__(self, progress: Progress | CaseProgress) -> None:
         """Take one report."""
 
     def close(self) -> None:
@@ -39,7 +58,7 @@ class Meter(Protocol):
 class NullMeter:
     """A meter that shows nothing."""
 
-    def __call__(self, progress: Progress) -> None:
+    def __call__(self, progress: Progress | CaseProgress) -> None:
         """Ignore the report."""
 
     def close(self) -> None:
@@ -53,7 +72,7 @@ class TerminalMeter:
         self._stream, self._clock, self._width = stream, clock, width
         self._next, self._dirty = 0.0, False
 
-    def __call__(self, progress: Progress) -> None:
+    def __call__(self, progress: Progress | CaseProgress) -> None:
         """Rewrite the line when a tenth of a second has passed."""
         now = self._clock()
         if now < self._next:
@@ -79,7 +98,7 @@ class LineMeter:
         self._stream, self._every, self._clock = stream, every_s, clock
         self._next: dict[str, float] = {}
 
-    def __call__(self, progress: Progress) -> None:
+    def __call__(self, progress: Progress | CaseProgress) -> None:
         """Write a line when it is due for this work."""
         now = self._clock()
         if now < self._next.get(progress.note, now):
@@ -97,8 +116,11 @@ def meter_for(stream: TextIO, width: int = 100) -> Meter:
     return TerminalMeter(stream, width=width) if stream.isatty() else LineMeter(stream)
 
 
-def describe(progress: Progress) -> str:
-    """Return one line: t, step, energy drift, contact state and the time still needed."""
+def describe(progress: Progress | CaseProgress) -> str:
+    """Return one line: t, step, energy drift, contact state (or cases done) and the time still needed."""
+    if isinstance(progress, CaseProgress):
+        done = f"{progress.done} of {progress.total} runs done"
+        return f"{done}, last {progress.note}, ETA {_clock_text(progress.eta_s)}"
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",

@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import rigid
-from rigid.experiments import measured_set
 
+import rigid
 from fem_impact.estimates import projectile
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome, installed_versions, utc_now
 from fem_impact.scene import validity
+from rigid.experiments import measured_set
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -30,7 +30,9 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     reasons: dict[str, str] = {}
     for name, arms in _arm_sets(scene, motion, result.motion.inertia / result.motion.mass).items():
         if arms is None:
-            reasons |= dict.fromkeys(_arm_keys(name), "the scene repeats no measured set, so no table gives its arms")
+            reasons |= dict.fromkeys(
+                _arm_keys(name), "the scene repeats no measured set, so no table gives its arms"
+            )
         else:
             values |= _with_arms(name, arms, values)
     values |= _energies(result) | _markers(result) | _cost(scene, result)
@@ -64,7 +66,9 @@ def _doubts(result: SolidResult) -> list[str]:
     share = result.worst / result.E_0
     if share <= RESIDUAL_LIMIT:
         return []
-    return [f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."]
+    return [
+        f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
+    ]
 
 
 def _motion(scene: Scene, result: SolidResult) -> Values:
@@ -122,11 +126,13 @@ def _arm_keys(name: str) -> list[str]:
 
 
 def _with_arms(name: str, arms: tuple[float, float], values: Values) -> Values:
-    velocities = [values[k] for k in ("v_n_m_per_s", "v_t_m_per_s", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s")]
+    velocities = [
+        values[k] for k in ("v_n_m_per_s", "v_t_m_per_s", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s")
+    ]
     body = {"d_c": arms[0], "d_d": arms[1], "k2": values["k_squared_m2"]}
     found = rigid.coefficients(*velocities, **body)
     lost = rigid.losses(*velocities, **body, mass=values["mass_kg"]).fractions()
-    numbers = [arms[0], arms[1], found.e, found.e_m, lost.E_ln, lost.E_lt]
+    numbers: list[Any] = [*arms, found.e, found.e_m, lost.E_ln, lost.E_lt]
     return {key: float(number) for key, number in zip(_arm_keys(name), numbers, strict=True)}
 
 

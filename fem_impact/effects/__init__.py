@@ -40,5 +40,7 @@ def describe(scene: Scene) -> list[tuple[str, bool, str, float, str]]:
     rows = []
     for name, effect in EFFECTS.items():
         on = name in scene.effects
-        rows.append((name, on, effect.measure, effect.number(scene), effect.sentence if on else effect.absence))
+        rows.append(
+            (name, on, effect.measure, effect.number(scene), effect.sentence if on else effect.absence)
+        )
     return rows

@@ -16,7 +16,7 @@ def number(scene: Scene) -> float:
     rod = projectile(scene)
     d_c, _ = rod.arms(scene.impact.angle)
     Omega = 2 * effective_mass(scene) * abs(scene.impact.v_n) * float(d_c) / (rod.mass * rod.k2)
-    return (abs(Omega) + abs(scene.impact.omega)) * contact_estimate(scene).duration
+    return float((abs(Omega) + abs(scene.impact.omega)) * contact_estimate(scene).duration)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

@@ -16,7 +16,7 @@ def bending_period(scene: Scene) -> float:
     """Return the first free-free bending period, s (Euler-Bernoulli: (beta l)^2 = 22.373)."""
     rod = scene.projectile
     c0 = (rod.material.E / rod.material.rho) ** 0.5
-    return 2 * pi * rod.length**2 / (22.373 * c0 * rod.diameter / 4)
+    return float(2 * pi * rod.length**2 / (22.373 * c0 * rod.diameter / 4))
 
 
 def number(scene: Scene) -> float:

@@ -36,7 +36,9 @@ class RodModes:
         return self.omega / (2 * np.pi)
 
 
-def rod_modes(stiffness: sp.csr_matrix, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT) -> RodModes:
+def rod_modes(
+    stiffness: sp.csr_matrix, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
+) -> RodModes:
     """Return the lowest elastic modes.
 
     Parameters
@@ -64,7 +66,9 @@ def rod_modes(stiffness: sp.csr_matrix, mass: Array, fixed: NDArray[np.bool_], c
     order = np.argsort(value)
     value, vector = value[order], vector[:, order]
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:
-        raise ValueError(f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}.")
+        raise ValueError(
+            f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
+        )
     shape = np.zeros((len(mass), count))
     shape[free] = root @ vector[:, RIGID:]
     return RodModes(np.sqrt(value[RIGID:]), shape, mass)

@@ -62,7 +62,9 @@ def _body(name: str, mesh: HexMesh, points: Array, places: Ints, material: Mater
     C = isotropic_stiffness(material.E, material.nu)
     K = element_stiffness(points, mesh.cells, C, "incompatible")
     K[yields] = element_stiffness(points, mesh.cells[yields], C, "bbar")
-    return Body(name, mesh, points, places, material, yields, K, lumped_mass(points, mesh.cells, material.rho))
+    return Body(
+        name, mesh, points, places, material, yields, K, lumped_mass(points, mesh.cells, material.rho)
+    )
 
 
 def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
@@ -73,7 +75,9 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     _complete_mass(found[0], geometry, scene)
     if barrier is not None:
         yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
-        found.append(_body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields))
+        found.append(
+            _body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields)
+        )
     return found
 
 
@@ -125,16 +129,22 @@ def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
     return np.asarray(centre)
 
 
-def _elastic_rod(body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, turning: bool) -> ElasticRod:
+def _elastic_rod(
+    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, turning: bool
+) -> ElasticRod:
     rod, n = geometry.rod, layout.rod_size
     section = np.full(len(body.points), -1)
     section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
     first = body.mesh.cells[rod.body_cells[:, 0]]
-    slices = SliceOperator.of(body.stiffness[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
+    slices = SliceOperator.of(
+        body.stiffness[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]]
+    )
     linear = ~body.yields
     linear[rod.body_cells] = False
     T = tie_operator(body.mesh.tie, body.places, n)
-    nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), body.places[~body.mesh.is_hanging])
+    nose = NodeProduct.of(
+        assemble(body.stiffness[linear], body.mesh.cells[linear], T), body.places[~body.mesh.is_hanging]
+    )
     frame = _frame(body, layout, mass, x, turning)
     return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
 
@@ -160,7 +170,9 @@ def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, 
     K = assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T)
     K.setdiag(K.diagonal() + T.T @ spring.ravel())
     n = K.shape[0]
-    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n))
+    block = ElasticBlock(
+        NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)
+    )
     return block, T.T @ damping.ravel()
 
 
@@ -185,7 +197,7 @@ def _skin(body: Body, geometry: Geometry) -> Ints:
     finest = np.isin(quads, body.mesh.cells[body.mesh.level == geometry.levels]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
     found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
-    return found[:, ::-1] if body.name == "rod" else found
+    return np.asarray(found[:, ::-1] if body.name == "rod" else found)
 
 
 def _contact(
@@ -225,7 +237,9 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     rod = bodies[0]
     forces: list[Force] = [_elastic_rod(rod, geometry, layout, mass, x, spec.turning_frame)]
     impulses: list[Impulse] = []
-    zones = [_zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law]
+    zones = [
+        _zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law
+    ]
     forces += zones
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))

@@ -68,7 +68,7 @@ def incompatible_gradients(basis: Basis) -> Array:
     inverse = basis.mapping.invDF(centre)[..., 0]
     scale = np.abs(basis.mapping.detDF(centre)) / np.abs(basis.mapping.detDF(basis.X))
     slope = -8.0 * (basis.X - 0.5)
-    return np.einsum("kq,kim,mq->mqki", slope, inverse, scale)
+    return np.asarray(np.einsum("kq,kim,mq->mqki", slope, inverse, scale))
 
 
 def _stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: Kind) -> Array:
@@ -78,10 +78,10 @@ def _stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: Kind) ->
     if kind == "bbar":
         B = mean_dilatation(B, dx)
     if kind != "incompatible":
-        return np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True)
+        return np.asarray(np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True))
     B = np.concatenate([B, strain_matrix(incompatible_gradients(basis))], axis=-1)
     K = np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True)
-    return K[:, :24, :24] - K[:, :24, 24:] @ np.linalg.solve(K[:, 24:, 24:], K[:, 24:, :24])
+    return np.asarray(K[:, :24, :24] - K[:, :24, 24:] @ np.linalg.solve(K[:, 24:, 24:], K[:, 24:, :24]))
 
 
 def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: Kind) -> Array:
@@ -108,7 +108,7 @@ def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Arra
     """Return row-sum lumped nodal masses (m, 8), kg, of each element."""
     basis = _basis(points, cells)
     values = np.stack([np.broadcast_to(basis.basis[k][0].value, basis.dx.shape) for k in HEX_MAPPING[:8]])
-    return density * np.einsum("kmq,mq->mk", values, basis.dx)
+    return np.asarray(density * np.einsum("kmq,mq->mk", values, basis.dx))
 
 
 def largest_frequency(K: Array, mass: Array) -> Array:

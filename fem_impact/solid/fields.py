@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.elements import isotropic_stiffness
+from fem_impact.solid.hexmodes import SIGNS
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.state import State
-from fem_impact.solid.stepguard import SIGNS
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -21,7 +21,7 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     """Return shape gradients (m, 8, 3), 1/m, at the cell centres."""
     x = points[cells]
     J = np.einsum("ai,maj->mij", SIGNS / 8.0, x)
-    return np.einsum("ai,mji->maj", SIGNS / 8.0, np.linalg.inv(J))
+    return np.asarray(np.einsum("ai,mji->maj", SIGNS / 8.0, np.linalg.inv(J)))
 
 
 def mises(gradient: Array, u: Array, E: float, nu: float) -> Array:

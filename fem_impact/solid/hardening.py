@@ -68,7 +68,8 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
     low, high = 1 / stiffness, 0.5
     if not 1 <= ratio <= _nominal_strength_ratio(high, stiffness):
         raise ValueError(
-            f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa and "
+            f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa "
+            "and "
             f"{_nominal_strength_ratio(high, stiffness):.2f} times it."
         )
     n = brentq(lambda n: _nominal_strength_ratio(n, stiffness) - ratio, low, high) if ratio > 1 else 0.0

@@ -7,8 +7,14 @@ holds one number for each of ``LANES`` elements, so that the compiler turns lane
 
 from __future__ import annotations
 
+import numpy as np
+
 from fem_impact.solid.kernels import inlined, kernel
 
+# corners of the reference cube in VTK order
+SIGNS = np.array(
+    [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
+)
 LANES = 16
 THIRD = 1.0 / 3.0
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import numba
 
@@ -16,9 +16,9 @@ FAST = {"contract", "arcp", "nsz"}
 
 def kernel(function: F) -> F:
     """Compile a hot loop, cached on disk across runs."""
-    return numba.njit(cache=True, fastmath=FAST, error_model="numpy")(function)  # type: ignore[no-any-return]
+    return cast(F, numba.njit(cache=True, fastmath=FAST, error_model="numpy")(function))
 
 
 def inlined(function: F) -> F:
     """Compile a helper that every caller absorbs."""
-    return numba.njit(fastmath=FAST, error_model="numpy", forceinline=True)(function)  # type: ignore[no-any-return]
+    return cast(F, numba.njit(fastmath=FAST, error_model="numpy", forceinline=True)(function))

@@ -73,7 +73,9 @@ class SolidResult:
     warnings: tuple[str, ...]
 
 
-def solve(scene: Scene, out: Path | None = None, progress: Callable[[Progress], None] | None = None) -> SolidResult:
+def solve(
+    scene: Scene, out: Path | None = None, progress: Callable[[Progress], None] | None = None
+) -> SolidResult:
     """Run a scene; histories and fields go to ``out`` while it runs."""
     model = build(scene, specify(scene))
     view = RodView.of(model)

@@ -38,7 +38,9 @@ class Separation:
     def observe(self, state: State) -> bool:
         """Return True when the impact is over or the time is up."""
         if state.time >= self.limit:
-            self.reason = f"reached max_time = {self.limit * 1e3:g} ms before the last separation was certain."
+            self.reason = (
+                f"reached max_time = {self.limit * 1e3:g} ms before the last separation was certain."
+            )
             return True
         book = self.model.book
         if not book.intervals or book.touching or state.time - book.last_touch < QUIET:

@@ -8,19 +8,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.errors import RunError
+from fem_impact.solid.hexmodes import SIGNS
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 
-SIGNS = np.array([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)])
 SMALLEST = 0.02  # of the first step: below it the elements are crushed beyond use
 
 
 def reference_gradients() -> Array:
     """Return dN/dxi (8 points, 8 nodes, 3) of the trilinear hexahedron at the 2 x 2 x 2 Gauss points."""
     factors = 1 + SIGNS[None] * (SIGNS / np.sqrt(3.0))[:, None]
-    product = np.stack([factors[..., 1] * factors[..., 2], factors[..., 0] * factors[..., 2], factors[..., 0] * factors[..., 1]], axis=-1)
+    product = np.stack(
+        [
+            factors[..., 1] * factors[..., 2],
+            factors[..., 0] * factors[..., 2],
+            factors[..., 0] * factors[..., 1],
+        ],
+        axis=-1,
+    )
     return np.asarray(SIGNS[None] * product / 8)
 
 
@@ -75,10 +82,13 @@ class StepGuard:
             worst = state.x[self.places[int(np.flatnonzero(~np.isfinite(now))[0])]].mean(axis=0) * 1e3
             raise RunError(
                 f"An element folded at {state.time * 1e6:.2f} us, step {state.step}, near t, b, n = "
-                f"{worst[0]:.2f}, {worst[1]:.2f}, {worst[2]:.2f} mm. Use a coarser accuracy.tip_size or a lower speed."
+                f"{worst[0]:.2f}, {worst[1]:.2f}, {worst[2]:.2f} mm. "
+                "Use a coarser accuracy.tip_size or a lower speed."
             )
         # every element is held to the worst element's step at the start: simple and safe
         state.dt_next = self.model.step * min(1.0, float(np.sqrt(self.square.max() / now.max())))
         self.smallest = min(self.smallest, state.dt_next)
         if state.dt_next < SMALLEST * self.model.step:
-            raise RunError(f"Elements are crushed to under {SMALLEST:g} of their step at {state.time * 1e6:.2f} us.")
+            raise RunError(
+                f"Elements are crushed to under {SMALLEST:g} of their step at {state.time * 1e6:.2f} us."
+            )

@@ -9,14 +9,13 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.elements import lame_constants, lumped_mass
 from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import LANES
+from fem_impact.solid.hexmodes import LANES, SIGNS
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import FULL_ELASTIC, FULL_PLASTIC, ROWS, update
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-CORNER_SIGNS = np.array([(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1)] + [(-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)])
 
 
 @dataclass(slots=True)
@@ -47,7 +46,9 @@ class YieldingZone:
     work: Array
 
     @classmethod
-    def of(cls, body: str, dof: Ints, points: Array, E: float, nu: float, law: Hardening, dummy: Ints) -> YieldingZone:
+    def of(
+        cls, body: str, dof: Ints, points: Array, E: float, nu: float, law: Hardening, dummy: Ints
+    ) -> YieldingZone:
         """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes."""
         blocks = -(-len(dof) // LANES)
         filled = np.concatenate([dof, np.broadcast_to(dummy, (blocks * LANES - len(dof), 8, 3))])
@@ -112,4 +113,4 @@ class YieldingZone:
 
 def dummy_element() -> Array:
     """Return the positions (8, 3) of the filler: a cube that never moves, 2 mm wide."""
-    return CORNER_SIGNS * 1e-3
+    return SIGNS * 1e-3

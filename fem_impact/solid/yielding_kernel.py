@@ -165,7 +165,11 @@ def _add_energy(w, stress, G4):  # type: ignore[no-untyped-def]
 def _add_force(w, stress, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
     """Add one Gauss point's stress times cofactors to the force modes."""
     for l in range(LANES):
-        s0, s1, s2 = stress[l] + pressure[l], stress[l + LANES] + pressure[l], stress[l + 2 * LANES] + pressure[l]
+        s0, s1, s2 = (
+            stress[l] + pressure[l],
+            stress[l + LANES] + pressure[l],
+            stress[l + 2 * LANES] + pressure[l],
+        )
         s3, s4, s5 = stress[l + 3 * LANES], stress[l + 4 * LANES], stress[l + 5 * LANES]
         for i in range(3):
             a, b, c = (s0, s3, s5) if i == 0 else ((s3, s1, s4) if i == 1 else (s5, s4, s2))

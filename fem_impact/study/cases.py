@@ -53,10 +53,13 @@ def _sources() -> list[Path]:
     import rigid
 
     top = Path(str(fem_impact.__file__)).parent
-    packages = [Path(str(meshes.__file__)).parent, Path(str(rigid.__file__)).parent, *(top / n for n in NUMERIC)]
+    packages = [
+        Path(str(meshes.__file__)).parent,
+        Path(str(rigid.__file__)).parent,
+        *(top / n for n in NUMERIC),
+    ]
     files = [f for place in packages for f in (sorted(place.rglob("*.py")) if place.is_dir() else [place])]
     return files
-
 
 
 def stamp(scene: Scene) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.compare import Row, compare, text_table
 from fem_impact.outcome import Outcome
 from fem_impact.output import COMPARISON, make_directory, write_table, write_text
-from fem_impact.progress import Progress
-from fem_impact.scene import MEASURED_SETS, Scene, load, replace_all
+from fem_impact.progress import CaseProgress
+from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
 from fem_impact.study.cases import Case, Failure, compute, stored
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
+
+Results = dict[str, Outcome | Failure]
 
 SCHEMA = "fem-impact/study/1"
 QUICK_TIP = 0.6e-3  # m
@@ -34,7 +36,7 @@ class StudyResult:
     rows: list[dict[str, Any]]
     comparison: list[Row]
     table: str
-    failures: list[str]
+    failures: list[dict[str, str]]
 
 
 def cases_of(set_id: str, quick: bool, out: Path) -> tuple[Case, Case]:
@@ -70,7 +72,9 @@ def run_sets(
     pairs = {name: cases_of(name, quick, out) for name in chosen}
     make_directory(out)
     done = run_cases([case for pair in pairs.values() for case in pair], progress, workers, executor)
-    outcomes, failures = [], [f"{f.case.out.name}: {f.reason}" for f in done.values() if isinstance(f, Failure)]
+    failed = [f for f in done.values() if isinstance(f, Failure)]
+    failures = [{"scene_id": f.case.out.name, "error": f.reason} for f in failed]
+    outcomes = []
     for name in chosen:
         fine, coarse = (done[case.out.name] for case in pairs[name])
         if isinstance(fine, Outcome):
@@ -87,11 +91,9 @@ def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
     return banded
 
 
-def run_cases(
-    cases: list[Case], progress: Meter, workers: int, executor: Executor | None = None
-) -> dict[str, Outcome | Failure]:
+def run_cases(cases: list[Case], progress: Meter, workers: int, executor: Executor | None = None) -> Results:
     """Return the result of every case by the name of its directory; stored ones are read."""
-    results: dict[str, Outcome | Failure] = {}
+    results: Results = {}
     for case in cases:
         found = stored(case)
         if found is not None:
@@ -107,32 +109,26 @@ def run_cases(
     return results
 
 
-def _collect(
-    futures: dict[Future[Any], Case], results: dict[str, Outcome | Failure], total: int, progress: Callable[[Progress], None]
-) -> None:
+def _collect(futures: dict[Future[Any], Case], results: Results, total: int, progress: Meter) -> None:
     begun, first = time.monotonic(), len(results)
     for future in as_completed(futures):
         case = futures[future]
         results[case.out.name] = future.result() or _read(case)
         done = len(results)
         eta = (time.monotonic() - begun) / (done - first) * (total - done)
-        progress(Progress(float(done), float(total), done, _drift(results[case.out.name]), "cases done", eta, case.out.name))
+        progress(CaseProgress(case.out.name, done, total, eta))
 
 
 def _read(case: Case) -> Outcome | Failure:
     return stored(case) or Failure(case, "its result cannot be read back")
 
 
-def _drift(result: Outcome | Failure) -> float:
-    return float(result["residual_over_E_0"]) if isinstance(result, Outcome) else float("nan")
-
-
-def write_study(outcomes: list[Outcome], failures: list[str], out: Path) -> StudyResult:
+def write_study(outcomes: list[Outcome], failures: list[dict[str, str]], out: Path) -> StudyResult:
     """Write study.json and comparison.csv and return the study."""
     comparison = [row for outcome in outcomes for row in compare(outcome)]
     rows = [outcome.to_dict() for outcome in outcomes]
     document = {"schema": SCHEMA, "rows": rows, "comparison": comparison, "failures": failures}
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
-    table = "\n".join([text_table(comparison), *(f"failed: {line}" for line in failures)])
+    table = "\n".join([text_table(comparison), *(f"failed: {f['scene_id']}: {f['error']}" for f in failures)])
     return StudyResult(rows, comparison, table, failures)

@@ -49,7 +49,7 @@ class ContactBook:
     @property
     def touching(self) -> bool:
         """Return whether the last step had a compressed node."""
-        return self.step[ACTIVE] > 0
+        return bool(self.step[ACTIVE] > 0)
 
     def close_step(self, time: float) -> None:
         """Add the step's record to the sums."""

@@ -58,7 +58,11 @@ def _project(p, normal, f, rel_t, rel_b, rel_n, target, along, across):  # type:
     q_n = p[2] - old * normal[2] - (rel_n - rate * normal[2]) / across
     size = np.sqrt(q_t * q_t + q_b * q_b + q_n * q_n)
     share = min(1.0, f * pressed / size) if size > 0.0 else 0.0
-    return pressed * normal[0] + share * q_t, pressed * normal[1] + share * q_b, pressed * normal[2] + share * q_n
+    return (
+        pressed * normal[0] + share * q_t,
+        pressed * normal[1] + share * q_b,
+        pressed * normal[2] + share * q_n,
+    )
 
 
 @kernel

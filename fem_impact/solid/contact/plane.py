@@ -41,7 +41,15 @@ class PlaneContact:
         """Apply this step's impulses."""
         record = self.book.step
         touch_plane(
-            self.nodes, state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next, self.f, record
+            self.nodes,
+            state.x,
+            state.v,
+            state.force,
+            self.inverse_mass,
+            state.kick,
+            state.dt_next,
+            self.f,
+            record,
         )
         self.book.close_step(state.time)
 

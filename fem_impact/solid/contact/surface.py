@@ -53,10 +53,21 @@ class SurfaceContact:
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
-    def of(cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: float, band: float, x: Array) -> SurfaceContact:
+    def of(
+        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: float, band: float, x: Array
+    ) -> SurfaceContact:
         """Build and find each node's first quad at positions ``x``."""
         last = np.concatenate([nearest_quads(x, rod, barrier), nearest_quads(x, barrier, rod)])
-        return cls(rod, barrier, inverse_mass, f, band, last, make_points(len(last)), np.zeros((len(barrier.places), 3)))
+        return cls(
+            rod,
+            barrier,
+            inverse_mass,
+            f,
+            band,
+            last,
+            make_points(len(last)),
+            np.zeros((len(barrier.places), 3)),
+        )
 
     def resolve(self, state: State) -> None:
         """Find this step's contacts, solve their impulses, book the work."""
@@ -67,7 +78,9 @@ class SurfaceContact:
         found = rod_over_barrier(self.rod, barrier, self.normals, self.last, self.band, motion, c, record)
         count = barrier_under_rod(found, self.rod, barrier, self.normals, self.last, self.band, motion, c)
         if count:
-            record[SWEEPS] = solve(count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p)
+            record[SWEEPS] = solve(
+                count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
+            )
         book_work(count, motion, c, record)
         self.book.close_step(state.time)
 
