@@ -47,6 +47,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
 
 
 def _provenance(scene: Scene, result: SolidResult) -> Values:
+    open_ledger = _open_ledger(result)
     return {
         "fidelity": "solid",
         "scene_id": scene.id,
@@ -54,21 +55,19 @@ def _provenance(scene: Scene, result: SolidResult) -> Values:
         "scene_digest": scene.digest(),
         "created_utc": utc_now(),
         "versions": installed_versions(),
-        "finished": result.finished,
-        "stopped_because": result.reason,
+        "finished": result.finished and not open_ledger,
+        "stopped_because": open_ledger or result.reason,
         "effects": list(scene.effects),
         "validity": list(validity(scene)),
-        "warnings": [*result.warnings, *_doubts(result)],
+        "warnings": list(result.warnings),
     }
 
 
-def _doubts(result: SolidResult) -> list[str]:
+def _open_ledger(result: SolidResult) -> str:
     share = result.worst / result.E_0
     if share <= RESIDUAL_LIMIT:
-        return []
-    return [
-        f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
-    ]
+        return ""
+    return f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
 
 
 def _motion(scene: Scene, result: SolidResult) -> Values:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 # fine zone in units of the estimated contact ellipse, and how many cells it has at least
-WIDTH, DEPTH, FEWEST = 1.6, 1.6, 4.0
+WIDTH, DEPTH, FEWEST = 2.4, 1.8, 4.0
 # the block reaches this far beyond its fine zone (the springs stand for the rest)
 BLOCK_MARGIN = 6e-3
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)

@@ -18,7 +18,9 @@ from fem_impact.modes import Flight, RigidMotion
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.progress import Progress
 from fem_impact.solid.build import build
+from fem_impact.solid.doubts import doubts
 from fem_impact.solid.fields import Fields
+from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, evaluate, march
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import Frames, History, Meter, Watch
@@ -86,6 +88,8 @@ def solve(
     observers: list[Observer] = [guard, watch, *history, *frames, stop]
     if progress is not None:
         observers.append(Meter(progress, watch, model, scene.accuracy.max_time, scene.id))
+    if progress is not None and not compiled_before():
+        progress(Progress(0.0, scene.accuracy.max_time, 0, 0.0, "compiling the kernels, once, about 20 s"))
     _warm_up(model)
     wall, cpu = time.perf_counter(), time.process_time()
     try:
@@ -111,15 +115,14 @@ def solve(
         finished=stop.finished,
         reason=stop.reason,
         cost=cost,
-        warnings=tuple(w for f in frames for w in f.writer.warnings) + _doubts(model),
+        warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model),
     )
     return replace(result, vibration_check=coast(model, view, state)) if stop.finished else result
 
 
 def _warm_up(model: Model) -> None:
-    """Let the compiled parts compile on a throw-away state, so that times are times of the run."""
-    state = model.initial_state()
-    evaluate(model, state)
+    """Let the force kernels compile on a throw-away state, so that times are times of the run."""
+    evaluate(model, model.initial_state())
 
 
 def coast(model: Model, view: RodView, state: State) -> float:
@@ -164,14 +167,6 @@ def _history(scene: Scene, model: Model, view: RodView, watch: Watch, out: Path 
         return []
     writer = HistoryWriter(out / "history.csv")
     return [History(model, view, watch, writer, scene.save.history_every)]
-
-
-def _doubts(model: Model) -> tuple[str, ...]:
-    """Return what the reader should distrust about the fine zones."""
-    found = []
-    if model.book.outside:
-        found.append(f"{model.book.outside} rod nodes left the barrier's fine zone while below its surface.")
-    return tuple(found)
 
 
 def _peak_memory() -> float:

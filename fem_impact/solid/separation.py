@@ -39,7 +39,7 @@ class Separation:
         """Return True when the impact is over or the time is up."""
         if state.time >= self.limit:
             self.reason = (
-                f"reached max_time = {self.limit * 1e3:g} ms before the last separation was certain."
+                f"Reached max_time = {self.limit * 1e3:g} ms before the last separation was certain."
             )
             return True
         book = self.model.book
@@ -49,7 +49,7 @@ class Separation:
         if state.x[self.view.tip[:, 2]].min() <= top or not self._stays_away(state, top):
             return False
         self.finished = True
-        self.reason = f"the free flight of the next {HORIZON * 1e3:g} ms has no further contact."
+        self.reason = f"The free flight of the next {HORIZON * 1e3:g} ms has no further contact."
         return True
 
     def _top(self, state: State) -> float:

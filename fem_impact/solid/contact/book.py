@@ -15,6 +15,8 @@ RECORD = 8
 
 # releases shorter than this are one contact: a few passages of a wave across the tip
 MERGE_GAP = 10e-6
+# below this share of the largest impulse of a step, a touch neither starts nor prolongs a contact
+FAINT = 1e-3
 
 
 @dataclass(slots=True)
@@ -43,6 +45,7 @@ class ContactBook:
     closing: float = 0.0
     impulse: Array = field(default_factory=lambda: np.zeros(3))
     intervals: list[Interval] = field(default_factory=list)
+    largest: float = 0.0
     last_touch: float = -np.inf
     outside: int = 0
 
@@ -53,17 +56,23 @@ class ContactBook:
 
     def close_step(self, time: float) -> None:
         """Add the step's record to the sums."""
-        self.friction += self.step[FRICTION]
-        self.closing += self.step[CLOSING]
+        self.friction += float(self.step[FRICTION])
+        self.closing += float(self.step[CLOSING])
         self.outside = max(self.outside, int(self.step[OUTSIDE]))
         if self.touching:
             self._touch(time)
 
     def _touch(self, time: float) -> None:
-        if time - self.last_touch > MERGE_GAP:
+        self.last_touch = time
+        self.impulse += self.step[[IMPULSE_T, IMPULSE_N, ARM]]
+        self.largest = max(self.largest, float(self.step[IMPULSE_N]))
+        if self.step[IMPULSE_N] > FAINT * self.largest:
+            self._prolong(time)
+
+    def _prolong(self, time: float) -> None:
+        if not self.intervals or time - self.intervals[-1].end > MERGE_GAP:
             self.intervals.append(Interval(time, time))
         now = self.intervals[-1]
-        now.end = self.last_touch = time
-        now.impulse_n += 2 * self.step[IMPULSE_N]
-        now.impulse_t += 2 * self.step[IMPULSE_T]
-        self.impulse += self.step[[IMPULSE_T, IMPULSE_N, ARM]]
+        now.end = time
+        now.impulse_n += 2 * float(self.step[IMPULSE_N])
+        now.impulse_t += 2 * float(self.step[IMPULSE_T])

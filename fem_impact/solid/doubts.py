@@ -1,0 +1,39 @@
+"""What a reader should distrust about a run: zones that proved too small."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from fem_impact.solid.model import Model
+from fem_impact.solid.yielding import YieldingZone
+
+PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
+
+
+def doubts(model: Model) -> tuple[str, ...]:
+    """Return sentences on contact and yielding that left the fine zones."""
+    found = [_at_border(model, zone) for zone in model.zones]
+    if model.book.outside:
+        found.append(
+            f"{model.book.outside} rod nodes left the fine zone of the barrier while below its surface: "
+            "friction and indentation there are missing."
+        )
+    return tuple(sentence for sentence in found if sentence)
+
+
+def border_strain(model: Model, zone: YieldingZone) -> float:
+    """Return the largest mean plastic strain of a yielding element that has a coarser, linear neighbour."""
+    g = model.geometry
+    mesh = g.rod.mesh if zone.body == "rod" or g.barrier is None else g.barrier
+    border = mesh.is_hanging[mesh.cells[mesh.level == g.levels]].any(axis=1)
+    return float(np.max(zone.plastic_strain(), where=border, initial=0.0))
+
+
+def _at_border(model: Model, zone: YieldingZone) -> str:
+    strain = border_strain(model, zone)
+    if strain <= PROOF_STRAIN:
+        return ""
+    return (
+        f"Yielding reached the edge of the {zone.body}'s fine zone (plastic strain {strain:.3f}): "
+        "beyond it the material was taken as elastic."
+    )
