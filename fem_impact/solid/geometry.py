@@ -18,8 +18,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-# fine zone in units of the estimated contact ellipse, and how many cells it has at least
-WIDTH, DEPTH, FEWEST = 2.4, 1.8, 4.0
+# half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
+# geometric mean), and how many cells it has at least
+ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 1.6, 4.0
 # the block reaches this far beyond its fine zone (the springs stand for the rest)
 BLOCK_MARGIN = 6e-3
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)
@@ -58,7 +59,7 @@ def levels_of(scene: Scene) -> int:
 def half_widths(size: ContactEstimate, h: float) -> tuple[float, float, float]:
     """Return the fine zone's extents along t (each side), b and n, m."""
     depth = DEPTH * np.sqrt(size.a_t * size.a_b)
-    return max(WIDTH * size.a_t, FEWEST * h), max(WIDTH * size.a_b, FEWEST * h), max(depth, FEWEST * h)
+    return max(ALONG * size.a_t, FEWEST * h), max(AROUND * size.a_b, FEWEST * h), max(depth, FEWEST * h)
 
 
 def build_geometry(scene: Scene, gap: float, meshed_barrier: bool) -> Geometry:

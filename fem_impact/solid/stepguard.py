@@ -63,7 +63,7 @@ class StepGuard:
     smallest: float = field(init=False)
 
     def __post_init__(self) -> None:
-        zones = [z.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: z.count] for z in self.model.zones]
+        zones = [zone.places() for zone in self.model.zones]
         self.places = np.concatenate(zones) if zones else np.zeros((0, 8, 3), dtype=np.int64)
         self.square = gradient_squares(self.model.start[0][self.places])
         self.smallest = self.model.step

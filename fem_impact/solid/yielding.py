@@ -7,15 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.elements import lame_constants, lumped_mass
+from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import LANES, SIGNS
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import FULL_ELASTIC, FULL_PLASTIC, ROWS, update
+from fem_impact.solid.yielding_kernel import CORNERS, FULL_ELASTIC, FULL_PLASTIC, ROWS, Blocks, update
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+DUMMY_EDGE = 2e-3  # m
 
 
 @dataclass(slots=True)
@@ -26,23 +28,17 @@ class YieldingZone:
     ----------
     body : ``rod`` or ``barrier``, names the accounts
     count : number of true elements
-    dof : (blocks, 3, 8, LANES) int64
-    stress : (blocks, 8, 6 * LANES) deviator, Pa; strain, flow : (blocks, 8, LANES)
-    pressure, volume : (blocks, LANES), Pa (tension positive), m3
+    blocks : their places and state
+    G, K : shear and bulk modulus, Pa
+    law : yield stress (Pa), slope and exponent of the hardening law
     """
 
     body: str
     count: int
-    dof: Ints
+    blocks: Blocks
     G: float
     K: float
     law: Array
-    stress: Array
-    strain: Array
-    flow: Array
-    pressure: Array
-    volume: Array
-    scratch: Array
     work: Array
 
     @classmethod
@@ -52,46 +48,29 @@ class YieldingZone:
         """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes."""
         blocks = -(-len(dof) // LANES)
         filled = np.concatenate([dof, np.broadcast_to(dummy, (blocks * LANES - len(dof), 8, 3))])
-        volume = np.full(blocks * LANES, 8.0e-9)
-        cells = np.arange(8 * len(dof)).reshape(-1, 8)
-        volume[: len(dof)] = lumped_mass(points.reshape(-1, 3), cells, 1.0).sum(axis=1)
+        weight = np.full((blocks * LANES, 8), DUMMY_EDGE**3 / 8)
+        weight[: len(dof)] = gauss_volumes(points)
         lame, G = lame_constants(E, nu)
-        strain = np.zeros((blocks, 8, LANES))
-        return cls(
-            body=body,
-            count=len(dof),
+        state = Blocks(
             dof=np.ascontiguousarray(filled.reshape(blocks, LANES, 8, 3).transpose(0, 3, 2, 1)),
-            G=G,
-            K=lame + 2 * G / 3,
-            law=np.array([law.yield_stress, law.slope, law.exponent]),
             stress=np.zeros((blocks, 8, 6 * LANES)),
-            strain=strain,
-            flow=np.full_like(strain, law.yield_stress),
+            strain=np.zeros((blocks, 8, LANES)),
+            flow=np.full((blocks, 8, LANES), law.yield_stress),
+            weight=np.ascontiguousarray(weight.reshape(blocks, LANES, 8).transpose(0, 2, 1)),
             pressure=np.zeros((blocks, LANES)),
-            volume=volume.reshape(blocks, LANES),
+            volume=weight.sum(axis=1).reshape(blocks, LANES),
             scratch=np.zeros(ROWS * LANES),
-            work=np.zeros(2),
         )
+        constants = np.array([law.yield_stress, law.slope, law.exponent])
+        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, np.zeros(2))
 
     def add_force(self, state: State) -> None:
         """Advance stresses to the present positions and subtract the nodal forces."""
-        update(
-            state.x,
-            state.v,
-            state.dt,
-            state.force,
-            self.dof,
-            self.stress,
-            self.strain,
-            self.flow,
-            self.pressure,
-            self.volume,
-            self.scratch,
-            self.G,
-            self.K,
-            self.law,
-            self.work,
-        )
+        update(state.x, state.v, state.dt, state.force, self.blocks, self.G, self.K, self.law, self.work)
+
+    def places(self) -> Ints:
+        """Return the unknowns (count, 8, 3) of the elements' nodes."""
+        return np.asarray(self.blocks.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: self.count])
 
     def accounts(self, state: State) -> Accounts:
         """Return elastic energy and plastic work."""
@@ -102,15 +81,26 @@ class YieldingZone:
 
     def plastic_strain(self) -> Array:
         """Return the mean equivalent plastic strain (count,) of each element."""
-        return np.asarray(self.strain.mean(axis=1).ravel()[: self.count])
+        return np.asarray(self.blocks.strain.mean(axis=1).ravel()[: self.count])
 
     def mises(self) -> Array:
         """Return the mean von Mises stress (count,), Pa, of each element."""
-        s = self.stress.reshape(len(self.dof), 8, 6, LANES)
+        s = self.blocks.stress.reshape(-1, 8, 6, LANES)
         square = 1.5 * (s[:, :, :3] ** 2).sum(axis=2) + 3.0 * (s[:, :, 3:] ** 2).sum(axis=2)
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
 
 
 def dummy_element() -> Array:
-    """Return the positions (8, 3) of the filler: a cube that never moves, 2 mm wide."""
-    return SIGNS * 1e-3
+    """Return the positions (8, 3) of the filler: a cube that never moves."""
+    return 0.5 * DUMMY_EDGE * SIGNS
+
+
+def gauss_volumes(x: Array) -> Array:
+    """Return the volumes (m, 8), m3, that the Gauss points stand for, of elements (m, 8, 3).
+
+    The order of the points is that of the kernel (xi fastest).
+    """
+    factor = 1 + SIGNS[None] * CORNERS[:, None]
+    product = [factor[..., j] * factor[..., k] for j, k in ((1, 2), (0, 2), (0, 1))]
+    gradient = SIGNS[None] * np.stack(product, axis=-1) / 8
+    return np.asarray(np.linalg.det(np.einsum("qai,maj->mqij", gradient, x)))

@@ -3,13 +3,19 @@
 Per step and Gauss point: gradient of the displacement increment referred to the middle of the step,
 Jaumann-rotated deviatoric stress, radial return; the pressure comes from the element's exact volume
 (mean dilatation), so that one pressure per element replaces eight.
+
+Stresses are Kirchhoff's and every integral runs over the reference volume: the deviator works on weights
+that never change and the pressure p = K ln(J) / J is the exact derivative of K ln(J)^2 V_0 / 2. With
+Cauchy stresses on current volumes elastic energy would leak by stress over modulus, 1e-4 of E_0 here.
 """
 
 from __future__ import annotations
 
 from math import sqrt
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem_impact.solid.hexmodes import (
     LANES,
@@ -21,6 +27,9 @@ from fem_impact.solid.hexmodes import (
     slope,
 )
 from fem_impact.solid.kernels import inlined, kernel
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
 POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, ENERGY, ROWS = 0, 21, 42, 63, 72, 78, 79, 80, 81
@@ -131,7 +140,7 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
 
 
 @kernel
-def _return_map(w, stress, flow, strain, G3, law):  # type: ignore[no-untyped-def]
+def _return_map(w, stress, weight, flow, strain, G3, law):  # type: ignore[no-untyped-def]
     """Bring yielding points back to the flow stress; return the plastic work done, J.
 
     The work uses the mean of the old and new stress, as the energy balance of the step does.
@@ -146,31 +155,29 @@ def _return_map(w, stress, flow, strain, G3, law):  # type: ignore[no-untyped-de
                 double = 1.0 if i < 3 else 2.0
                 along += double * w[(ROTATED + i) * LANES + l] * stress[i * LANES + l]
                 stress[i * LANES + l] *= new / q
-            work += 0.5 * (new + 1.5 * along / q) * dp * w[DET * LANES + l]
+            work += 0.5 * (new + 1.5 * along / q) * dp * weight[l]
             strain[l] += dp
             flow[l] = new
     return work
 
 
 @kernel
-def _add_energy(w, stress, G4):  # type: ignore[no-untyped-def]
+def _add_energy(w, stress, weight, G4):  # type: ignore[no-untyped-def]
     """Add one Gauss point's shear energy to each lane's sum, J."""
     for l in range(LANES):
         square = stress[l] ** 2 + stress[l + LANES] ** 2 + stress[l + 2 * LANES] ** 2
         shear = stress[l + 3 * LANES] ** 2 + stress[l + 4 * LANES] ** 2 + stress[l + 5 * LANES] ** 2
-        w[ENERGY * LANES + l] += (square + 2.0 * shear) * w[DET * LANES + l] / G4
+        w[ENERGY * LANES + l] += (square + 2.0 * shear) * weight[l] / G4
 
 
 @kernel
-def _add_force(w, stress, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
+def _add_force(w, stress, weight, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
     """Add one Gauss point's stress times cofactors to the force modes."""
     for l in range(LANES):
-        s0, s1, s2 = (
-            stress[l] + pressure[l],
-            stress[l + LANES] + pressure[l],
-            stress[l + 2 * LANES] + pressure[l],
-        )
-        s3, s4, s5 = stress[l + 3 * LANES], stress[l + 4 * LANES], stress[l + 5 * LANES]
+        share, p = weight[l] / w[DET * LANES + l], pressure[l]
+        s0, s1, s2 = share * stress[l] + p, share * stress[l + LANES] + p, share * stress[l + 2 * LANES] + p
+        s3, s4 = share * stress[l + 3 * LANES], share * stress[l + 4 * LANES]
+        s5 = share * stress[l + 5 * LANES]
         for i in range(3):
             a, b, c = (s0, s3, s5) if i == 0 else ((s3, s1, s4) if i == 1 else (s5, s4, s2))
             k = COFACTOR * LANES + l
@@ -189,36 +196,57 @@ def _add_force(w, stress, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
 
 @kernel
 def _update_pressure(w, volume, pressure, K):  # type: ignore[no-untyped-def]
-    """Advance the element pressures by the volume change; start each lane's elastic energy, J."""
+    """Set the element pressures from the volume ratio; start each lane's elastic energy, J."""
     for l in range(LANES):
-        new = hex_volume(w, POSITION, l)
-        p = pressure[l] + 2.0 * K * (new - volume[l]) / (new + volume[l])
-        pressure[l] = p
-        volume[l] = new
-        w[ENERGY * LANES + l] = 0.5 * p * p * new / K
+        J = hex_volume(w, POSITION, l) / volume[l]
+        swelling = np.log(J)
+        pressure[l] = K * swelling / J
+        w[ENERGY * LANES + l] = 0.5 * K * swelling * swelling * volume[l]
+
+
+class Blocks(NamedTuple):
+    """State of all elements in blocks of ``LANES`` (a named tuple, so that compiled code reads it).
+
+    Attributes
+    ----------
+    dof : (blocks, 3, 8, LANES) int64
+    stress : (blocks, 8, 6 * LANES) Kirchhoff deviator, Pa
+    strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress in Pa
+    weight : (blocks, 8, LANES) reference volume of each Gauss point, m3
+    pressure, volume : (blocks, LANES), Pa (tension positive), reference m3
+    scratch : (ROWS * LANES,)
+    """
+
+    dof: Ints
+    stress: Array
+    strain: Array
+    flow: Array
+    weight: Array
+    pressure: Array
+    volume: Array
+    scratch: Array
 
 
 @kernel
-def update(x, v, dt, force, dof, stress, strain, flow, pressure, volume, w, G, K, law, work):  # type: ignore[no-untyped-def]
-    """Advance all blocks by the increment ``dt v`` to ``x`` and subtract their nodal forces.
+def update(x, v, dt, force, z, G, K, law, work):  # type: ignore[no-untyped-def]
+    """Advance all blocks ``z`` by the increment ``dt v`` to ``x`` and subtract their nodal forces.
 
-    Shapes: dof (blocks, 3, 8, LANES), stress (blocks, 8, 6 * LANES) deviator, strain and flow
-    (blocks, 8, LANES), pressure and volume (blocks, LANES). ``work[0]`` gains the plastic work,
-    ``work[1]`` is set to the elastic energy, J.
+    ``work[0]`` gains the plastic work, ``work[1]`` is set to the elastic energy, J.
     """
-    elastic = 0.0
-    for b in range(dof.shape[0]):
-        gather_modes(x, 1.0, dof[b], w[POSITION * LANES :])
-        gather_modes(v, dt, dof[b], w[INCREMENT * LANES :])
+    elastic, w = 0.0, z.scratch
+    for b in range(z.dof.shape[0]):
+        gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
+        gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
         w[FORCE * LANES : (FORCE + 21) * LANES] = 0.0
-        _update_pressure(w, volume[b], pressure[b], K)
+        _update_pressure(w, z.volume[b], z.pressure[b], K)
         for g in range(8):
             X, Y, Z = CORNERS[g, 0], CORNERS[g, 1], CORNERS[g, 2]
-            _trial(w, stress[b, g], 2.0 * G, X, Y, Z)
-            work[FULL_PLASTIC] += _return_map(w, stress[b, g], flow[b, g], strain[b, g], 3.0 * G, law)
-            _add_energy(w, stress[b, g], 4.0 * G)
-            _add_force(w, stress[b, g], pressure[b], X, Y, Z)
-        scatter_modes(w[FORCE * LANES :], dof[b], force)
+            stress, weight = z.stress[b, g], z.weight[b, g]
+            _trial(w, stress, 2.0 * G, X, Y, Z)
+            work[FULL_PLASTIC] += _return_map(w, stress, weight, z.flow[b, g], z.strain[b, g], 3.0 * G, law)
+            _add_energy(w, stress, weight, 4.0 * G)
+            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)
+        scatter_modes(w[FORCE * LANES :], z.dof[b], force)
         for l in range(LANES):
             elastic += w[ENERGY * LANES + l]
     work[FULL_ELASTIC] = elastic
