@@ -1,0 +1,51 @@
+"""Scenes and coarse models that the solver's tests share; a run is made once a session."""
+
+from dataclasses import replace
+from functools import cache
+from math import pi
+
+from fem_impact.effects import specify
+from fem_impact.scene import load
+from fem_impact.solid.build import build
+from fem_impact.solid.run import solve
+
+MACHINED = 0.57
+
+
+def scene(
+    *effects,
+    length=0.24,
+    v_n=-1.5,
+    v_t=-1.5,
+    f=MACHINED,
+    tip=0.8e-3,
+    across=6,
+    angle=pi / 4,
+    omega=0.0,
+    max_time=2.5e-3,
+):
+    """A rod with a 3 mm edge on a mesh fit for tests."""
+    base = load("t5b")
+    return replace(
+        base,
+        id="test",
+        measured=None,
+        projectile=replace(base.projectile, length=length),
+        surface=replace(base.surface, state="custom", friction=f, friction_low=f, friction_high=f),
+        impact=replace(base.impact, angle=angle, v_n=v_n, v_t=v_t, omega=omega),
+        effects=effects,
+        accuracy=replace(base.accuracy, tip_size=tip, across=across, max_time=max_time),
+        save=replace(base.save, frames=0),
+    )
+
+
+def model(*effects, **changes):
+    """A fresh model: its items hold what moves."""
+    stated = scene(*effects, **changes)
+    return build(stated, specify(stated))
+
+
+@cache
+def run(*effects, **changes):
+    """The end of a run; read only."""
+    return solve(scene(*effects, **changes))

@@ -1,0 +1,124 @@
+"""Fast products against assembled matrices, and ties that do no work."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+import solid_shapes as shapes
+
+import meshes
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.solid.slices import SliceOperator
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+
+C = isotropic_stiffness(shapes.E, shapes.NU)
+
+
+def _slices(across=6, length=30e-3):
+    rod = meshes.rod(np.array([[0.0, 0.0], [9.5e-3, 0.0]]), length, across, nose=False)
+    section = np.full(len(rod.mesh.points), -1)
+    section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
+    first = rod.mesh.cells[rod.body_cells[:, 0]]
+    K = element_stiffness(rod.mesh.points, rod.mesh.cells, C, "incompatible")
+    operator = SliceOperator.of(K[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
+    return rod, K, operator
+
+
+def test_slices_are_the_assembled_matrix():
+    rod, K, operator = _slices()
+    n_section, layers = rod.body_nodes.shape
+    assert layers > 5
+    places = np.empty((len(rod.mesh.points), 3), int)
+    places[rod.body_nodes] = (
+        np.arange(3 * n_section * layers).reshape(3, n_section, layers).transpose(1, 2, 0)
+    )
+    whole = assemble(K, rod.mesh.cells, tie_operator(rod.mesh.tie, places, places.size))
+    d = np.random.default_rng(1).normal(size=(3 * n_section, layers))
+    y = np.full_like(d, np.nan)
+    operator.apply(d, y)
+    exact = (whole @ d.ravel()).reshape(d.shape)
+    assert abs(y - exact).max() < 1e-12 * abs(exact).max()
+
+
+def test_blocks_are_the_sparse_matrix():
+    mesh, points = shapes.refined_patch(seed=2)
+    places = np.random.default_rng(3).permutation(3 * len(points)).reshape(-1, 3)
+    some = mesh.cells[::3]
+    T = tie_operator(mesh.tie, places, places.size)
+    K = assemble(element_stiffness(points, some, C, "bbar"), some, T)
+    product = NodeProduct.of(K, places[~mesh.is_hanging])
+    x = np.random.default_rng(4).normal(size=places.size)
+    y = np.ones(places.size)
+    product.add_to(x, y)
+    assert len(product.places) < (~mesh.is_hanging).sum()
+    assert abs(y - 1 - K @ x).max() < 1e-12 * abs(K @ x).max()
+
+
+def _hanging(seed=5):
+    mesh, points = shapes.refined_patch(seed)
+    places = np.random.default_rng(seed).permutation(3 * len(points)).reshape(-1, 3)
+    assert mesh.is_hanging.sum() > 20
+    return mesh, points, places, Hanging.of([(mesh.tie, places)])
+
+
+def test_ties_do_no_work():
+    mesh, _, places, ties = _hanging()
+    rng = np.random.default_rng(6)
+    v, f = rng.normal(size=(2, places.size))
+    ties.expand(v)
+    given = v @ f
+    ties.collect(f)
+    assert v @ f == pytest.approx(given, rel=1e-12)
+    assert abs(f[places[mesh.is_hanging]]).max() == 0.0
+
+
+def test_ties_keep_force_and_moment():
+    _, points, places, ties = _hanging()
+    f = np.random.default_rng(7).normal(size=places.size)
+    force, moment = f[places].sum(axis=0), np.cross(points, f[places]).sum(axis=0)
+    ties.collect(f)
+    assert f[places].sum(axis=0) == pytest.approx(force, rel=1e-12)
+    assert np.cross(points, f[places]).sum(axis=0) == pytest.approx(moment, rel=1e-10)
+
+
+def test_ties_follow_a_linear_field():
+    mesh, points, places, ties = _hanging()
+    H = np.random.default_rng(8).normal(size=(3, 3))
+    v = np.empty(places.size)
+    v[places] = points @ H
+    v[places[mesh.is_hanging]] = np.nan
+    ties.expand(v)
+    assert v[places] == pytest.approx(points @ H, rel=1e-12)
+
+
+def test_two_bodies_share_one_tie_list():
+    mesh, _, places, one = _hanging()
+    two = Hanging.of([(mesh.tie, places), (mesh.tie, places + places.size)])
+    v = np.random.default_rng(9).normal(size=places.size)
+    both = np.concatenate([v, 2 * v])
+    one.expand(v)
+    two.expand(both)
+    assert both == pytest.approx(np.concatenate([v, 2 * v]), rel=1e-14)
+
+
+def test_tied_masses_add_up_and_stand_on_free_nodes():
+    mesh, points = shapes.refined_patch(seed=10)
+    places = np.arange(3 * len(points)).reshape(-1, 3)
+    T = tie_operator(mesh.tie, places, places.size)
+    mass = assemble_mass(lumped_mass(points, mesh.cells, shapes.RHO), mesh.cells, T)
+    exact = shapes.RHO * sum(shapes.volume(points[c]) for c in mesh.cells)
+    assert mass[places].sum(axis=0) == pytest.approx([exact] * 3, rel=1e-12)
+    assert (mass[places[mesh.is_hanging]] == 0).all()
+    assert (mass[places[~mesh.is_hanging]] > 0).all()
+
+
+def test_rigid_motion_of_a_tied_assembly_is_free():
+    mesh, points = shapes.refined_patch(seed=11)
+    places = np.arange(3 * len(points)).reshape(-1, 3)
+    K = assemble(
+        element_stiffness(points, mesh.cells, C, "incompatible"),
+        mesh.cells,
+        tie_operator(mesh.tie, places, places.size),
+    )
+    assert isinstance(K, sp.csr_matrix)
+    u = np.cross([1.0, -2.0, 0.5], points)
+    assert abs(K @ u.ravel()).max() < 1e-11 * abs(K).max() * abs(u).max()

@@ -1,0 +1,117 @@
+"""Contact on the rigid plane, node by node: arrival, cone, no pull, and the work that is booked."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from fem_impact.solid.contact.book import ACTIVE, ARM, CLOSING, FRICTION, IMPULSE_N, IMPULSE_T
+from fem_impact.solid.contact.book import MERGE_GAP, RECORD, ContactBook
+from fem_impact.solid.contact.plane import PlaneContact, touch_plane
+from fem_impact.solid.state import State
+
+DT = 2e-8
+
+
+def _swarm(seed, count=40, kick=DT):
+    rng = np.random.default_rng(seed)
+    nodes = rng.permutation(3 * count).reshape(-1, 3)
+    x, v, force = rng.normal(size=(3, 3 * count)) * np.array([[1e-3], [2.0], [300.0]])
+    x[nodes[:, 2]] = rng.uniform(-1e-8, 6e-8, count)
+    mass = np.empty(3 * count)
+    mass[nodes] = rng.uniform(1e-6, 1e-5, (count, 1))
+    inverse = 1 / mass
+    mirror = nodes[: count // 4, 1]
+    inverse[mirror], v[mirror], force[mirror] = 0.0, 0.0, 0.0
+    before = v - kick * inverse * force
+    return nodes, x, v, force, inverse, mass, before
+
+
+@given(st.integers(0, 10**6), st.sampled_from([0.0, 0.3, 1.5]))
+@settings(max_examples=40, deadline=None)
+def test_every_node_obeys_signorini_and_coulomb(seed, f):
+    nodes, x, v, force, inverse, mass, _ = _swarm(seed)
+    kicked, record = v.copy(), np.ones(RECORD)
+    touch_plane(nodes, x, v, force, inverse, DT, DT, f, record)
+    t, b, n = nodes.T
+    p = (v - kicked) * mass
+    p_n, p_t = p[n], np.hypot(p[t], p[b])
+    held = p_n > 0
+    assert (p_n >= 0).all()
+    assert held.any() and not held.all()
+    assert (x[n] + DT * v[n])[held] == pytest.approx(np.minimum(x[n], 0.0)[held], abs=1e-20)
+    assert ((x[n] + DT * kicked[n])[~held] >= np.minimum(x[n], 0)[~held]).all()
+    assert np.array_equal(v[nodes[~held]], kicked[nodes[~held]])
+    assert (p_t <= f * p_n * (1 + 1e-12)).all()
+    slip = np.hypot(v[t], v[b])
+    slides = held & (slip > 1e-9)
+    assert p_t[slides] == pytest.approx(f * p_n[slides], rel=1e-9)
+    assert (p[t] * v[t] + p[b] * v[b] <= 1e-18).all()
+    assert record[[IMPULSE_T, IMPULSE_N]] == pytest.approx([p[t].sum(), p_n.sum()], rel=1e-9, abs=1e-18)
+    assert record[ARM] == pytest.approx((x[t] * p_n - x[n] * p[t]).sum(), rel=1e-9, abs=1e-20)
+    assert record[ACTIVE] == held.sum()
+
+
+@given(st.integers(0, 10**6))
+@settings(max_examples=20, deadline=None)
+def test_booked_work_is_the_energy_that_is_missing(seed):
+    """With forces: kinetic energy gained = work of the forces - friction - closing, all with mean velocities."""
+    nodes, x, v, force, inverse, mass, before = _swarm(seed)
+    record = np.zeros(RECORD)
+    touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4, record)
+    gained = 0.5 * (mass * (v**2 - before**2)).sum()
+    worked = 0.5 * DT * (force * (v + before)).sum()
+    assert record[FRICTION] > 0
+    assert gained - worked == pytest.approx(-record[FRICTION] - record[CLOSING], rel=1e-9)
+
+
+def test_without_forces_nothing_is_created():
+    nodes, x, v, force, inverse, mass, _ = _swarm(1, count=200)
+    force[:] = 0.0
+    before, record = v.copy(), np.zeros(RECORD)
+    touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4, record)
+    lost = 0.5 * (mass * (before**2 - v**2)).sum()
+    assert lost == pytest.approx(record[FRICTION] + record[CLOSING], rel=1e-12)
+    assert min(record[FRICTION], record[CLOSING]) > 0
+
+
+@pytest.mark.parametrize(("f", "sticks"), [(0.2, False), (0.49, False), (0.51, True), (2.0, True)])
+def test_one_node_sticks_or_slips(f, sticks):
+    state = State.at_rest(np.zeros(3))
+    state.v[:] = [-1.0, 0.0, -2.0]
+    state.kick = state.dt_next = DT
+    contact = PlaneContact(np.array([[0, 1, 2]]), np.full(3, 1e6), f)
+    contact.resolve(state)
+    assert state.v == pytest.approx([0.0 if sticks else -1.0 + 2 * f, 0.0, 0.0], abs=1e-15)
+    assert contact.book.intervals[0].impulse_n == pytest.approx(2 * 2e-6)  # both halves
+    assert contact.book.intervals[0].impulse_t == pytest.approx(2 * min(f * 2, 1) * 1e-6)
+    assert contact.accounts(state)["closing"] == pytest.approx(2e-6)
+
+
+def test_friction_turns_in_the_plane():
+    nodes, v = np.array([[0, 1, 2]]), np.array([3.0, 4.0, -10.0])
+    touch_plane(nodes, np.zeros(3), v, np.zeros(3), np.ones(3), DT, DT, 0.1, np.zeros(RECORD))
+    assert v == pytest.approx([3.0 * 0.8, 4.0 * 0.8, 0.0])
+
+
+def _touches(book, times):
+    for time in times:
+        book.step[:] = 0.0
+        book.step[[IMPULSE_N, IMPULSE_T, ACTIVE, CLOSING]] = 1.0, 0.5, 2.0, 0.25
+        book.close_step(time)
+
+
+def test_short_releases_are_one_contact():
+    book = ContactBook()
+    _touches(book, [0.0, 1e-6, 1e-6 + 0.9 * MERGE_GAP])
+    _touches(book, [1e-4, 1.01e-4])
+    assert [(i.start, i.end) for i in book.intervals] == [(0.0, 1e-6 + 0.9 * MERGE_GAP), (1e-4, 1.01e-4)]
+    assert [i.impulse_n for i in book.intervals] == [6.0, 4.0]
+    assert [i.impulse_t for i in book.intervals] == [3.0, 2.0]
+    assert book.impulse == pytest.approx([2.5, 5.0, 0.0])
+    assert book.closing == pytest.approx(1.25)
+    assert book.touching
+    book.step[:] = 0.0
+    book.close_step(2e-4)
+    assert not book.touching
+    assert len(book.intervals) == 2

@@ -1,0 +1,244 @@
+"""The yielding zone: B-bar stiffness at rest, objectivity, closed forms, work, and the flow curve."""
+
+import numpy as np
+import pytest
+import solid_shapes as shapes
+
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
+from fem_impact.solid.hardening import linear_hardening, power_hardening
+from fem_impact.solid.hexmodes import LANES
+from fem_impact.solid.state import State
+from fem_impact.solid.yielding import YieldingZone, dummy_element
+
+E, NU = shapes.E, shapes.NU
+LAME, G = lame_constants(E, NU)
+BULK = LAME + 2 * G / 3
+HARD = linear_hardening(1e12, 0.0)  # never yields
+DT = 1e-8
+
+
+class Rig:
+    """A yielding zone whose nodes are led by hand."""
+
+    def __init__(self, points, cells, law=HARD):
+        n = len(points)
+        self.places = np.arange(3 * n).reshape(-1, 3)
+        self.dummy = 3 * n + np.arange(24).reshape(8, 3)
+        x = np.concatenate([points.ravel(), dummy_element().ravel()])
+        self.state = State.at_rest(x)
+        self.zone = YieldingZone.of("rod", self.places[cells], points[cells], E, NU, law, self.dummy)
+        self.state.dt = DT
+        self.work = 0.0
+        self.force = np.zeros((n, 3))
+
+    @property
+    def points(self):
+        return self.state.x[self.places]
+
+    def lead(self, points):
+        """Move the nodes to new places and return the nodal forces of the elements on them."""
+        step = (points - self.points).ravel()
+        self.state.v[: step.size] = step / DT
+        self.state.x[: step.size] += step
+        self.state.force[:] = 0.0
+        self.zone.add_force(self.state)
+        now = -self.state.force[self.places]
+        self.work += 0.5 * float(((self.force + now) * step.reshape(-1, 3)).sum())
+        self.force = now
+        return now
+
+    def stress(self):
+        """Kirchhoff deviators of the true elements: (m, 8 points, 6)."""
+        s = self.zone.blocks.stress.reshape(-1, 8, 6, LANES).transpose(0, 3, 1, 2)
+        return s.reshape(-1, 8, 6)[: self.zone.count]
+
+    def flat(self, name):
+        """Point values (m, 8) of the true elements."""
+        return getattr(self.zone.blocks, name).transpose(0, 2, 1).reshape(-1, 8)[: self.zone.count]
+
+
+def mises(s):
+    return np.sqrt(1.5 * (s[..., :3] ** 2).sum(axis=-1) + 3 * (s[..., 3:] ** 2).sum(axis=-1))
+
+
+def turn(axis, angle):
+    k = np.asarray(axis) / np.linalg.norm(axis)
+    K = np.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
+
+
+@pytest.mark.parametrize("counts", [(1, 1, 1), (5, 1, 1), (3, 3, 2)])
+def test_small_increments_see_the_bbar_stiffness(counts):
+    points, cells = shapes.distorted(counts, 0.2, seed=1)
+    rig = Rig(points, cells)
+    u = 1e-9 * np.random.default_rng(2).normal(size=points.shape) * 1e-3
+    force = rig.lead(points + u)
+    K = shapes.dense(element_stiffness(points, cells, isotropic_stiffness(E, NU), "bbar"), cells)
+    exact = (K @ u.ravel()).reshape(-1, 3)
+    assert abs(force - exact).max() < 1e-5 * abs(exact).max()
+    assert rig.zone.work[1] == pytest.approx(0.5 * u.ravel() @ K @ u.ravel(), rel=1e-5)
+
+
+def test_volumes_are_exact():
+    points, cells = shapes.distorted((3, 2, 3), 0.2, seed=3)
+    rig = Rig(points, cells)
+    before = np.array([shapes.volume(points[c]) for c in cells])
+    assert rig.zone.blocks.volume.ravel()[: len(cells)] == pytest.approx(before, rel=1e-12)
+    assert rig.flat("weight").sum(axis=1) == pytest.approx(before, rel=1e-12)
+    moved = shapes.distorted((3, 2, 3), 0.25, seed=4)[0]
+    rig.lead(moved)
+    J = np.array([shapes.volume(moved[c]) for c in cells]) / before
+    assert abs(J - 1).max() > 0.1
+    assert rig.zone.blocks.pressure.ravel()[: len(cells)] == pytest.approx(BULK * np.log(J) / J, rel=1e-9)
+
+
+@pytest.mark.parametrize("axis", [(0, 1, 0), (1, 2, -0.5)])
+def test_turning_an_unstressed_element_leaves_it_unstressed(axis):
+    points, cells = shapes.distorted((1, 1, 1), 0.2, seed=5)
+    rig = Rig(points, cells)
+    for k in range(1, 101):
+        rig.lead(points @ turn(axis, 0.01 * k).T)
+    # one step of 0.01 rad without reference to its middle would leave 2 G 5e-5
+    assert mises(rig.stress()).max() < 2 * G * 1e-6
+    assert abs(rig.zone.blocks.pressure.ravel()[0]) < 1e-12 * BULK
+
+
+def test_turning_a_stressed_element_turns_its_stress_with_it():
+    points, cells = shapes.grid((1, 1, 1), 1e-3)
+    rig = Rig(points, cells)
+    H = np.array([[1.0, 0.4, 0.0], [0.0, -0.3, 0.2], [0.5, 0.0, 0.2]]) * 1e-3
+    stretched = points @ (np.eye(3) + H).T
+    before = rig.lead(stretched).copy()
+    size, energy = mises(rig.stress()).copy(), rig.zone.work[1]
+    axis, angle, steps = (1.0, 2.0, -0.5), np.pi / 2, 6000
+    for k in range(1, steps + 1):
+        after = rig.lead(stretched @ turn(axis, angle * k / steps).T)
+    # the Jaumann sum grows by the square of a step's angle: here 2e-3 in all
+    assert mises(rig.stress()) == pytest.approx(size, rel=2e-3)
+    assert rig.zone.work[1] == pytest.approx(energy, rel=4e-3)
+    assert abs(after - before @ turn(axis, angle).T).max() < 2e-3 * abs(before).max()
+
+
+def _compress(rig, strain, steps):
+    """Confined compression along n by a logarithmic strain; returns the axial force on the top."""
+    points = rig.points.copy()
+    for k in range(1, steps + 1):
+        force = rig.lead(points * [1, 1, np.exp(-strain * k / steps)])
+    return force[np.isclose(points[:, 2], points[:, 2].max()), 2].sum()
+
+
+@pytest.mark.parametrize("modulus", [0.0, 5e9])
+def test_confined_compression_against_the_closed_form(modulus):
+    h, law, e = 1e-3, linear_hardening(300e6, modulus), 0.05
+    rig = Rig(*shapes.grid((1, 1, 1), h), law)
+    force = _compress(rig, e, 400)
+    plastic = (2 * G * e - 300e6) / (3 * G + modulus)
+    flow = 300e6 + modulus * plastic
+    assert rig.flat("strain") == pytest.approx(plastic, rel=1e-4)
+    assert mises(rig.stress()) == pytest.approx(flow, rel=1e-4)
+    assert force == pytest.approx(-(BULK * e + 2 / 3 * flow) * np.exp(e) * h**2, rel=1e-4)
+    assert rig.zone.work[0] == pytest.approx((300e6 + flow) / 2 * plastic * h**3, rel=1e-4)
+
+
+def test_confined_compression_before_yield():
+    h = 1e-3
+    rig = Rig(*shapes.grid((1, 1, 1), h), linear_hardening(300e6, 5e9))
+    assert _compress(rig, 1e-3, 20) == pytest.approx(-(LAME + 2 * G) * 1e-3 * np.exp(1e-3) * h**2, rel=1e-6)
+    assert rig.zone.work[0] == 0.0
+    assert rig.flat("strain").max() == 0.0
+
+
+def _wander(law, amplitude, steps=300, seed=6, counts=(2, 1, 1)):
+    """Lead the nodes along a smooth closed random path."""
+    points, cells = shapes.distorted(counts, 0.15, seed=seed)
+    rig, rng = Rig(points, cells, law), np.random.default_rng(seed)
+    a, b = rng.normal(size=(2, *points.shape)) * amplitude * 1e-3
+    for k in range(1, steps + 1):
+        s = 2 * np.pi * k / steps
+        rig.lead(points + a * np.sin(s) + b * (1 - np.cos(s)))
+    return rig
+
+
+def test_work_of_the_forces_is_elastic_energy_plus_plastic_work():
+    rig = _wander(linear_hardening(300e6, 5e9), 0.004, steps=600)
+    assert rig.zone.work[0] > 10 * rig.zone.work[1] > 0
+    assert rig.work == pytest.approx(rig.zone.work.sum(), rel=1e-3)
+
+
+def test_elastic_path_gives_everything_back():
+    rig = _wander(HARD, 0.0005)
+    assert rig.zone.work[0] == 0.0
+    assert mises(rig.stress()).max() < 1e-5 * G  # closed path
+    half = Rig(*shapes.distorted((2, 1, 1), 0.15, seed=6))
+    assert abs(rig.work) < 1e-3 * _stretched_energy(half)
+
+
+def _stretched_energy(rig):
+    rng = np.random.default_rng(6)
+    rig.lead(rig.points + rng.normal(size=rig.points.shape) * 0.0005e-3)
+    return rig.zone.work[1]
+
+
+def test_plastic_flow_is_isochoric():
+    rig = _wander(linear_hardening(300e6, 5e9), 0.01, steps=400)
+    assert rig.flat("strain").min() > 0.01
+    points, cells = shapes.distorted((2, 1, 1), 0.15, seed=6)
+    before = np.array([shapes.volume(points[c]) for c in cells])
+    rig.lead(points + 0.02e-3 * np.random.default_rng(7).normal(size=points.shape))
+    after = np.array([shapes.volume(rig.points[c]) for c in cells])
+    # all change of volume is elastic, whatever was squeezed before
+    assert rig.zone.blocks.pressure.ravel()[:2] == pytest.approx(
+        BULK * np.log(after / before) * before / after, rel=1e-9
+    )
+    assert abs(rig.stress()[..., :3].sum(axis=-1)).max() < 1e-9 * mises(rig.stress()).max()
+
+
+def test_flow_stress_stays_on_the_power_law():
+    law = power_hardening(E, 300e6, 450e6)
+    rig = _wander(law, 0.02, steps=200)
+    strain, flow = rig.flat("strain"), rig.flat("flow")
+    assert strain.min() > 0.05
+    assert flow == pytest.approx(law.flow_stress(strain), rel=1e-10)
+    assert (mises(rig.stress()) <= flow * (1 + 1e-9)).all()
+    straight = Rig(*shapes.grid((1, 1, 1), 1e-3), law)
+    _compress(straight, 0.1, 50)
+    assert mises(straight.stress()) == pytest.approx(law.flow_stress(straight.flat("strain")), rel=1e-10)
+
+
+def test_one_large_increment_returns_to_the_curve():
+    law = power_hardening(E, 300e6, 450e6)
+    rig = Rig(*shapes.grid((1, 1, 1), 1e-3), law)
+    rig.lead(rig.points * [1.04, 1, 1])
+    assert rig.flat("strain").min() > 0.02
+    assert mises(rig.stress()) == pytest.approx(law.flow_stress(rig.flat("strain")), rel=1e-9)
+
+
+def test_padding_is_inert():
+    points, cells = shapes.distorted((LANES + 1, 1, 1), 0.1, seed=8)
+    moved = points + 5e-6 * np.random.default_rng(9).normal(size=points.shape)
+    law = linear_hardening(300e6, 5e9)
+    rig = Rig(points, cells, law)
+    rig.lead(moved)
+    assert abs(rig.state.force[rig.dummy]).max() == 0.0
+    alone = [Rig(points, cells[i : i + 1], law) for i in range(len(cells))]
+    force = sum(one.lead(moved) for one in alone)
+    assert rig.force == pytest.approx(force, rel=1e-10, abs=1e-10 * abs(force).max())
+    assert rig.zone.work == pytest.approx(sum(one.zone.work for one in alone), rel=1e-12)
+    assert rig.zone.plastic_strain().shape == rig.zone.mises().shape == (LANES + 1,)
+
+
+def test_forces_are_in_balance():
+    rig = _wander(linear_hardening(300e6, 5e9), 0.01, steps=50)
+    size = abs(rig.force).max()
+    assert abs(rig.force.sum(axis=0)).max() < 1e-9 * size
+    assert abs(np.cross(rig.points, rig.force).sum(axis=0)).max() < 1e-9 * size * 1e-3
+
+
+def test_reported_fields_belong_to_their_elements():
+    points, cells = shapes.grid((3, 1, 1), 1e-3)
+    rig = Rig(points, cells, linear_hardening(300e6, 0.0))
+    push = np.where(points[:, :1] > 2.5e-3, 0.01, 0.0)  # only the last element is stretched
+    rig.lead(points + 1e-3 * push * [1, 0, 0])
+    assert rig.zone.plastic_strain()[:2] == pytest.approx(0.0, abs=1e-15)
+    assert rig.zone.plastic_strain()[2] == pytest.approx(rig.flat("strain")[2].mean())
+    assert rig.zone.mises()[2] == pytest.approx(300e6, rel=1e-9)
