@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
 # geometric mean), and how many cells it has at least
-ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 1.6, 4.0
+ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
 # the block reaches this far beyond its fine zone (the springs stand for the rest)
 BLOCK_MARGIN = 6e-3
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)
