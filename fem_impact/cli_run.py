@@ -59,7 +59,8 @@ def study(options: Options) -> int:
     if options.json:
         print_json({"rows": result.rows})
     else:
-        sys.stdout.write(f"{result.table}\nresults: {out}\n")
+        sys.stderr.writelines(f"note: {note}\n" for note in result.notes)
+        sys.stdout.write(f"{result.table}\nresults: {out}\nreport:  {out / 'report.html'}\n")
     return 0
 
 

@@ -6,7 +6,7 @@ import json
 import time
 from collections.abc import Iterable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -18,6 +18,7 @@ from fem_impact.progress import CaseProgress
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
 from fem_impact.study.cases import Case, Failure, compute, stored
+from fem_impact.study.present import present
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
@@ -31,12 +32,13 @@ COARSER = 2.0  # tip size of the second mesh over that of the first
 
 @dataclass(frozen=True, slots=True)
 class StudyResult:
-    """Outcomes as plain rows, the comparison, its text table, and what failed."""
+    """Outcomes as plain rows, the comparison, its text table, what failed, what could not be drawn."""
 
     rows: list[dict[str, Any]]
     comparison: list[Row]
     table: str
     failures: list[dict[str, str]]
+    notes: list[str] = field(default_factory=list)
 
 
 def cases_of(set_id: str, quick: bool, out: Path) -> tuple[Case, Case]:
@@ -56,6 +58,7 @@ def run_sets(
     progress: Meter,
     workers: int,
     executor: Executor | None = None,
+    films: bool = True,
 ) -> StudyResult:
     """Compute measured sets and compare them.
 
@@ -67,6 +70,7 @@ def run_sets(
     progress : told after every case
     workers : processes, one thread each
     executor : any other executor to run the cases in
+    films : make a film of each set as well
     """
     chosen = list(ids) or list(MEASURED_SETS)
     pairs = {name: cases_of(name, quick, out) for name in chosen}
@@ -79,7 +83,9 @@ def run_sets(
         fine, coarse = (done[case.out.name] for case in pairs[name])
         if isinstance(fine, Outcome):
             outcomes.append(with_bands(fine, coarse, out / name))
-    return write_study(outcomes, failures, out)
+    result = write_study(outcomes, failures, out)
+    notes = present([out / o["scene_id"] for o in outcomes], out, progress, films)
+    return replace(result, notes=notes)
 
 
 def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
