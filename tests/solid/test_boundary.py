@@ -1,0 +1,159 @@
+"""The block's outer boundary: sums of springs and dashpots, and waves that leave."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import solid_shapes as shapes
+
+import meshes
+from fem_impact.solid.boundary import spread_boundary
+from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.solid.march import advance, evaluate
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.state import State
+from meshes import OUTER
+
+E, NU, RHO = shapes.E, shapes.NU, shapes.RHO
+LAME, G = lame_constants(E, NU)
+FAST, SLOW = np.sqrt((LAME + 2 * G) / RHO), np.sqrt(G / RHO)
+
+
+def test_dashpots_add_up_to_wave_resistance_times_area():
+    w, d, h = 8e-3, 5e-3, 6e-3  # half block: symmetry plane at b = 0, free top
+    mesh = meshes.block([-w / 2, 0, -h], [w / 2, d, 0], 1e-3)
+    damping = spread_boundary(mesh, E, NU, RHO)[1].sum(axis=0)
+    ends, side, bottom = 2 * d * h, w * h, w * d
+    exact = RHO * np.array(
+        [
+            FAST * ends + SLOW * (side + bottom),
+            FAST * side + SLOW * (ends + bottom),
+            FAST * bottom + SLOW * (ends + side),
+        ]
+    )
+    assert damping == pytest.approx(exact, rel=1e-12)
+
+
+def test_springs_add_up_to_the_integral_over_the_faces():
+    a = 6e-3
+    mesh = meshes.block([-a, 0, -a], [a, a, 0], 0.5e-3)
+    spring = spread_boundary(mesh, E, NU, RHO)[0].sum(axis=0)
+    s = (np.arange(200) + 0.5) / 200 * a
+    x, y = np.meshgrid(s, s)
+    # integral of 1/r over a face of one quarter of the whole box, whose faces all lie a away
+    unit = (1 / np.sqrt(x**2 + y**2 + a**2)).mean() * a**2
+    normal, across = 4 / 3 * G * unit, 2 / 3 * G * unit
+    exact = [2 * normal + 4 * across, 2 * normal + 4 * across, 2 * normal + 4 * across]
+    exact = np.array(exact) - [0, 0, 0]
+    # t: two ends (one quarter each), side and bottom (two quarters each), and so on
+    assert spring == pytest.approx(exact, rel=2e-3)
+
+
+def test_free_surfaces_carry_nothing():
+    mesh = meshes.block([-3e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3)
+    spring, damping = spread_boundary(mesh, E, NU, RHO)
+    x = mesh.points
+    inside = (abs(x[:, 0]) < 2.9e-3) & (x[:, 1] < 2.9e-3) & (x[:, 2] > -2.9e-3)
+    assert inside.sum() > 20
+    assert not spring[inside].any() and not damping[inside].any()
+    assert (damping[~inside] > 0).all()
+
+
+class Column:
+    """A column that moves along n only, with the boundary at its foot."""
+
+    def __init__(self, damped, cells=80, h=0.5e-3):
+        mesh = meshes.block([-h / 2, 0, -cells * h], [h / 2, h, 0], h)
+        corners = mesh.points[mesh.faces]
+        foot = np.isclose(corners[..., 2], -cells * h).all(axis=1) & (mesh.face_tag == OUTER)
+        foot_only = replace(mesh, faces=mesh.faces[foot], face_tag=mesh.face_tag[foot])
+        places = np.arange(mesh.points.size).reshape(-1, 3)
+        T = tie_operator(mesh.tie, places, places.size)
+        K = assemble(
+            element_stiffness(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible"),
+            mesh.cells,
+            T,
+        )
+        mass = assemble_mass(lumped_mass(mesh.points, mesh.cells, RHO), mesh.cells, T)
+        inverse = 1 / mass
+        inverse[places[:, :2]] = 0.0
+        damping = spread_boundary(foot_only, E, NU, RHO)[1].ravel()
+        held = np.flatnonzero(damping * (inverse > 0))
+        size = places.size
+        self.block = ElasticBlock(
+            NodeProduct.of(K, places),
+            mesh.points.ravel().copy(),
+            slice(0, size),
+            np.zeros(size),
+            np.zeros(size),
+        )
+        self.pots = Dashpots(held, damping[held], inverse[held])
+        self.model = SimpleNamespace(
+            forces=[self.block],
+            impulses=[self.pots] if damped else [],
+            inverse_mass=inverse,
+            hanging=Hanging.of([(mesh.tie, places)]),
+        )
+        self.mass, self.up, self.length = mass, places[:, 2], cells * h
+        self.state = State.at_rest(mesh.points.ravel())
+        self.state.dt_next = 0.5 * h / FAST
+        self._send(mesh.points[:, 2])
+
+    def _send(self, z):
+        """A smooth pulse that runs down."""
+        width = self.length / 4
+        s = np.clip((z + 0.4 * self.length) / width, -1, 1)
+        self.state.x[self.up] += 1e-6 * (1 + np.cos(np.pi * s)) / 2
+        self.state.v[self.up] = -1e-6 * FAST * np.pi / (2 * width) * np.sin(np.pi * s)
+
+    def energy(self):
+        evaluate(self.model, self.state)
+        s = self.state
+        kinetic = 0.5 * s.v @ (self.mass * s.v) + 0.5 * s.dt * (s.v[self.up] @ s.force[self.up])
+        return kinetic + self.block.accounts(s)["strain_barrier"]
+
+    def fly(self, time):
+        while self.state.time < time:
+            evaluate(self.model, self.state)
+            advance(self.model, self.state)
+
+
+def test_a_plane_wave_leaves():
+    column = Column(damped=True)
+    start = column.energy()
+    column.fly(0.2 * column.length / FAST)
+    assert column.energy() == pytest.approx(start, rel=1e-3)  # still on its way
+    column.fly(1.2 * column.length / FAST)
+    left = column.energy()
+    assert left < 2e-3 * start
+    assert start - left == pytest.approx(column.pots.accounts(column.state)["radiated"], rel=1e-9)
+
+
+def test_without_dashpots_it_comes_back():
+    column = Column(damped=False)
+    start = column.energy()
+    column.fly(1.2 * column.length / FAST)
+    assert column.energy() == pytest.approx(start, rel=1e-9)
+
+
+def test_dashpots_never_add_energy_however_long_the_step():
+    rng = np.random.default_rng(1)
+    for damping in (1e-3, 1.0, 1e6):
+        state = State.at_rest(np.zeros(30))
+        state.v[:] = rng.normal(size=30)
+        state.kick = state.dt_next = 1.0
+        before = (state.v**2).sum()
+        pots = Dashpots(np.arange(30), np.full(30, damping), np.ones(30))
+        pots.resolve(state)
+        assert 0.5 * (before - (state.v**2).sum()) == pytest.approx(pots.radiated, rel=1e-6)
+        assert (state.v**2).sum() <= before
+
+
+def test_weight_and_its_potential():
+    weight = Weight(np.array([-3.0, 0.0, -4.0]), np.zeros(3))
+    state = State.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))
+    weight.add_force(state)
+    assert state.force == pytest.approx([-3.0, 0.0, -4.0, 0.0])
+    assert weight.accounts(state)["gravity"] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)

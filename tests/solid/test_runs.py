@@ -1,0 +1,313 @@
+"""Whole runs on coarse meshes, held to reference problems, balances and closed forms.
+
+Mutants that were seen to be killed (mutation -> test):
+
+==============================================================  =============================================
+contact work with velocities after the update (plane, surface)  test_booked_work..., test_ledger_closes
+E_vib from raw strain energy                                    test_locked_in_stress_is_not_vibration
+sign of Omega                                                   test_stiff_short_rod_is_rigid_theory
+half-model energies not doubled                                 test_energies_are_those_of_the_whole_rod
+friction on facet noise (quads' own normals)                    test_sliding_rod_has_the_impulse_ratio_of_its_friction
+stopping at the first separation                                test_elastic_frictionless_long_rod_touches_twice
+plain full-integration hexes at the tip                         test_small_increments..., test_body_and_tip_operators
+search that drops the nodes on the symmetry plane               test_first_contact_comes_at_gap_over_speed
+==============================================================  =============================================
+"""
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+import solid_scenes as scenes
+
+from fem_impact.estimates import projectile
+from fem_impact.modes import rigid_motion
+from fem_impact.reduce import reduce
+from fem_impact.solid.build import START_GAP
+from fem_impact.solid.contact import PlaneContact
+from fem_impact.solid.march import advance, evaluate, march
+from fem_impact.solid.run import solve
+
+PLANE = ("vibration", "barrier-rigid")
+SLIDE = ("vibration", "friction", "barrier-elastic")
+YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation")
+
+
+@pytest.fixture(scope="module")
+def elastic():
+    return scenes.run(*PLANE, "large-rotation")
+
+
+@pytest.fixture(scope="module")
+def yielding():
+    return scenes.run(*YIELD, length=0.08, v_n=-2.1, v_t=-2.1)
+
+
+def _outcome(result):
+    return reduce(result.scene, result)
+
+
+def test_elastic_frictionless_long_rod_touches_twice(elastic):
+    """Reference: e .853, E_bend .058 (Hertz and beam); e .851, E_vib .060 (CalculiX)."""
+    found = _outcome(elastic)
+    assert elastic.finished
+    assert len(found["contacts"]) == 2
+    assert found["e_edge"] == pytest.approx(0.855, abs=0.025)
+    assert 0.050 < found["E_vib_over_E_0"] < 0.065
+    first, second = found["contacts"]
+    assert first["end_s"] == pytest.approx(125e-6, abs=15e-6)
+    assert second["start_s"] == pytest.approx(348e-6, abs=15e-6)
+    assert first["impulse_n_Ns"] == pytest.approx(0.39, abs=0.03)
+    assert second["impulse_n_Ns"] == pytest.approx(0.26, abs=0.03)
+
+
+def test_rigid_and_vibrating_parts_are_all_the_energy(elastic):
+    found = _outcome(elastic)
+    assert found["E_r_over_E_0"] + found["E_vib_over_E_0"] + found["W_closing_over_E_0"] == pytest.approx(
+        1, abs=3e-4
+    )
+    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], rel=0.06)
+    assert found["mu"] == pytest.approx(0.0, abs=1e-7)
+    assert abs(found["E_locked_rod_over_E_0"]) < 3e-4
+
+
+@pytest.mark.parametrize("which", ["elastic", "yielding"])
+def test_ledger_closes(which, request):
+    result = request.getfixturevalue(which)
+    assert result.worst < (1e-6 if which == "elastic" else 1e-4) * result.E_0
+    a = result.accounts
+    whole = sum(v for k, v in a.items() if k != "residual")
+    assert whole == pytest.approx(result.E_0, rel=1e-4)
+
+
+def test_energies_are_those_of_the_whole_rod(elastic):
+    rod, impact = projectile(elastic.scene), elastic.scene.impact
+    assert elastic.motion.mass == pytest.approx(rod.mass, rel=1e-9)
+    assert elastic.E_0 == pytest.approx(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2), rel=1e-6)
+    gained = elastic.motion.V_n - impact.v_n
+    assert sum(i.impulse_n for i in elastic.model.book.intervals) == pytest.approx(
+        rod.mass * gained, rel=1e-6
+    )
+    inertia = rod.mass * rod.k2
+    assert elastic.motion.inertia == pytest.approx(inertia, rel=5e-3)
+
+
+def test_moment_of_the_contact_is_the_angular_momentum(yielding):
+    """The book's moment about the origin, against the turning and the flight of the mass centre."""
+    m, book = yielding.motion, yielding.model.book
+    start = yielding.model.start[0][yielding.view.places]
+    centre = yielding.view.mass @ start / yielding.view.mass.sum()
+    impact = yielding.scene.impact
+    before = m.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
+    after = m.inertia * m.Omega + m.mass * (m.centre[2] * m.V_t - m.centre[0] * m.V_n)
+    assert after - before == pytest.approx(-2 * book.impulse[2], rel=2e-3)
+
+
+def test_locked_in_stress_is_not_vibration(yielding):
+    found = _outcome(yielding)
+    assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
+    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], rel=0.1)
+    assert found["E_vib_over_E_0"] < 0.01
+
+
+def test_yielding_rod_and_plate(yielding):
+    found = _outcome(yielding)
+    assert 0.25 < found["e_edge"] < 0.45
+    assert 0.45 < found["mu"] < 0.62
+    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.1
+    assert found["W_friction_over_E_0"] > 0.1
+    assert 0 < found["W_radiated_over_E_0"] < 0.01
+    assert abs(found["W_closing_over_E_0"]) < 1e-3
+    lost = 1 - found["E_r_over_E_0"] - found["E_vib_over_E_0"]
+    parts = [
+        "W_friction",
+        "E_plastic_rod",
+        "E_plastic_barrier",
+        "E_locked_rod",
+        "E_locked_barrier",
+        "W_radiated",
+        "W_closing",
+    ]
+    assert sum(found[f"{p}_over_E_0"] for p in parts) == pytest.approx(lost, abs=2e-4)
+
+
+@pytest.mark.parametrize("f", [0.1, 0.3])
+def test_sliding_rod_has_the_impulse_ratio_of_its_friction(f):
+    result = scenes.run(*SLIDE, length=0.08, v_n=-1.0, v_t=-8.0, f=f)
+    found = _outcome(result)
+    assert found["mu"] == pytest.approx(f, rel=0.01)
+    worked = found["W_friction_over_E_0"] * result.E_0
+    slide = [-result.scene.impact.v_t, -result.motion.V_t]
+    assert 0 < worked < f * result.model.book.impulse[1] * 2 * max(slide) * 1.5
+    assert result.worst < 1e-6 * result.E_0
+
+
+def test_same_run_twice_is_the_same_to_the_last_bit(yielding):
+    again = solve(yielding.scene)
+    assert again.steps == yielding.steps
+    assert again.accounts == yielding.accounts
+    assert again.motion.V_n == yielding.motion.V_n
+    assert np.array_equal(again.motion.centre, yielding.motion.centre)
+    assert np.array_equal(again.flight.a, yielding.flight.a)
+    assert [vars_of(i) for i in again.model.book.intervals] == [
+        vars_of(i) for i in yielding.model.book.intervals
+    ]
+
+
+def vars_of(interval):
+    return interval.start, interval.end, interval.impulse_n, interval.impulse_t
+
+
+@pytest.mark.parametrize("angle", [pi / 6, pi / 3])
+def test_stiff_short_rod_is_rigid_theory(angle):
+    result = scenes.run(*PLANE, "large-rotation", length=0.03, v_n=-0.5, v_t=-0.4, angle=angle)
+    rod = projectile(result.scene)
+    assert rod.gamma < 10
+    found = _outcome(result)
+    d_c, k2 = found["d_c_impulse_m"], found["k_squared_m2"]
+    assert found["e_impulse"] == pytest.approx(1.0, abs=3e-3)
+    assert d_c == pytest.approx(float(rod.arms(angle)[0]), abs=4e-4)  # half a cell
+    assert found["Omega_rad_per_s"] == pytest.approx(2 * 0.5 * d_c / (k2 + d_c**2), rel=3e-3)
+    assert found["V_t_m_per_s"] == pytest.approx(-0.4, abs=1e-9)
+    assert found["E_r_over_E_0"] == pytest.approx(1.0, abs=2e-3)
+
+
+def test_spin_before_the_impact_enters_with_its_sign():
+    """A rod that turns so that its tip moves away from the plane is struck less hard."""
+    pushes = [
+        scenes.run(*PLANE, "large-rotation", length=0.03, v_n=-0.5, v_t=0.0, omega=omega).model.book.impulse[
+            1
+        ]
+        for omega in (-20.0, 20.0)
+    ]
+    scene = scenes.scene(*PLANE, length=0.03)
+    rod = projectile(scene)
+    d_c, m = float(rod.arms(pi / 4)[0]), rod.mass / (1 + float(rod.arms(pi / 4)[0]) ** 2 / rod.k2)
+    exact = [2 * m * (0.5 - omega * d_c) / 2 for omega in (-20.0, 20.0)]
+    assert pushes == pytest.approx(exact, rel=2e-2)
+
+
+@pytest.mark.parametrize(
+    ("barrier", "angle"),
+    [("barrier-rigid", pi / 4), ("barrier-elastic", pi / 4), ("barrier-elastoplastic", pi / 3)],
+)
+def test_first_contact_comes_at_gap_over_speed(barrier, angle):
+    """The lowest node lies on the symmetry plane: a search that drops those nodes comes late."""
+    model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=-1.0, angle=angle)
+    state = model.initial_state()
+    lowest = np.argmin(model.geometry.rod_points[:, 2])
+    assert model.geometry.rod_points[lowest, 1] == 0.0
+    assert model.geometry.rod_points[lowest, 2] == pytest.approx(START_GAP, rel=1e-9)
+    while not model.book.intervals:
+        evaluate(model, state)
+        advance(model, state)
+        assert state.time < 2 * START_GAP
+    assert model.book.intervals[0].start == pytest.approx(START_GAP, abs=1.01 * model.step)
+
+
+@pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])
+def test_nodes_on_the_symmetry_plane_stay_on_the_barrier(barrier):
+    """Near the peak no rod node of the patch lies below the block's surface, on the plane b = 0 above all."""
+    model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-2.0, v_t=-2.0)
+    state, contact = model.initial_state(), model.impulses[-1]
+    while state.time < 30e-6:
+        evaluate(model, state)
+        advance(model, state)
+    x = state.x
+    on_plane = contact.rod.mirrored
+    low = x[contact.rod.places[on_plane]]
+    line = x[contact.barrier.places[contact.barrier.mirrored]]
+    line = line[np.argsort(line[:, 0])]
+    depth = np.interp(low[:, 0], line[:, 0], line[:, 2]) - low[:, 2]
+    assert line[:, 2].min() < -3e-6  # the block gives way
+    assert depth.max() < 0.02 * model.geometry.tip_size
+    assert model.book.touching
+
+
+def _spun(*effects):
+    """Turn a free rod for 4 ms at 45 rad/s: strain energy share, stretch, residual share, spin at the end."""
+    model = scenes.model(*effects, length=0.08, v_n=-1e-3, v_t=0.0, tip=2e-3, omega=45.0).coasting()
+    state, ledger, most = model.initial_state(), model.ledger(), 0.0
+
+    class Until:
+        every = 500
+
+        def observe(self, state):
+            nonlocal most
+            most = max(most, ledger.sample(state)["strain_rod"] / ledger.start)
+            return state.time >= 4e-3
+
+    march(model, state, [Until()])
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    ends = places[[np.argmin(state.x[places[:, 2]]), np.argmax(state.x[places[:, 2]])]]
+    now, start = (float(np.linalg.norm(np.diff(x[ends], axis=0))) for x in (state.x, model.start[0]))
+    spin = rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]]).Omega
+    return most, now / start - 1, ledger.worst / ledger.start, spin
+
+
+def test_a_free_spin_costs_nothing_and_keeps_lengths():
+    strain, stretch, residual, spin = _spun(*PLANE, "large-rotation")
+    assert strain < 1e-6
+    assert abs(stretch) < 1e-6
+    assert residual < 1e-6
+    assert spin == pytest.approx(45.0, rel=1e-6)
+
+
+def test_small_rotations_let_a_spinning_rod_grow():
+    """Nodes fly on straight lines: no strain energy, but a length that grows by theta^2 / 2."""
+    _, stretch, _, spin = _spun(*PLANE)
+    assert stretch == pytest.approx(np.sqrt(1 + 0.18**2) - 1, rel=0.02)
+    assert spin == pytest.approx(45.0 / (1 + 0.18**2), rel=0.01)
+
+
+def test_body_and_tip_operators_are_the_assembled_rod():
+    """Slices, nose and yielding tip together push like the rod's stiffness matrix; no other element at the tip."""
+    model = scenes.model("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
+    state, n = model.initial_state(), model.layout.rod_size
+    u = 1e-13 * np.random.default_rng(1).normal(size=n)
+    u[model.inverse_mass[:n] == 0] = 0.0
+    full = np.zeros_like(state.x)
+    full[:n] = u
+    model.hanging.expand(full)
+    state.x += full
+    state.v[:] = full / 1e-8
+    state.dt = 1e-8
+    evaluate(model, state)
+    exact = model.rod_stiffness @ u
+    assert abs(state.force[:n] + exact).max() < 2e-4 * abs(exact).max()
+    assert model.zones[0].count > 100
+
+
+def test_gravity_is_an_account_of_its_own():
+    off = scenes.run(*PLANE, length=0.08, v_n=-0.3, v_t=-0.3)
+    on = scenes.run(*PLANE, "gravity", length=0.08, v_n=-0.3, v_t=-0.3)
+    assert on.worst < 2e-6 * on.E_0
+    assert on.accounts["gravity"] != 0.0
+    assert off.accounts["gravity"] == 0.0
+    # the potential gained is the weight times the height the centre has risen, from the start
+    start = on.model.start[0][on.view.places]
+    risen = on.motion.centre - on.view.mass @ start / on.view.mass.sum()
+    weight = on.motion.mass * 9.80665
+    height = risen[2] * np.cos(pi / 4) + risen[0] * np.sin(pi / 4)
+    assert on.accounts["gravity"] == pytest.approx(weight * height, rel=1e-6)
+    a, b = _outcome(off), _outcome(on)
+    assert b["V_n_m_per_s"] == pytest.approx(a["V_n_m_per_s"], abs=5e-3)
+    assert b["V_t_m_per_s"] == pytest.approx(-0.3, abs=1e-4)
+
+
+def test_a_run_out_of_time_says_so():
+    result = solve(scenes.scene(*PLANE, length=0.08, max_time=2e-5))
+    assert not result.finished
+    assert "max_time" in result.reason
+    found = _outcome(result)
+    assert found["E_vib_check_over_E_0"] is None
+    assert found.reason("E_vib_check_over_E_0")
+    assert replace(result, finished=True).finished
+
+
+def test_rigid_barrier_has_plane_contact_over_the_whole_skin():
+    model = scenes.model(*PLANE, length=0.08)
+    contact = model.impulses[-1]
+    assert isinstance(contact, PlaneContact)
+    assert len(model.impulses) == 1
