@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fem_impact.scene import Material, Scene
+    from rigid import Projectile
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
@@ -48,7 +49,7 @@ def principal_radii(scene: Scene) -> tuple[float, float]:
     return R1, min(max(around, R1), FLATTEST)
 
 
-def projectile(scene: Scene):  # type: ignore[no-untyped-def]
+def projectile(scene: Scene) -> Projectile:
     """Return the rigid projectile of a scene."""
     from rigid import Projectile
 

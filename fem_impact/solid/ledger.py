@@ -39,8 +39,7 @@ class Ledger:
 
     Attributes
     ----------
-    mass : (size,) lumped masses, kg, of the half model (0 for hanging unknowns)
-    moving : (size,) 1 where an unknown may move, 0 on the symmetry plane's normal
+    mass : (size,) lumped masses, kg, of the half model (0 where nothing may move)
     rod : the rod's part of the flat vectors
     items : everything with accounts
     start : E_0, J

@@ -42,21 +42,25 @@ class SliceOperator:
         that the element's nodes are the lower four, then the upper four, in VTK order.
         """
         n = int(lower_nodes.max()) + 1
-        place = lambda nodes: np.concatenate([nodes + c * n for c in range(3)], axis=1)  # noqa: E731
+        low_place, up_place = _places(lower_nodes, n), _places(upper_nodes, n)
         # element unknowns node-major -> component-major, split into the two layers
         order = np.arange(24).reshape(8, 3).T
         low, up = order[:, :4].ravel(), order[:, 4:].ravel()
         parts = {
-            "lower": _gather(K, low, low, place(lower_nodes), place(lower_nodes), 3 * n),
-            "upper": _gather(K, up, up, place(upper_nodes), place(upper_nodes), 3 * n),
-            "above": _gather(K, low, up, place(lower_nodes), place(upper_nodes), 3 * n),
-            "below": _gather(K, up, low, place(upper_nodes), place(lower_nodes), 3 * n),
+            "lower": _gather(K, low, low, low_place, low_place, 3 * n),
+            "upper": _gather(K, up, up, up_place, up_place, 3 * n),
+            "above": _gather(K, low, up, low_place, up_place, 3 * n),
+            "below": _gather(K, up, low, up_place, low_place, 3 * n),
         }
         pattern = sum(abs(sp.csr_matrix(p)) for p in parts.values()).tocsr()
         pattern.sort_indices()
         rows = np.repeat(np.arange(3 * n), np.diff(pattern.indptr))
         values = {k: np.asarray(p[rows, pattern.indices]).ravel() for k, p in parts.items()}
         return cls(pattern.indptr.astype(np.int64), pattern.indices.astype(np.int64), **values)
+
+
+def _places(nodes: Ints, n: int) -> Ints:
+    return np.concatenate([nodes + component * n for component in range(3)], axis=1)
 
 
 def _gather(K: Array, rows: Ints, cols: Ints, row_place: Ints, col_place: Ints, size: int) -> sp.csr_matrix:

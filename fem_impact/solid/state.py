@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +21,7 @@ class State:
     step : number of steps done
     dt : step that led to ``x`` (s); 0 before the first
     dt_next : step to take, s
+    kick : time over which the present forces act on the velocities, s
     """
 
     x: Array
@@ -30,7 +31,7 @@ class State:
     step: int = 0
     dt: float = 0.0
     dt_next: float = 0.0
-    kick: float = field(default=0.0)
+    kick: float = 0.0
 
     @classmethod
     def at_rest(cls, x: Array) -> State:

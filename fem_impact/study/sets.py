@@ -18,6 +18,7 @@ from fem_impact.progress import CaseProgress
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
 from fem_impact.study.cases import Case, Failure, compute, stored
+from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
 
 if TYPE_CHECKING:
@@ -130,11 +131,12 @@ def _read(case: Case) -> Outcome | Failure:
 
 
 def write_study(outcomes: list[Outcome], failures: list[dict[str, str]], out: Path) -> StudyResult:
-    """Write study.json and comparison.csv and return the study."""
+    """Write study.json, comparison.csv and summary.md, and return the study."""
     comparison = [row for outcome in outcomes for row in compare(outcome)]
     rows = [outcome.to_dict() for outcome in outcomes]
     document = {"schema": SCHEMA, "rows": rows, "comparison": comparison, "failures": failures}
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
+    write_text(out / "summary.md", summary(rows, comparison))
     table = "\n".join([text_table(comparison), *(f"failed: {f['scene_id']}: {f['error']}" for f in failures)])
     return StudyResult(rows, comparison, table, failures)
