@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_impact.cli_rigid_words import add_rigid_commands
 from fem_impact.errors import EXIT_CODES
 
 if TYPE_CHECKING:
@@ -33,6 +34,18 @@ class Options(argparse.Namespace):
     quick: bool = False
     workers: int | None = None
     result: Path
+    set_id: str | None = None
+    file: Path
+    number: int
+    length: str
+    diameter: str
+    tip: str
+    tip_radius: str | None = None
+    d_c: str | None = None
+    d_d: str | None = None
+    angle: str
+    height: str
+    surface: str
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -48,6 +61,7 @@ def build_parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
     for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check):
         add(commands)
+    add_rigid_commands(commands, _command)
     return parser
 
 

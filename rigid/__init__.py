@@ -6,6 +6,7 @@ Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``expe
 """
 
 from .arms import Arms, corner_arms
+from .centre import impulse_centre
 from .closure import closure_defect
 from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
@@ -15,6 +16,7 @@ from .general import General
 from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
 from .massive import Motion, critical_ratio, phi, solve
 from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_path
+from .pinned import pinned_loss
 from .projectile import TIPS, Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
 from .uncertainty import Errors, Estimate, bootstrap, first_order
@@ -50,6 +52,7 @@ __all__ = [
     "critical_ratio",
     "drop_velocities",
     "first_order",
+    "impulse_centre",
     "impulse_ratio",
     "in_millimetres",
     "interval_ratio",
@@ -57,6 +60,7 @@ __all__ = [
     "losses",
     "painleve_threshold",
     "phi",
+    "pinned_loss",
     "predicted_losses",
     "restitution",
     "slenderness",

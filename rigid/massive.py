@@ -71,6 +71,12 @@ def solve(
     ImpactError
         If the contact point does not approach, or 1 + Phi <= 0.
 
+    Notes
+    -----
+    The three equations know no energy: coefficients can be stated (mu beyond mu_c, e_m far from -1) that
+    make some from nothing. They are solved all the same, since measured coefficients with their
+    errors must invert; `kinetic_energy` shows the gain, and `General` refuses it.
+
     Examples
     --------
     >>> after = solve(-1.6, -1.6, e=0.67, mu=0.32, d_c=0.083, d_d=0.086, k2=4.84e-3)

@@ -1,7 +1,8 @@
 """The published measurements as data: tables, measured sets and their statistics."""
 
+from .angle_scatter import drawn_losses
 from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle, loss_against_angle
-from .audit import AuditRecord, audit, audit_statistics
+from .audit import AuditRecord, audit, audit_statistics, column_arms
 from .correlation import Correlation, correlation, correlations
 from .sets import MeasuredSet, measured_set, measured_sets, set_ids
 from .statistics import Statistic, statistic
@@ -17,9 +18,11 @@ __all__ = [
     "at_angle",
     "audit",
     "audit_statistics",
+    "column_arms",
     "correlation",
     "correlations",
     "critical_ratio_against_angle",
+    "drawn_losses",
     "loss_against_angle",
     "measured_set",
     "measured_sets",

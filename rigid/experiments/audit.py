@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
@@ -83,6 +83,18 @@ def audit_statistics() -> tuple[AuditRecord, ...]:
     return tuple(record for s in measured_sets() for record in _statistics(s))
 
 
+def column_arms(set_id: str) -> Mapping[str, float]:
+    """Give the d_c (m) of the columns that were not worked out with their set's own.
+
+    Examples
+    --------
+    >>> dict(column_arms("t2"))
+    {'e': 0.084, 'e_m': 0.0838}
+    """
+    found: Mapping[str, float] = _knowledge()["arms"].get(set_id, {})
+    return found
+
+
 def recompute(
     v_n: ArrayLike,
     v_t: ArrayLike,
@@ -123,7 +135,7 @@ def _totals(s: MeasuredSet) -> Iterator[AuditRecord]:
 
 def _inputs(s: MeasuredSet, column: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
     """Give the inputs of every row and the half unit of their last digit."""
-    d_c = _knowledge()["arms"].get(s.id, {}).get(column, s.arms.d_c)
+    d_c = column_arms(s.id).get(column, s.arms.d_c)
     constants = {"d_c": d_c, "d_d": s.arms.d_d, "k2": s.k2, "mass": s.mass}
     shape = s.motion["v_n"].shape
     at = {name: s.motion[name] for name in MOTION}
@@ -169,11 +181,12 @@ def _record(
 
 
 def _applies(known: dict[str, Any], record: AuditRecord) -> bool:
-    """Tell whether a piece of knowledge is about this record."""
+    """Tell whether a piece of knowledge is about this record ("*" in rows means every test, no statistic)."""
+    rows = {record.row} if record.row in ("mean", "sd") else {record.row, "*"}
     return (
         known["set"] in ("*", record.set_id)
         and known["column"] in ("*", record.column)
-        and bool({"*", record.row} & set(known["rows"]))
+        and bool(rows & set(known["rows"]))
     )
 
 

@@ -61,7 +61,7 @@ def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: E
     g = np.array([slope[name] for name in MOTION])
     arms = np.array([slope[name] for name in ARMS])
     parts = {
-        "scatter": float(np.sqrt(g @ np.cov(rows) @ g / n)),
+        "scatter": float(np.sqrt(max(g @ np.cov(rows) @ g, 0.0) / n)),
         "contact": errors.contact_sd * float(np.hypot(*arms)),
         "tracking": errors.tracking_sd * float(np.linalg.norm(g * rows.mean(axis=1))),
     }

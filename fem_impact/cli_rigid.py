@@ -1,0 +1,123 @@
+"""The commands that need no finite elements: ``audit``, ``coefficients``, ``figure`` and ``assess``."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli_out import checked_file
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json
+from fem_impact.errors import SceneError
+
+if TYPE_CHECKING:
+    from fem_impact.paper import Drawn
+    from rigid import Arms, Projectile
+
+__all__ = ["assess", "audit", "coefficients", "figure"]
+
+
+def audit(options: Options) -> int:
+    """Recompute the printed columns and print where they disagree."""
+    out = checked_file(options.out) if options.out else None
+    from fem_impact.output import write_table
+    from fem_impact.paper import CSV_COLUMNS, audit_document, audit_text, csv_rows
+
+    document = audit_document(options.set_id)
+    if out:
+        write_table(out, CSV_COLUMNS, csv_rows(document))
+    _print(document, audit_text, options)
+    return 0
+
+
+def coefficients(options: Options) -> int:
+    """Work out the coefficients of the user's own tests."""
+    from fem_impact.paper import own_coefficients, own_text, read_camera
+    from rigid import RigidError
+
+    rod, alpha = _rod(options), _angle(options)
+    arms, source = _arms(options, rod, alpha)
+    camera = read_camera(options.file)
+    try:
+        document = own_coefficients(camera, rod, alpha, arms, source)
+    except RigidError as error:
+        raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
+    _print({"file": str(options.file), **document}, own_text, options)
+    return 0
+
+
+def figure(options: Options) -> int:
+    """Draw one figure of the paper."""
+    from fem_impact.paper import draw_figure
+
+    drawn = draw_figure(options.number, options.out or Path("results") / "paper")
+    if options.json:
+        print_json(_figure_entry(drawn))
+    else:
+        sys.stdout.write(_figure_text(drawn))
+    return 0
+
+
+def assess(options: Options) -> int:
+    """Assess a dropped rod."""
+    from fem_impact.paper import Case, assess_text, quantity
+    from fem_impact.paper import assess as assessed
+
+    height = quantity(options.height, "length", "--height")
+    case = Case(_rod(options), height, _angle(options), options.surface)
+    _print(assessed(case), assess_text, options)
+    return 0
+
+
+def _rod(options: Options) -> Projectile:
+    from fem_impact.paper import rod_from_options
+
+    return rod_from_options(options.length, options.diameter, options.tip, options.tip_radius)
+
+
+def _angle(options: Options) -> float:
+    """Return the angle in rad; where the rod has no lowest point it is refused."""
+    from fem_impact.paper import quantity
+
+    alpha = quantity(options.angle, "angle", "--angle")
+    if not 0 <= alpha < math.pi / 2:
+        raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
+    return alpha
+
+
+def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
+    """Return the arms and where they come from; stated ones come as a pair."""
+    import numpy as np
+
+    from fem_impact.paper import quantity
+    from rigid import Arms
+
+    given = (options.d_c, options.d_d)
+    if given == (None, None):
+        return rod.arms(alpha), "lowest point of the tip's shape"
+    if options.d_c is None or options.d_d is None:
+        raise SceneError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
+    d_c, d_d = (quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
+    return Arms(np.asarray(d_c), np.asarray(d_d)), "as stated"
+
+
+def _print(document: dict[str, Any], text: Callable[[dict[str, Any]], str], options: Options) -> None:
+    if options.json:
+        print_json(document)
+    else:
+        sys.stdout.write(text(document))
+
+
+def _figure_entry(drawn: Drawn) -> dict[str, Any]:
+    statements = [{"claim": s.claim, "found": s.found, "holds": s.holds} for s in drawn.statements]
+    places = {"picture": str(drawn.picture), "data": str(drawn.data)}
+    return {"figure": drawn.number, **places, "sentence": drawn.sentence, "statements": statements}
+
+
+def _figure_text(drawn: Drawn) -> str:
+    lines = [drawn.sentence, "", "The paper's statements:"]
+    lines += [f"  {'holds' if s.holds else 'FAILS'}: {s.claim}: {s.found}" for s in drawn.statements]
+    return "\n".join([*lines, "", f"picture: {drawn.picture}", f"data: {drawn.data}"]) + "\n"

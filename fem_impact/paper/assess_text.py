@@ -1,0 +1,115 @@
+"""The assessment as text for the terminal."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+__all__ = ["assess_text"]
+
+Document = Mapping[str, Any]
+WORDS = {
+    "total": "total loss",
+    "E_lt": "tangential E_lt",
+    "E_ln": "normal E_ln",
+    "E_r": "kept as rigid motion",
+}
+
+
+def assess_text(document: Document) -> str:
+    """Lay the document of `assess` out for reading: warnings first, since they bind all that follows."""
+    parts = (_case, _warnings, _losses, _worst, _heat, _limits)
+    return "\n".join(line for part in parts for line in part(document)) + "\n"
+
+
+def _wrap(text: str, indent: str = "  ") -> list[str]:
+    return textwrap.wrap(text, 100, initial_indent=indent, subsequent_indent=f"{indent}  ")
+
+
+def _case(d: Document) -> Iterator[str]:
+    c = d["case"]
+    sizes = f"{1e3 * c['length_m']:g} mm x {1e3 * c['diameter_m']:g} mm steel rod, tip {c['tip']}"
+    drop = (
+        f"dropped {c['height_m']:g} m on a {c['surface']} plate at {math.degrees(c['angle_rad']):g} degrees"
+    )
+    yield f"{sizes}, {drop}"
+    speed = math.hypot(c["v_n_m_per_s"], c["v_t_m_per_s"])
+    yield f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J"
+
+
+def _warnings(d: Document) -> Iterator[str]:
+    yield ""
+    if not d["warnings"]:
+        yield "Inside what was measured."
+    for sentence in d["warnings"]:
+        yield from _wrap(f"WARNING: {sentence}", "")
+
+
+def _losses(d: Document) -> Iterator[str]:
+    b, energy = d["basis"], d["case"]["E_0_J"]
+    yield ""
+    sets = ", ".join(f"{name} ({100 * w:.0f} %)" for name, w in b["weights"].items())
+    yield f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}"
+    head = f"{'mean':>7}{'95 % of impacts':>18}{'mean, J':>10}"
+    yield f"  {'':<22}{head}   all {b['all_tests']} tests of the surface"
+    for name, words in WORDS.items():
+        s = d["losses"][name]
+        spread = f"{100 * s['low']:.0f} to {100 * s['high']:.0f}"
+        every = f"{100 * s['all_low']:.0f} to {100 * s['all_high']:.0f}"
+        yield f"  {words:<22}{100 * s['mean']:7.1f}{spread:>18}{s['mean'] * energy:10.3g}   {every}"
+
+
+def _worst(d: Document) -> Iterator[str]:
+    w, r = d["worst_case"], d["range"]
+    yield ""
+    yield (
+        f"Worst case for any impulse ratio up to the critical one, e from {r['e'][0]:.2f} to {r['e'][1]:.2f}"
+    )
+    if not r["measured"]:
+        yield "  (every restitution, because the case lies outside what was measured)"
+    if w["reason"]:
+        yield from _wrap(w["reason"])
+        return
+    for name, words in (("tangential", "tangential loss (for ignition)"), ("total", "total loss")):
+        x = w[name]
+        yield (
+            f"  {words:<32}{100 * x['over_E_0']:5.1f} % = {x['J']:.3g} J, at mu = {x['mu']:.2f}, e = "
+            f"{x['e']:.2f}"
+        )
+    yield from _wrap(
+        f"The critical ratio is {d['mu_c']['mean']:.2f} here; it is no upper bound of mu, since a tip "
+        "that slides back "
+        "exceeds it by about 20 %."
+    )
+
+
+def _heat(d: Document) -> Iterator[str]:
+    h = d["friction_heat"]
+    yield ""
+    yield (
+        f"Friction heat: at most {h['upper_bound_J']:.3g} J ({100 * h['upper_bound_over_E_0']:.1f} % "
+        "of E_0), assuming"
+    )
+    for sentence in h["assumptions"]:
+        yield from _wrap(f"- {sentence}")
+    words = (
+        f"Sharper: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
+        f"{h['rigid_rod_assumption']}."
+    )
+    yield from _wrap(words)
+
+
+def _limits(d: Document) -> Iterator[str]:
+    u, s = d["not_attributed"], d["slenderness"]
+    yield ""
+    yield from _wrap(
+        f"Not attributed: {100 * u['mean']:.0f} % ({100 * u['low']:.0f} to {100 * u['high']:.0f}) "
+        f"{u['sentence']}",
+        "",
+    )
+    yield ""
+    gamma = f"gamma = {s['gamma_per_m0_3815']:.1f} m^-0.3815 ({s['gamma_per_mm0_3815']:.2f} mm^-0.3815)"
+    limit = f"limit {s['limit_per_m0_3815']:.2f} ({s['limit_per_mm0_3815']:.3f})"
+    yield from _wrap(f"Slenderness: {gamma}, {limit}: {s['verdict']}. {s['meaning'].capitalize()}.", "")

@@ -1,0 +1,159 @@
+"""A dropped rod to be assessed, and how far it lies from what was measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fem_impact.errors import SceneError
+from rigid import Arms, Projectile, drop_velocities
+from rigid.experiments import MeasuredSet, measured_sets
+
+__all__ = ["SURFACES", "Case", "outside_of", "sets_of", "warnings_of", "weights_of"]
+
+Surface = Literal["machined", "contaminated", "cleaned"]
+SURFACES = ("machined", "contaminated", "cleaned")
+NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
+"""What counts as one step away: twice the length, 20 degrees, twice the speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A rod that falls without spin on an inclined steel plate.
+
+    Attributes
+    ----------
+    rod : Projectile
+        SI.
+    height : float
+        Drop height, m.
+    alpha : float
+        Inclination, rad, between 0 and pi/2.
+    surface : "machined", "contaminated" or "cleaned"
+        State of tip and plate.
+    """
+
+    rod: Projectile
+    height: float
+    alpha: float
+    surface: str
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.height) and self.height > 0):
+            raise SceneError("must be above 0.", key="--height", value=f"{self.height:g} m")
+        if not 0 < self.alpha < math.pi / 2:
+            words = (
+                "must lie between 0 and 90 degrees; a rod that falls flat on its end has no one "
+                "contact point."
+            )
+            raise SceneError(words, key="--angle", value=f"{math.degrees(self.alpha):g} deg")
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """v_n and v_t just before impact (Eq 27-28), m/s."""
+        v_n, v_t = drop_velocities(self.height, self.alpha)
+        return float(v_n), float(v_t)
+
+    @property
+    def speed(self) -> float:
+        """Speed of fall, m/s."""
+        return math.hypot(*self.velocity)
+
+    @property
+    def arms(self) -> Arms:
+        """Arms of the lowest point of the tip, m."""
+        return self.rod.arms(self.alpha)
+
+
+def sets_of(surface: str) -> tuple[MeasuredSet, ...]:
+    """Give the measured sets of one surface state."""
+    return tuple(s for s in measured_sets() if s.surface == surface)
+
+
+def weights_of(case: Case) -> dict[str, float]:
+    """Weigh the measured sets of this surface by nearness (the fourth power of the distance, Shepard's way).
+
+    A measured case takes its own set alone, a case between two sets both; what has less than 2 % is left
+    out. The weights add up to 1.
+    """
+    near = {s.id: max(_distance(case, s), 0.02) ** -4 for s in sets_of(case.surface)}
+    kept = {name: w for name, w in near.items() if w >= 0.02 * sum(near.values())}
+    return {name: w / sum(kept.values()) for name, w in kept.items()}
+
+
+def _distance(case: Case, s: MeasuredSet) -> float:
+    """Count steps in length, angle and speed; another tip than the measured one is one step."""
+    steps = (
+        math.log(case.rod.length / s.length) / NEAR["length"],
+        (case.alpha - s.alpha) / NEAR["alpha"],
+        math.log(case.speed / _speed(s)) / NEAR["speed"],
+        float(_edge(case.rod.tip) != _edge(s.tip)),
+    )
+    return math.hypot(*steps)
+
+
+def _edge(tip: str) -> bool:
+    """Tell an edge (B, plain) from a nose (A)."""
+    return tip != "A"
+
+
+def _speed(s: MeasuredSet) -> float:
+    return float(np.hypot(s.motion["v_n"], s.motion["v_t"]).mean())
+
+
+def warnings_of(case: Case) -> tuple[str, ...]:
+    """Say in plain sentences where the case lies outside what was measured."""
+    narrow = (_narrow(case.surface, sets_of(case.surface)),) if case.surface != "machined" else ()
+    return (*narrow, *outside_of(case))
+
+
+def outside_of(case: Case) -> tuple[str, ...]:
+    """Name each quantity of the case that leaves the range measured on its surface."""
+    return tuple(_outside(case, sets_of(case.surface)))
+
+
+def _outside(case: Case, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+    rod = case.rod
+    lengths = sorted({s.length for s in sets})
+    if not any(math.isclose(rod.length, x) for x in lengths):
+        known = ", ".join(f"{1e3 * x:g}" for x in lengths)
+        yield f"length {1e3 * rod.length:g} mm: measured on {case.surface} surfaces were rods of {known} mm"
+    if not math.isclose(rod.diameter, 0.019):
+        yield f"diameter {1e3 * rod.diameter:g} mm: only rods of 19 mm were measured"
+    if not any(rod.tip == s.tip and math.isclose(rod.tip_radius, s.tip_radius) for s in sets):
+        known = " or ".join(sorted({f"{s.tip} with {1e3 * s.tip_radius:g} mm" for s in sets}))
+        tip = f"tip {rod.tip} with a radius of {1e3 * rod.tip_radius:g} mm"
+        yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
+    yield from _motion_warnings(case, sets)
+
+
+def _narrow(surface: str, sets: tuple[MeasuredSet, ...]) -> str:
+    tests = sum(len(s.motion["v_n"]) for s in sets)
+    speeds = " and ".join(f"{_speed(s):.2f}" for s in sorted(sets, key=_speed))
+    return (
+        f"{surface} surfaces were measured with one rod (240 mm), at one angle (45 degrees), at "
+        f"{speeds} m/s, in "
+        f"{tests} tests: anything else is an extrapolation"
+    )
+
+
+def _motion_warnings(case: Case, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+    """Compare angle and speed with the sets of the nearest measured length."""
+    length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
+    same = [s for s in sets if s.length == length]
+    angles = sorted(math.degrees(s.alpha) for s in same)
+    speeds = sorted(_speed(s) for s in same)
+    rod, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
+    if not angles[0] - 0.05 <= degrees <= angles[-1] + 0.05:
+        yield f"angle {degrees:g} degrees: {rod} at {_span(angles, 'degrees', '.0f')}"
+    if not 0.95 * speeds[0] <= case.speed <= 1.05 * speeds[-1]:
+        yield f"speed {case.speed:.2f} m/s: {rod} at {_span(speeds, 'm/s', '.2f')}"
+
+
+def _span(values: list[float], unit: str, form: str) -> str:
+    low, high = format(values[0], form), format(values[-1], form)
+    return f"{low} {unit} only" if low == high else f"{low} to {high} {unit}"

@@ -1,0 +1,29 @@
+"""The paper's figures by number."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from fem_impact.paper.drawn import Drawn
+from fem_impact.paper.figure_4 import figure_4
+from fem_impact.paper.figure_5 import figure_5
+from fem_impact.paper.figure_6 import figure_6
+from fem_impact.paper.figure_7 import figure_7
+
+__all__ = ["FIGURES", "draw_figure"]
+
+FIGURES: dict[int, Callable[[Path], Drawn]] = {4: figure_4, 5: figure_5, 6: figure_6, 7: figure_7}
+
+
+def draw_figure(number: int, out: str | Path) -> Drawn:
+    """Draw figure `number` (4 to 7) of the paper into a directory, data beside it.
+
+    Raises
+    ------
+    OutputPathError
+        The place cannot be written.
+    MissingLibraryError
+        matplotlib is not installed.
+    """
+    return FIGURES[number](Path(out))

@@ -1,0 +1,44 @@
+"""Rods and quantities as the command line states them."""
+
+from __future__ import annotations
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import parse_quantity
+from rigid import Projectile, RigidError
+
+__all__ = ["DENSITY", "TIP_RADII", "quantity", "rod_from_options"]
+
+DENSITY = 7850.0
+"""Of the measured steel rods, kg/m3."""
+
+TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
+"""Radius of each measured tip, m (a plain tip has a sharp edge)."""
+
+_EXAMPLES = {"--diameter": "19 mm", "--height": "0.82 m", "--angle": "45 deg", "--tip-radius": "3 mm"}
+
+
+def quantity(text: str, dimension: str, option: str) -> float:
+    """Read an option that carries a unit, such as ``--length "240 mm"``; return its SI value."""
+    try:
+        return parse_quantity(text, dimension, option)
+    except SceneError as error:
+        example = _EXAMPLES.get(option, "240 mm")
+        remedy = f'Write it with its unit, such as {option} "{example}".'
+        raise SceneError(error.problem, key=option, value=text, remedy=remedy) from None
+
+
+def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | None) -> Projectile:
+    """Make the steel rod that ``--length --diameter --tip --tip-radius`` describe.
+
+    Raises
+    ------
+    SceneError
+        A quantity has no unit, or no such rod can be turned.
+    """
+    radius = TIP_RADII[tip] if tip_radius is None else quantity(tip_radius, "length", "--tip-radius")
+    size = quantity(length, "length", "--length"), quantity(diameter, "length", "--diameter")
+    try:
+        return Projectile(*size, tip, radius, DENSITY)
+    except RigidError as error:
+        remedy = "Change --length, --diameter, --tip or --tip-radius."
+        raise SceneError(f"{error}.", key="rod", remedy=remedy) from None

@@ -1,0 +1,154 @@
+import json
+
+import numpy as np
+import pytest
+
+from rigid import Projectile, solve
+from rigid.experiments import measured_set
+
+ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
+HEADER = "test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
+GOOD = (
+    "1,-1.572,-1.602,0.381,-0.371,3.607",
+    "2,-1.516,-1.507,0.271,-0.369,1.019",
+    "3,-1.475,-1.475,0.340,-0.338,2.933",
+)
+
+
+def rows_of(id):
+    s = measured_set(id)
+    columns = [s.printed["test"].astype(int), *(s.motion[k] for k in ("v_n", "v_t", "V_n", "V_t", "Omega"))]
+    return [",".join(str(x) for x in row) for row in zip(*columns, strict=True)]
+
+
+def found(cli, path, *more):
+    code, out, err = cli("coefficients", path, *ROD, *more, "--json")
+    assert (code, err) == (0, "")
+    return json.loads(out)
+
+
+def test_the_papers_own_table_comes_back(cli, camera_file):
+    document = found(cli, camera_file(*rows_of("t5b")), "--d-c", "22.6 mm", "--d-d", "35 mm")
+    s = measured_set("t5b")
+    for i, row in enumerate(document["rows"]):
+        assert row["e"] == pytest.approx(s.printed["e"][i], abs=2e-3)
+        assert row["mu"] == pytest.approx(s.printed["mu"][i], abs=2e-3)
+    assert document["scatter"]["e"]["mean"] == pytest.approx(0.327, abs=1e-3)
+    assert document["arms"] == {"d_c_m": 0.0226, "d_d_m": 0.035, "source": "as stated"}
+    e = document["coefficients"]["e"]
+    for way in ("first_order", "bootstrap"):
+        assert e[way]["low"] < e["value"] < e[way]["high"]
+    assert e["first_order"]["sd"] == pytest.approx(e["bootstrap"]["sd"], rel=0.15)
+
+
+def test_known_coefficients_are_found(cli, camera_file):
+    """Made with the package's own rod and arms, so that only the way through the file is in doubt."""
+    rod = Projectile(0.08, 0.019, "B", 0.003, 7850.0)
+    arms = rod.arms(np.radians(45.0))
+    lines = []
+    for i, v in enumerate((1.4, 1.5, 1.6)):
+        after = solve(-v, -v, e=0.35, mu=0.5, e_m=-0.9, **arms._asdict(), k2=rod.k2)
+        lines.append(",".join(repr(float(x)) for x in (i, -v, -v, *after)))
+    document = found(cli, camera_file(*lines))
+    for name, value in (("e", 0.35), ("mu", 0.5), ("e_m", -0.9)):
+        assert document["coefficients"][name]["value"] == pytest.approx(value, rel=1e-9)
+        assert document["coefficients"][name]["first_order"]["parts"]["scatter"] < 1e-6
+    assert document["arms"]["source"].startswith("lowest point")
+    centre = document["impulse_centre"]
+    assert centre["from_contact_m"] == pytest.approx(-0.1 * (arms.d_c - 0.5 * arms.d_d), rel=1e-6)
+
+
+def test_units_in_the_header_are_converted(cli, camera_file):
+    turned = [
+        "1,-1572,-1.602,0.381,-0.371,206.666",
+        "2,-1516,-1.507,0.271,-0.369,58.3844",
+        "3,-1475,-1.475,0.34,-0.338,168.0485",
+    ]
+    header = "test,v_n [mm/s],v_t (m/s),V_n_m_per_s,V_t [m/s],Omega_deg_per_s"
+    other = found(cli, camera_file(*turned, header=header, name="units.csv"))
+    for a, b in zip(found(cli, camera_file(*GOOD))["rows"], other["rows"], strict=True):
+        assert [b[k] for k in ("e", "mu", "e_m")] == pytest.approx(
+            [a[k] for k in ("e", "mu", "e_m")], rel=1e-4
+        )
+
+
+def test_a_spreadsheets_file_is_read(cli, camera_file):
+    """Byte-order mark, blank lines, remarks, another column."""
+    path = camera_file(
+        "a,-1.5,-1.5,0.3,-0.4,5,wet",
+        "",
+        "# second day",
+        "b,-1.5,-1.5,0.4,-0.4,4,dry",
+        header=f"{HEADER},note",
+    )
+    path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+    document = found(cli, path)
+    assert [row["test"] for row in document["rows"]] == ["a", "b"]
+    assert document["notes"][0] == "columns not used: note"
+
+
+@pytest.mark.parametrize(
+    ("lines", "header", "words"),
+    [
+        (GOOD[:1], HEADER, ["holds 1 tests", "at least two"]),
+        ((*GOOD, "4,-1.5,-1.5,0.3,abc,5"), HEADER, ["line 5, column V_t_m_per_s", "'abc'"]),
+        ((*GOOD, "4,-1.5,-1.5,0.3,,5"), HEADER, ["line 5, column V_t_m_per_s", "''"]),
+        ((*GOOD, "4,-1.5,-1.5,0.3,nan,5"), HEADER, ["line 5, column V_t_m_per_s", "finite"]),
+        ((GOOD[0], "", "4,1.5,-1.5,0.3,-0.4,5"), HEADER, ["line 4, column v_n_m_per_s: 1.5 must be"]),
+        ((*GOOD, "4,-1.5,-1.5,-1.6,-0.4,5"), HEADER, ["line 5, column V_n_m_per_s: -1.6 must exceed v_n"]),
+        ((*GOOD, "4,-1.5,-1.5"), HEADER, ["line 5 has 3 cells, the header 6"]),
+        (GOOD, HEADER.replace("Omega_rad_per_s", "spin"), ["lacks Omega"]),
+        (GOOD, HEADER.replace("v_n_m_per_s", "v_n"), ["'v_n' names no unit", "v_n_m_per_s"]),
+        (GOOD, HEADER.replace("v_n_m_per_s", "v_n [ft/s]"), ["'ft/s' is not a unit of speed", "mm/s"]),
+        (GOOD, HEADER.replace("v_t_m", "v_n_m"), ["v_n has two columns"]),
+        (GOOD, HEADER.replace(",", ";"), ["Separate columns by commas"]),
+        (('1,"-1.5', "2"), HEADER, ["not CSV"]),
+    ],
+)  # fmt: skip
+def test_bad_files_are_refused_by_file_line_and_column(cli, camera_file, lines, header, words):
+    code, out, err = cli("coefficients", camera_file(*lines, header=header), *ROD)
+    assert (code, out) == (5, "")
+    for word in ("mine.csv", *words):
+        assert word in err
+    assert err.count("\n") == 1
+
+
+def test_an_empty_or_missing_file(cli, tmp_path):
+    (tmp_path / "empty.csv").write_text("")
+    assert "is empty" in cli("coefficients", "empty.csv", *ROD)[2]
+    assert cli("coefficients", "none.csv", *ROD)[0] == 5
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (("--d-c", "22 mm"), "one arm alone"),
+        (("--length", "80"), '--length "240 mm"'),
+        (("--angle", "95 deg"), "from 0 up to 90"),
+        (("--tip-radius", "12 mm"), "tip_radius"),
+        (("--diameter", "-19 mm"), "diameter must be positive"),
+    ],
+)
+def test_bad_options_are_refused(cli, camera_file, more, words):
+    code, _, err = cli("coefficients", camera_file(*GOOD), *ROD, *more)
+    assert code == 3
+    assert words in err
+
+
+def test_doubts_are_said(cli, camera_file):
+    gaining = camera_file("x,-1.5,-1.5,1.6,-1.5,5", *GOOD)
+    assert "after than before impact in test x" in cli("coefficients", gaining, *ROD)[1]
+    up = camera_file("1,-1.5,1.5,0.3,0.4,-5", "2,-1.5,1.4,0.3,0.4,-5")
+    assert "v_t > 0" in cli("coefficients", up, *ROD)[1]
+
+
+def test_text_names_arms_intervals_and_sources(cli, camera_file):
+    _, out, _ = cli("coefficients", camera_file(*GOOD), *ROD)
+    for words in (
+        "3 tests of a rod 80 mm x 19 mm",
+        "d_c = 21.70 mm",
+        "first order",
+        "contact 0.",
+        "from the contact point",
+    ):
+        assert words in out

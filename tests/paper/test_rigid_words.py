@@ -1,0 +1,65 @@
+"""The four commands in README, in help, and what they import."""
+
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fem_impact.cli_parser import read_line
+
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+COMMANDS = ("audit", "coefficients", "figure", "assess")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_help_is_light(command):
+    probe = (
+        "import sys\nfrom fem_impact.cli import main\n"
+        f"try:\n    main([{command!r}, '--help'])\nexcept SystemExit:\n    pass\n"
+        "print(*(n for n in ('numpy', 'matplotlib', 'rigid', 'h5py') if n in sys.modules), 'end')"
+    )
+    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "end"
+    assert f"usage: fem-impact {command}" in done.stdout
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_table_of_the_readme_lists_the_command(command):
+    assert len(re.findall(rf"^\| `fem-impact {command}[ `]", README, re.MULTILINE)) == 1
+
+
+def readme_lines():
+    found = re.search(r"<!-- rigid -->\n```sh\n(.*?)\n```", README, re.DOTALL)
+    assert found
+    return found.group(1).splitlines()
+
+
+def test_the_commands_of_the_readme_work(cli, camera_file):
+    lines = readme_lines()
+    assert {shlex.split(line)[1] for line in lines} == set(COMMANDS)
+    header = "test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
+    assert header in README
+    camera_file(
+        "1,-1.572,-1.602,0.381,-0.371,3.607",
+        "2,-1.516,-1.507,0.271,-0.369,1.019",
+        header=header,
+        name="tests.csv",
+    )
+    for line in lines:
+        code, out, err = cli(*shlex.split(line)[1:])
+        assert (code, err) == (0, "")
+        assert len(out) > 200
+
+
+def test_the_python_of_the_section_runs(capsys):
+    found = re.search(r"<!-- rigid-python -->\n```python\n(.*?)\n```", README, re.DOTALL)
+    exec(compile(found.group(1), "README.md", "exec"), {})
+    assert capsys.readouterr().out == "0.322 0.583 -0.79\n"
+
+
+def test_options_of_one_command_do_not_leak_into_another():
+    options = read_line(["audit"])
+    assert (options.set_id, options.out, options.json) == (None, None, False)
