@@ -31,7 +31,7 @@ def _table(head: list[str], body: list[list[str]]) -> str:
 
 
 def _beside(comparison: list[Row]) -> str:
-    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison}
+    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = list(dict.fromkeys(row["set"] for row in comparison))
     return _table(["set", *COMPARED], [[name, *(cells[name, q] for q in COMPARED)] for name in names])
 
