@@ -1,8 +1,8 @@
-"""The study as two Markdown tables, one row a set: beside the measurement, and where the energy went."""
+"""The study as Markdown tables, one row a set: beside the measurement, where the energy went, friction."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from fem_impact.compare import Row
@@ -19,10 +19,10 @@ SHARES = (
 )
 
 
-def summary(rows: Iterable[Mapping[str, Any]], comparison: Iterable[Row]) -> str:
-    """Return both tables."""
-    outcomes = list(rows)
-    return f"{_beside(list(comparison))}\n\n{_shares(outcomes)}\n"
+def summary(rows: list[dict[str, Any]], comparison: list[Row], friction: list[dict[str, Any]]) -> str:
+    """Return the tables, with that of the friction interval if it was computed."""
+    tables = [_beside(comparison), _shares(rows), *([_friction(friction)] if friction else [])]
+    return "\n\n".join(tables) + "\n"
 
 
 def _table(head: list[str], body: list[list[str]]) -> str:
@@ -47,7 +47,7 @@ def _cell(row: Row) -> str:
     return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"
 
 
-def _shares(outcomes: list[Mapping[str, Any]]) -> str:
+def _shares(outcomes: list[dict[str, Any]]) -> str:
     head = ["set", *(f"{words}, %" for words, _ in SHARES), "residual", "steps", "CPU s"]
     body = []
     for o in outcomes:
@@ -62,3 +62,12 @@ def _percent(outcome: Mapping[str, Any], key: str) -> str:
     value, band = 100 * outcome[key], (outcome["bands"] or {}).get(key)
     digits = 2 if abs(value) < 10 else 1
     return f"{value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+
+
+def _friction(friction: list[dict[str, Any]]) -> str:
+    """Return a row a set: f and, at its low / stated / high value, each quantity on the coarser mesh."""
+    names = list(dict.fromkeys(row["set"] for row in friction))
+    quantities = list(dict.fromkeys(row["quantity"] for row in friction))
+    cells = {(row["set"], row["quantity"]): " / ".join(f"{x:.3g}" for x in row["model"]) for row in friction}
+    f = {row["set"]: " / ".join(f"{x:g}" for x in row["f"]) for row in friction}
+    return _table(["set", "f", *quantities], [[n, f[n], *(cells[n, q] for q in quantities)] for n in names])

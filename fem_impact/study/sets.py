@@ -18,6 +18,7 @@ from fem_impact.progress import CaseProgress
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
 from fem_impact.study.cases import Case, Failure, compute, stored
+from fem_impact.study.friction import friction_cases, friction_notes, friction_rows
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
 
@@ -42,14 +43,15 @@ class StudyResult:
     notes: list[str] = field(default_factory=list)
 
 
-def cases_of(set_id: str, quick: bool, out: Path) -> tuple[Case, Case]:
-    """Return the set's case and its coarser twin."""
+def cases_of(set_id: str, quick: bool, out: Path) -> dict[str, Case]:
+    """Return the set's case, its coarser twin and, unless quick, that at both ends of friction."""
     scene = load(set_id)
     if quick:
         scene = replace_all(scene, {"accuracy.tip_size": f"{QUICK_TIP * 1e3:g} mm"})
     size = COARSER * scene.accuracy.tip_size
     coarse = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:g} mm", "save.frames": 0})
-    return Case(scene, out / set_id), Case(coarse, out / f"{set_id}-coarse")
+    twin = Case(coarse, out / f"{set_id}-coarse")
+    return {"fine": Case(scene, out / set_id), "coarse": twin} | ({} if quick else friction_cases(twin))
 
 
 def run_sets(
@@ -74,17 +76,21 @@ def run_sets(
     films : make a film of each set as well
     """
     chosen = list(ids) or list(MEASURED_SETS)
-    pairs = {name: cases_of(name, quick, out) for name in chosen}
+    cases = {name: cases_of(name, quick, out) for name in chosen}
     make_directory(out)
-    done = run_cases([case for pair in pairs.values() for case in pair], progress, workers, executor)
+    done = run_cases(
+        [case for group in cases.values() for case in group.values()], progress, workers, executor
+    )
     failed = [f for f in done.values() if isinstance(f, Failure)]
     failures = [{"scene_id": f.case.out.name, "error": f.reason} for f in failed]
-    outcomes = []
+    outcomes, friction = [], []
     for name in chosen:
-        fine, coarse = (done[case.out.name] for case in pairs[name])
-        if isinstance(fine, Outcome):
-            outcomes.append(with_bands(fine, coarse, out / name))
-    result = write_study(outcomes, failures, out)
+        found = {kind: done[case.out.name] for kind, case in cases[name].items()}
+        if isinstance(found["fine"], Outcome):
+            outcomes.append(with_bands(found["fine"], found["coarse"], out / name))
+        if not quick:
+            friction += friction_rows(found["low"], found["coarse"], found["high"])
+    result = write_study(outcomes, failures, friction, out)
     notes = present([out / o["scene_id"] for o in outcomes], out, progress, films)
     return replace(result, notes=notes)
 
@@ -130,13 +136,22 @@ def _read(case: Case) -> Outcome | Failure:
     return stored(case) or Failure(case, "its result cannot be read back")
 
 
-def write_study(outcomes: list[Outcome], failures: list[dict[str, str]], out: Path) -> StudyResult:
+def write_study(
+    outcomes: list[Outcome], failures: list[dict[str, str]], friction: list[dict[str, Any]], out: Path
+) -> StudyResult:
     """Write study.json, comparison.csv and summary.md, and return the study."""
     comparison = [row for outcome in outcomes for row in compare(outcome)]
     rows = [outcome.to_dict() for outcome in outcomes]
-    document = {"schema": SCHEMA, "rows": rows, "comparison": comparison, "failures": failures}
+    document = {
+        "schema": SCHEMA,
+        "rows": rows,
+        "comparison": comparison,
+        "friction": friction,
+        "failures": failures,
+        "notes": friction_notes(friction),
+    }
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
-    write_text(out / "summary.md", summary(rows, comparison))
+    write_text(out / "summary.md", summary(rows, comparison, friction))
     table = "\n".join([text_table(comparison), *(f"failed: {f['scene_id']}: {f['error']}" for f in failures)])
     return StudyResult(rows, comparison, table, failures)
