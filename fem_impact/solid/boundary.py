@@ -1,8 +1,8 @@
 """Viscous-spring boundary of the barrier block: the rest of the half-space as springs and dashpots.
 
 Normal and tangential springs 1.33 G/r and 0.67 G/r per area at distance r from the contact, dashpots
-rho c_d and rho c_s per area (Liu, Du & Yan 2006, doi:10.1007/s11803-006-0588-2, with the coefficients
-4/3 and 2/3 of a point load).
+rho c_d and rho c_s per area (Liu, Du, Du, Wang & Wu 2006, Earthquake Engineering and Engineering Vibration
+5(1), 93-102, with the coefficients 4/3 and 2/3 of a point source).
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ class PlaneContact:
     """Unilateral contact with Coulomb friction ``f`` on a rigid plane, node by node.
 
     A node whose predicted position would lie below the plane gets the smallest impulse that lets it
-    arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1420-1, with the predicted gap).
+    arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1397-0, with the predicted gap).
     """
 
     nodes: Ints
