@@ -149,7 +149,25 @@ def test_a_case_between_two_sets_weighs_both():
     assert sum(weights.values()) == pytest.approx(1.0)
     ends = [assess(short_rod(degrees=d))["losses"]["total"] for d in (25.0, 31.0, 37.0)]
     assert ends[0]["mean"] < ends[1]["mean"] < ends[2]["mean"]
-    assert ends[1]["high"] - ends[1]["low"] > ends[2]["high"] - ends[2]["low"]
+    widths = [end["high"] - end["low"] for end in ends]
+    assert widths[1] > 2 * max(widths[0], widths[2])  # that the two sets differ is part of the interval
+
+
+def test_a_nose_weighs_the_tests_of_noses_and_an_edge_those_of_edges():
+    between = {"length": 0.24, "height": 0.45, "surface": "contaminated"}
+    assert weights_of(short_rod(**between))["t3-contaminated"] > 0.9
+    assert weights_of(short_rod(**between, tip="A", radius=0.007))["t2"] > 0.9
+
+
+@pytest.mark.parametrize("degrees", [3.0, 25.0])
+def test_sliding_heat_counts_the_slide_back_and_no_friction_makes_more(degrees):
+    case = short_rod(degrees=degrees)
+    known = Range((0.4, 0.4), (float(case.arms.d_c),) * 2)
+    f = np.linspace(0.0, 1.5, 20001)
+    path = sliding_path(*case.velocity, e=0.4, f=f, **case.arms._asdict(), k2=case.rod.k2)
+    first, after = (-work / (0.5 * case.speed**2) for work in path.tangential_work)
+    assert (first + after).max() == pytest.approx(sliding_heat(case, known), rel=1e-3)
+    assert bool(after.max() > first.max()) == (degrees < 10)  # only a tip that turns by itself slides back so
 
 
 def test_a_tip_that_stuck_carries_sliding_friction_to_a_steep_case():

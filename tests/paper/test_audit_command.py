@@ -61,6 +61,12 @@ def test_scatter_has_the_error_bar_of_e_m(cli):
     assert scatter["t5b"]["e"]["tests"] == 8
 
 
+def test_a_mean_that_leaves_out_a_test_is_not_blamed_on_the_marker(cli):
+    records = json.loads(cli("audit", "--set", "t6-17", "--json")[1])["records"]
+    (mean,) = [r for r in records if (r["column"], r["row"]) == ("V_ct", "mean")]
+    assert mean["explanation"] == "the printed mean leaves out test 1"
+
+
 # the explanations themselves
 
 
