@@ -51,5 +51,5 @@ def test_impossible_ultimate_stress(ultimate):
 
 @pytest.mark.parametrize("numbers", [(0.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1.0, -1.0, 1.0), (1.0, 1.0, -0.1)])
 def test_impossible_laws(numbers):
-    with pytest.raises(ValueError, match="positive|softening"):
+    with pytest.raises(ValueError, match=r"positive|softening"):
         Hardening(*numbers)

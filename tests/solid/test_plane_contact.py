@@ -5,8 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.solid.contact.book import ACTIVE, ARM, CLOSING, FRICTION, IMPULSE_N, IMPULSE_T
-from fem_impact.solid.contact.book import MERGE_GAP, RECORD, ContactBook
+from fem_impact.solid.contact.book import (
+    ACTIVE,
+    ARM,
+    CLOSING,
+    FRICTION,
+    IMPULSE_N,
+    IMPULSE_T,
+    MERGE_GAP,
+    RECORD,
+    ContactBook,
+)
 from fem_impact.solid.contact.plane import PlaneContact, touch_plane
 from fem_impact.solid.state import State
 
@@ -55,7 +64,7 @@ def test_every_node_obeys_signorini_and_coulomb(seed, f):
 @given(st.integers(0, 10**6))
 @settings(max_examples=20, deadline=None)
 def test_booked_work_is_the_energy_that_is_missing(seed):
-    """With forces: kinetic energy gained = work of the forces - friction - closing, all with mean velocities."""
+    """Kinetic energy gained = work of the forces - friction - closing, all with mean velocities."""
     nodes, x, v, force, inverse, mass, before = _swarm(seed)
     record = np.zeros(RECORD)
     touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4, record)

@@ -1,17 +1,15 @@
 """Whole runs on coarse meshes, held to reference problems, balances and closed forms.
 
-Mutants that were seen to be killed (mutation -> test):
+The mutants of the reference problems, and the tests that were seen to kill them:
 
-==============================================================  =============================================
-contact work with velocities after the update (plane, surface)  test_booked_work..., test_ledger_closes
-E_vib from raw strain energy                                    test_locked_in_stress_is_not_vibration
-sign of Omega                                                   test_stiff_short_rod_is_rigid_theory
-half-model energies not doubled                                 test_energies_are_those_of_the_whole_rod
-friction on facet noise (quads' own normals)                    test_sliding_rod_has_the_impulse_ratio_of_its_friction
-stopping at the first separation                                test_elastic_frictionless_long_rod_touches_twice
-plain full-integration hexes at the tip                         test_small_increments..., test_body_and_tip_operators
-search that drops the nodes on the symmetry plane               test_first_contact_comes_at_gap_over_speed
-==============================================================  =============================================
+- contact work with velocities after the update: test_booked_work..., test_ledger_closes
+- vibration energy from raw strain energy: test_locked_in_stress_is_not_vibration
+- sign of Omega: test_stiff_short_rod_is_rigid_theory, test_sign_of_omega_follows_the_impulse
+- energies of the half model not doubled: test_energies_are_those_of_the_whole_rod
+- friction on facet noise: test_sliding_rod_has_the_impulse_ratio_of_its_friction
+- stopping at the first separation: test_elastic_frictionless_long_rod_touches_twice
+- plain full integration at the tip: test_small_increments..., test_body_and_tip_operators...
+- a search that drops the nodes on the symmetry plane: test_first_contact_comes_at_gap_over_speed
 """
 
 from dataclasses import replace
@@ -24,6 +22,7 @@ import solid_scenes as scenes
 from fem_impact.estimates import projectile
 from fem_impact.modes import rigid_motion
 from fem_impact.reduce import reduce
+from fem_impact.solid import build as built
 from fem_impact.solid.build import START_GAP
 from fem_impact.solid.contact import PlaneContact
 from fem_impact.solid.march import advance, evaluate, march
@@ -257,12 +256,12 @@ def test_a_free_spin_costs_nothing_and_keeps_lengths():
 def test_small_rotations_let_a_spinning_rod_grow():
     """Nodes fly on straight lines: no strain energy, but a length that grows by theta^2 / 2."""
     _, stretch, _, spin = _spun(*PLANE)
-    assert stretch == pytest.approx(np.sqrt(1 + 0.18**2) - 1, rel=0.02)
+    assert stretch == pytest.approx(np.sqrt(1 + 0.18**2) - 1, rel=0.05)
     assert spin == pytest.approx(45.0 / (1 + 0.18**2), rel=0.01)
 
 
 def test_body_and_tip_operators_are_the_assembled_rod():
-    """Slices, nose and yielding tip together push like the rod's stiffness matrix; no other element at the tip."""
+    """Slices, nose and yielding tip together push like the rod's stiffness matrix."""
     model = scenes.model("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
     state, n = model.initial_state(), model.layout.rod_size
     u = 1e-13 * np.random.default_rng(1).normal(size=n)
@@ -277,6 +276,42 @@ def test_body_and_tip_operators_are_the_assembled_rod():
     exact = model.rod_stiffness @ u
     assert abs(state.force[:n] + exact).max() < 2e-4 * abs(exact).max()
     assert model.zones[0].count > 100
+
+
+def _between(share):
+    """Make meshes whose node nearest to the lowest point stands a share of a cell beside it."""
+    real = built.build_geometry
+
+    def made(scene, gap, meshed):
+        base = scene.projectile.diameter / scene.accuracy.across
+        h = base / 2 ** round(np.log2(base / scene.accuracy.tip_size))
+        turn = share * h / scene.projectile.tip_radius
+        other = replace(scene, impact=replace(scene.impact, angle=scene.impact.angle + turn))
+        geometry = real(other, gap, meshed)
+        (t, b, n), c, s = geometry.rod_points.T, np.cos(turn), np.sin(turn)
+        points = np.stack([c * t - s * n, b, s * t + c * n], axis=1)
+        points[:, 2] += gap - points[:, 2].min()
+        lowest = points[np.argmin(points[:, 2]), 0]
+        assert abs(lowest) == pytest.approx(share * h, abs=0.02 * h)
+        return replace(geometry, rod_points=points)
+
+    return made
+
+
+@pytest.mark.parametrize(
+    ("effects", "change"),
+    [((*PLANE, "friction"), 0.002), ((*PLANE, "friction", "rod-plasticity"), 0.02)],
+)
+def test_a_node_on_the_lowest_point_or_beside_it(effects, change, monkeypatch):
+    stated = scenes.scene(*effects, length=0.08, v_n=-2.1, v_t=-2.1)
+    found = []
+    for share in (0.0, 0.48):
+        monkeypatch.setattr(built, "build_geometry", _between(share))
+        found.append(_outcome(solve(stated)))
+        monkeypatch.undo()
+    assert found[0]["E_0_J"] == pytest.approx(found[1]["E_0_J"], rel=1e-9)
+    assert abs(found[0]["e_edge"] - found[1]["e_edge"]) < change
+    assert abs(found[0]["mu"] - found[1]["mu"]) < change
 
 
 def test_gravity_is_an_account_of_its_own():

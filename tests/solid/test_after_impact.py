@@ -1,0 +1,266 @@
+"""The end of a run: free flight, stop rule, step guard, the camera replayed, and the reduction."""
+
+from dataclasses import replace
+from math import cos, pi, sin
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+import solid_scenes as scenes
+
+import rigid
+from fem_impact.errors import RunError
+from fem_impact.markers import WINDOW, lever_of, replay
+from fem_impact.modes import RigidMotion
+from fem_impact.reduce import reduce
+from fem_impact.solid.march import advance, evaluate
+from fem_impact.solid.separation import Separation, flight_heights
+from fem_impact.solid.stepguard import StepGuard, gradient_squares
+
+PLANE = ("vibration", "barrier-rigid", "large-rotation")
+SHORT = {"length": 0.08, "v_n": -1.0, "v_t": -1.0}
+
+
+@pytest.fixture(scope="module")
+def result():
+    return scenes.run("vibration", "friction", "barrier-rigid", "large-rotation", **SHORT)
+
+
+def _moving(result, V_n=0.0, V_t=0.0, Omega=0.0, shake=0.0):
+    motion = replace(result.motion, V_n=V_n, V_t=V_t, Omega=Omega)
+    ahead = replace(result.flight, a=shake * result.flight.a, b=shake * result.flight.b)
+    return replace(result, motion=motion, flight=ahead)
+
+
+def test_heights_of_a_turning_body():
+    motion = RigidMotion(1.0, 1.0, np.array([1.0, 0.0, 5.0]), V_n=2.0, V_t=9.0, Omega=0.5)
+    x = np.array([[1.0, 0.0, 4.0], [3.0, 0.0, 5.0]])
+    still = SimpleNamespace(displacement=lambda rows, t: np.zeros((len(rows), len(t))))
+    t = np.array([0.0, 0.2])
+    found = flight_heights(x, np.arange(2), motion, still, t)
+    # n turns towards t: a point on the +t side goes down
+    exact = [[4.0, 5 + 0.4 - cos(0.1)], [5.0, 5 + 0.4 - 2 * sin(0.1)]]
+    assert found == pytest.approx(np.array(exact))
+    shaken = SimpleNamespace(displacement=lambda rows, t: np.array([[7.0 + s for s in t]] * 2))
+    assert flight_heights(x, np.arange(2), motion, shaken, t) - found == pytest.approx(np.tile(t, (2, 1)))
+
+
+class Stop:
+    """A stop rule over the model of a finished run, with a made-up state and flight."""
+
+    def __init__(self, height, V_n, Omega=0.0, swing=0.0, touched=1e-4, time=1.5e-4):
+        model = scenes.model(*PLANE, **SHORT)
+        self.state = model.initial_state()
+        tip = model.layout.rod[:, 2]
+        self.state.x[tip] += height - self.state.x[tip].min()
+        self.state.time = time
+        if touched is not None:
+            model.book.step[:] = 1.0
+            model.book.close_step(touched)
+            model.book.step[:] = 0.0
+        places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+        low = model.layout.rod[np.argsort(model.geometry.rod_points[:, 2])[:20]]
+        motion = RigidMotion(1.0, 1.0, self.state.x[places].mean(axis=0), V_n, 0.0, Omega)
+
+        def displacement(rows, t):
+            return np.tile(swing * (np.cos(2 * pi * 1e4 * t) - 1), (len(rows), 1))
+
+        view = SimpleNamespace(
+            tip=low, rigid=lambda s: motion, flight=lambda s, m: SimpleNamespace(displacement=displacement)
+        )
+        self.rule = Separation(model, view, limit=1e-3)
+
+    def over(self):
+        return self.rule.observe(self.state)
+
+
+def test_the_impact_is_over_when_the_rod_flies_off():
+    stop = Stop(1e-5, V_n=0.5)
+    assert stop.over() and stop.rule.finished
+    assert "no further contact" in stop.rule.reason
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        {"height": 1e-5, "V_n": -0.01},  # comes back
+        {"height": 1e-5, "V_n": 0.5, "swing": 0.1e-3},  # swings back: 50 us later it is 25 um up, 200 um down
+        {"height": 1e-5, "V_n": 0.1, "Omega": 100.0, "swing": 0.0},  # turns its tip down
+        {"height": -1e-6, "V_n": 0.5},  # still in the crater
+        {"height": 1e-5, "V_n": 0.5, "touched": None},  # has not touched yet
+        {"height": 1e-5, "V_n": 0.5, "touched": 1.49e-4},  # touched a microsecond ago
+    ],
+    ids=["falls", "swings", "turns", "crater", "early", "just now"],
+)
+def test_the_impact_is_not_over(case):
+    if "Omega" in case:
+        case = case | {"Omega": -100.0}
+    stop = Stop(**case)
+    assert not stop.over()
+    assert not stop.rule.finished
+
+
+def test_time_is_up():
+    stop = Stop(1e-5, V_n=-1.0, time=1e-3)
+    assert stop.over() and not stop.rule.finished
+    assert "max_time = 1 ms" in stop.rule.reason
+
+
+def test_step_follows_a_squeezed_element_and_folded_ones_stop_the_run():
+    model = scenes.model("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
+    state, guard = model.initial_state(), StepGuard(model)
+    assert guard.observe(state) is False
+    assert state.dt_next == model.step
+    element = guard.places[int(np.argmax(guard.square))]
+    base = state.x[element].copy()
+    middle = base.mean(axis=0)
+    state.x[element] = middle + 0.5 * (base - middle)
+    guard.observe(state)
+    assert state.dt_next <= 0.51 * model.step
+    assert guard.smallest == state.dt_next
+    state.x[element] = base
+    guard.observe(state)
+    assert state.dt_next == model.step
+    state.x[element] = middle - 0.1 * (base - middle)
+    with pytest.raises(RunError, match="folded at"):
+        guard.observe(state)
+    state.x[element] = middle + 0.005 * (base - middle)
+    with pytest.raises(RunError, match=r"crushed|folded"):
+        guard.observe(state)
+    state.v[0] = np.nan
+    with pytest.raises(RunError, match="not finite"):
+        guard.observe(state)
+
+
+def test_gradients_of_a_cube():
+    corners = np.array(
+        [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]], float
+    )
+    one, half = gradient_squares(np.stack([corners, corners / 2]))
+    assert half == pytest.approx(4 * one)
+    g = 1 / np.sqrt(3)
+    exact = 3 * sum((1 + s * g) ** 2 * (1 + t * g) ** 2 / 16 for s in (-1, 1) for t in (-1, 1)) * 2
+    assert one == pytest.approx(exact)
+    assert np.isnan(gradient_squares(corners[None][:, [1, 0, 3, 2, 5, 4, 7, 6]]))[0]
+
+
+# ---------------------------------------------------------------- markers
+
+
+def test_camera_reads_a_rigid_flight_exactly(result):
+    alpha, arm = result.scene.impact.angle, lever_of(0.08)
+    for V_n, V_t, Omega in ((0.4, -1.2, 0.0), (0.4, -1.2, 12.0), (0.4, -1.2, -30.0)):
+        seen = replay(_moving(result, V_n, V_t, Omega))
+        assert (seen.V_n, seen.V_t) == pytest.approx((V_n, V_t))
+        # the sine of the turned angle, read back by its arc sine
+        assert seen.Omega == pytest.approx(Omega, rel=1e-9, abs=1e-12)
+        turned = Omega * WINDOW
+        down = -arm * (cos(alpha + turned) - cos(alpha)) / WINDOW
+        across = -arm * (sin(alpha + turned) - sin(alpha)) / WINDOW
+        assert (seen.V_cn, seen.V_ct) == pytest.approx((V_n + down, V_t + across))
+
+
+def test_camera_reads_vibration_as_a_difference_over_its_window(result):
+    still, shaken = replay(_moving(result, 0.4)), replay(_moving(result, 0.4, shake=1.0))
+    assert (
+        0
+        < abs(shaken.V_cn - still.V_cn)
+        < 2 * result.flight.amplitude(result.view.tip.ravel()).max() / WINDOW
+    )
+
+
+def test_levers():
+    assert lever_of(0.24) == 0.12
+    assert (lever_of(0.12), lever_of(0.08)) == (0.052, 0.032)
+    assert lever_of(0.1) == pytest.approx(0.042)
+
+
+# ---------------------------------------------------------------- reduction
+
+
+@pytest.fixture(scope="module")
+def measured(result):
+    """The run as if it repeated a measured set, so that all three sets of arms are filled."""
+    return reduce(replace(result.scene, measured="t5b"), result)
+
+
+@pytest.mark.parametrize("arms", ["paper", "edge", "impulse"])
+def test_closure_with_every_set_of_arms(measured, result, arms):
+    """E_ln + E_lt + E_r - E_0 = (I Omega^2 / 2)(1 + 1/e_m)."""
+    o, m = measured, result.motion
+    e_m = o[f"e_m_{arms}"]
+    left = o[f"E_ln_{arms}_over_E_0"] + o[f"E_lt_{arms}_over_E_0"] + o["E_r_over_E_0"] - 1
+    right = 0.5 * m.inertia * m.Omega**2 * (1 + 1 / e_m) / o["E_0_J"]
+    assert left == pytest.approx(right, abs=1e-7)
+    assert o[f"d_c_{arms}_m"] > 0.02
+
+
+def test_restitution_of_moment_is_minus_one_at_the_centre_of_impulse(measured):
+    assert measured["e_m_impulse"] == pytest.approx(-1.0, abs=1e-9)
+    assert measured["e_m_edge"] != pytest.approx(-1.0, abs=1e-9)
+
+
+def test_coefficients_are_those_of_the_velocities(measured, result):
+    m, impact = result.motion, result.scene.impact
+    d_c = measured["d_c_edge_m"]
+    assert measured["e_edge"] == pytest.approx(-(m.V_n + d_c * m.Omega) / impact.v_n)
+    assert measured["mu"] == pytest.approx((m.V_t - impact.v_t) / (m.V_n - impact.v_n))
+    book = result.model.book.impulse
+    assert measured["mu"] == pytest.approx(book[0] / book[1], rel=1e-6)
+    assert measured["E_r_over_E_0"] == pytest.approx(m.kinetic / result.E_0)
+
+
+def test_sign_of_omega_follows_the_impulse(result):
+    """A frictionless push up under the mass centre's down-slope side turns n towards t."""
+    free = scenes.run(*PLANE, **SHORT)
+    d_c, d_d = (float(d) for d in rigid.Projectile(0.08, 0.019, "B", 0.003, 7850.0).arms(pi / 4))
+    impulse = free.model.book.impulse[1] * 2
+    assert free.motion.Omega == pytest.approx(impulse * d_c / free.motion.inertia, rel=0.02)
+    p_t, p_n, _ = 2 * result.model.book.impulse
+    assert result.motion.Omega == pytest.approx((p_n * d_c - p_t * d_d) / result.motion.inertia, rel=0.05)
+
+
+def test_gravity_is_taken_out(result):
+    scene = replace(result.scene, effects=(*result.scene.effects, "gravity"))
+    with_fall = reduce(scene, replace(result, scene=scene))
+    without = reduce(result.scene, result)
+    fall = 9.80665 * result.time
+    assert with_fall["V_n_m_per_s"] - without["V_n_m_per_s"] == pytest.approx(fall * cos(pi / 4), rel=1e-4)
+    assert with_fall["V_t_m_per_s"] - without["V_t_m_per_s"] == pytest.approx(fall * sin(pi / 4), rel=1e-4)
+
+
+def test_unmeasured_scenes_say_why_they_have_no_paper_arms(result):
+    found = reduce(result.scene, result)
+    assert found["e_paper"] is None
+    assert "no measured set" in found.reason("e_paper")
+    assert found.reason("bands")
+
+
+def test_an_open_ledger_fails_the_run(result):
+    spoiled = reduce(result.scene, replace(result, worst=2e-4 * result.E_0))
+    assert spoiled["finished"] is False
+    assert "ledger misses 2.0e-04" in spoiled["stopped_because"]
+    assert spoiled["E_vib_floor_over_E_0"] == pytest.approx(2e-4)
+    assert reduce(result.scene, replace(result, worst=0.9e-4 * result.E_0))["finished"] is True
+
+
+def test_vibration_below_the_floor_is_marked(result):
+    share = result.flight.energy
+    assert reduce(result.scene, replace(result, worst=1.01 * share))["E_vib_below_floor"] is True
+    assert reduce(result.scene, replace(result, worst=0.99 * share))["E_vib_below_floor"] is False
+
+
+def test_a_step_changes_momentum_by_the_contact_impulse_alone():
+    model = scenes.model("vibration", "friction", "barrier-rigid", **SHORT)
+    state, n = model.initial_state(), model.layout.rod_size
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    while not model.book.intervals:
+        evaluate(model, state)
+        advance(model, state)
+    for _ in range(50):
+        evaluate(model, state)
+        before = (model.mass[:n] * state.v[:n])[places].sum(axis=0)
+        book = model.book.impulse.copy()
+        advance(model, state)
+        after = (model.mass[:n] * state.v[:n])[places].sum(axis=0)
+        assert (after - before)[[0, 2]] == pytest.approx((model.book.impulse - book)[:2], rel=1e-6, abs=1e-12)
