@@ -57,11 +57,12 @@ def study(options: Options) -> int:
     finally:
         meter.close()
     if options.json:
-        print_json({"rows": result.rows})
+        told = ("rows", "comparison", "failures", "notes")
+        print_json({name: getattr(result, name) for name in told})
     else:
         sys.stderr.writelines(f"note: {note}\n" for note in result.notes)
         sys.stdout.write(f"{result.table}\nresults: {out}\nreport:  {out / 'report.html'}\n")
-    return 0
+    return RunError.exit_code if result.failures else 0
 
 
 def _default_out(scene: Scene, options: Options) -> Path:

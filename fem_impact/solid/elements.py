@@ -107,7 +107,9 @@ def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: K
 def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Array:
     """Return row-sum lumped nodal masses (m, 8), kg, of each element."""
     basis = _basis(points, cells)
-    values = np.stack([np.broadcast_to(basis.basis[k][0].value, basis.dx.shape) for k in HEX_MAPPING[:8]])
+    values = np.stack(
+        [np.broadcast_to(np.asarray(basis.basis[k][0]), basis.dx.shape) for k in HEX_MAPPING[:8]]
+    )
     return np.asarray(density * np.einsum("kmq,mq->mk", values, basis.dx))
 
 

@@ -58,8 +58,9 @@ def _sources() -> list[Path]:
         Path(str(rigid.__file__)).parent,
         *(top / n for n in NUMERIC),
     ]
-    files = [f for place in packages for f in (sorted(place.rglob("*.py")) if place.is_dir() else [place])]
-    return files
+    kinds = {".py", ".toml", ".csv"}
+    found = [f for place in packages for f in (sorted(place.rglob("*")) if place.is_dir() else [place])]
+    return [f for f in found if f.suffix in kinds]
 
 
 def stamp(scene: Scene) -> str:
@@ -90,10 +91,11 @@ def compute(case: Case) -> Failure | None:
 
     make_directory(case.out)
     (case.out / STAMP).unlink(missing_ok=True)
+    mark = stamp(case.scene)  # of the program that runs, not of what lies there when it is done
     try:
         simulate(case.scene, out=case.out)
     except FemImpactError as error:
         return Failure(case, str(error))
     # written last: a result without its stamp is computed again
-    write_text(case.out / STAMP, stamp(case.scene))
+    write_text(case.out / STAMP, mark)
     return None

@@ -60,7 +60,9 @@ def stand(monkeypatch):
 
         return called
 
-    table = types.SimpleNamespace(rows=[{"id": "t4", "e": 0.2}], table="the table")
+    table = types.SimpleNamespace(
+        rows=[{"id": "t4", "e": 0.2}], comparison=[], table="the table", failures=[], notes=["no film: no GL"]
+    )
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     _module(
         monkeypatch, "fem_impact.simulate", simulate=work("simulate", lambda: stand.outcome or an_outcome())

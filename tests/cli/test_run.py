@@ -37,7 +37,8 @@ def test_json_is_one_document_and_nothing_else(cli, stand):
     _, out, _ = cli("run", "t5b", "--json")
     assert json.loads(out)["scene_id"] == "t5b"
     _, out, _ = cli("study", "sets", "t4", "--json")
-    assert json.loads(out) == {"rows": [{"id": "t4", "e": 0.2}]}
+    told = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": [], "notes": ["no film: no GL"]}
+    assert json.loads(out) == told
 
 
 def test_quiet_shows_no_progress(cli, stand):
