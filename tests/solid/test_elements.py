@@ -51,7 +51,7 @@ def test_only_the_six_rigid_motions_are_free(kind):
     assert abs(value[:6]).max() < 1e-12 * value[-1]
     assert value[6] > 1e-2 * value[-1]  # no hourglass mode
     x = points[cells[0]]
-    spin = np.cross([0.3, -1.0, 2.0], x) + [1e-3, 2e-3, -1e-3]
+    spin = np.add(np.cross([0.3, -1.0, 2.0], x), [1e-3, 2e-3, -1e-3])
     assert abs(K @ spin.ravel()).max() < 1e-12 * value[-1] * abs(spin).max()
 
 

@@ -19,6 +19,7 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.effects import specify
 from fem_impact.estimates import projectile
 from fem_impact.modes import rigid_motion
 from fem_impact.reduce import reduce
@@ -27,6 +28,7 @@ from fem_impact.solid.build import START_GAP
 from fem_impact.solid.contact import PlaneContact
 from fem_impact.solid.march import advance, evaluate, march
 from fem_impact.solid.run import solve
+from meshes import SKIN
 
 PLANE = ("vibration", "barrier-rigid")
 SLIDE = ("vibration", "friction", "barrier-elastic")
@@ -346,3 +348,25 @@ def test_rigid_barrier_has_plane_contact_over_the_whole_skin():
     contact = model.impulses[-1]
     assert isinstance(contact, PlaneContact)
     assert len(model.impulses) == 1
+
+
+def test_a_flat_strike_does_not_turn_the_rod_or_is_called_doubtful():
+    """The whole face lands: skin beyond the fine zone must touch too, or the run must say it does not."""
+    result = scenes.run(*SLIDE, "large-rotation", length=0.08, v_n=-1.0, v_t=0.0, angle=0.0)
+    assert abs(result.motion.Omega) < 0.2 or result.warnings
+
+
+def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):
+    """Only patch nodes are contact candidates, so all other skin nodes must stay above the surface."""
+    model = built.build(yielding.scene, specify(yielding.scene))
+    mesh = model.geometry.rod.mesh
+    skin = np.unique(mesh.faces_with(SKIN))
+    heights = model.layout.rod[skin, 2]
+    others = heights[~np.isin(heights, model.impulses[-1].rod.places[:, 2])]
+    state, lowest = model.initial_state(), 1.0
+    while state.time < 120e-6:
+        evaluate(model, state)
+        advance(model, state)
+        if state.step % 100 == 0:
+            lowest = min(lowest, state.x[others].min())
+    assert lowest > 0.0
