@@ -31,6 +31,8 @@ class Options(argparse.Namespace):
     changes: Sequence[str] = ()
     ids: Sequence[str] = ()
     out: Path | None = None
+    problem: str | None = None
+    parameters: bool = False
     quick: bool = False
     workers: int | None = None
     result: Path
@@ -59,7 +61,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check):
+    for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check, _add_verify):
         add(commands)
     add_rigid_commands(commands, _command)
     return parser
@@ -126,6 +128,17 @@ def _add_scenes(commands: Commands) -> None:
 def _add_check(commands: Commands) -> None:
     words = "check a scene and print it with units, sources and effects, without computing"
     _add_scene_words(_command(commands, "check", words, "fem_impact.cli_scene:check"))
+
+
+def _add_verify(commands: Commands) -> None:
+    words = "run problems with known answers through the solver and judge it"
+    parser = _command(commands, "verify", words, "fem_impact.cli_verify:verify")
+    parser.add_argument("problem", nargs="?", metavar="NAME", help="one problem (default: all of them)")
+    changed = "change one parameter, such as --set length='80 mm' (a bare number is SI); may be repeated"
+    parser.add_argument(
+        "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
+    )
+    parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
 
 
 def _add_scene_words(parser: argparse.ArgumentParser) -> None:

@@ -1,0 +1,80 @@
+"""``fem-impact verify``: problems with known answers, run and judged."""
+
+from __future__ import annotations
+
+import sys
+
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json
+from fem_impact.errors import RunError, SceneError
+from fem_impact.verify import PROBLEMS, Problem, Verification, problem
+
+__all__ = ["verify"]
+
+
+def verify(options: Options) -> int:
+    """Run one problem, or all of them; the exit code says whether every check passed."""
+    if options.parameters:
+        return _show_parameters(options)
+    changes = dict(_change(text) for text in options.changes)
+    if changes and not options.problem:
+        raise SceneError(
+            "belongs to one problem.", key="--set", remedy="Name it: fem-impact verify NAME --set ..."
+        )
+    chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
+    done = []
+    for one in chosen:
+        done.append(one.run(changes))
+        if not options.json:
+            sys.stdout.write(_text(done[-1]))
+    if options.json:
+        documents = [found.document() for found in done]
+        print_json(documents[0] if options.problem else documents)
+    return 0 if all(found.passed for found in done) else RunError.exit_code
+
+
+def _change(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise SceneError("is not of the form parameter=value.", key="--set", value=text)
+    return name.strip(), value.strip().strip("\"'")
+
+
+def _show_parameters(options: Options) -> int:
+    if not options.problem:
+        raise SceneError(
+            "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
+        )
+    found = problem(options.problem)
+    if options.json:
+        print_json([_parameter(found, i) for i in range(len(found.parameters))])
+    else:
+        sys.stdout.write(_parameter_text(found))
+    return 0
+
+
+def _parameter(found: Problem, i: int) -> dict[str, object]:
+    p = found.parameters[i]
+    limits = {"default": p.default, "low": p.low, "high": p.high, "multiple": p.multiple}
+    return {"name": p.name, "words": p.words, "unit": p.unit, **limits}
+
+
+def _parameter_text(found: Problem) -> str:
+    rows = [("name", "unit", "default", "range", "meaning")]
+    rows += [
+        (p.name, p.unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.words) for p in found.parameters
+    ]
+    wide = [max(len(row[i]) for row in rows) for i in range(5)]
+    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
+    return f"{found.name}: {found.words}\n" + "\n".join(lines) + "\n"
+
+
+def _text(found: Verification) -> str:
+    verdict = "passed" if found.passed else "FAILED"
+    cost = f"{found.cost.cpu_s:.1f} s of CPU, {found.cost.steps} steps, {found.cost.elements} elements"
+    lines = [f"{found.name}: {verdict} ({cost})"]
+    for c in found.checks:
+        mark = "ok  " if c.passed else "FAIL"
+        values = f"{c.computed:.6g} {c.unit}, reference {c.reference:.6g}"
+        lines.append(f"  {mark} {c.name}: {values}, error {c.error:+.2e}, allowed {c.tolerance:g} {c.kind}")
+    return "\n".join(lines) + "\n"

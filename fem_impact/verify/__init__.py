@@ -1,0 +1,47 @@
+"""Problems with known answers, run through the solver's own parts.
+
+Every problem takes its physical parameters and returns computed values beside a reference made by other
+means (`fem_impact.verify.reference`), with error, tolerance, verdict and cost.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+
+from fem_impact.errors import SceneError
+from fem_impact.verify.problem import Check, Cost, Parameter, Problem, Verification
+
+__all__ = ["PROBLEMS", "Check", "Cost", "Parameter", "Problem", "Verification", "problem", "verify"]
+
+# name -> module; a module is imported when its problem is asked for
+PROBLEMS = {
+    "modes": "free_modes",
+    "oblique-rod": "oblique_rod",
+}
+
+
+def problem(name: str) -> Problem:
+    """Return a problem by name.
+
+    Raises
+    ------
+    SceneError
+        If there is none of that name.
+    """
+    if name not in PROBLEMS:
+        known = ", ".join(PROBLEMS)
+        raise SceneError("is no problem of the verification.", key=name, remedy=f"Known are: {known}.")
+    found: Problem = import_module(f"fem_impact.verify.{PROBLEMS[name]}").PROBLEM
+    return found
+
+
+def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verification:
+    """Run one problem with some parameters changed (numbers in SI, or text with a unit).
+
+    Raises
+    ------
+    SceneError
+        If the problem or a parameter is unknown, or a value out of range.
+    """
+    return problem(name).run(changes)

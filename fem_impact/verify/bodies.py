@@ -1,0 +1,200 @@
+"""One free body as a model of the solver: any mesh, held unknowns, contact with the rigid plane.
+
+The project's scenes are rods; these problems need balls, square bars and flat faces as well. All
+operators, contact, ledger and the march are the solver's.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.modes import RigidMotion, rigid_motion
+from fem_impact.solid.contact import ContactBook, PlaneContact
+from fem_impact.solid.elastic import ElasticRod
+from fem_impact.solid.elements import (
+    Kind,
+    element_stiffness,
+    isotropic_stiffness,
+    largest_frequency,
+    lumped_mass,
+)
+from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.geometry import Geometry
+from fem_impact.solid.hardening import Hardening
+from fem_impact.solid.items import Force, Impulse
+from fem_impact.solid.layout import Layout, number
+from fem_impact.solid.model import Model
+from fem_impact.solid.slices import SliceOperator
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.state import State
+from fem_impact.solid.yielding import YieldingZone, dummy_element
+from meshes import SKIN, HexMesh, RodMesh
+
+__all__ = ["Body", "body_model", "placed", "rigid_of", "unsliced"]
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
+
+SAFETY = 0.9
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A body ready to be modelled, half of it at b >= 0.
+
+    Attributes
+    ----------
+    mesh : RodMesh, with or without slices; points : (n, 3) positions in (t, b, n), m
+    velocity : (n, 3) at the start, m/s
+    E, nu, rho : material; law : hardening of the cells that ``yields`` (m,) names
+    held : (n, 3) unknowns that cannot move besides those of the symmetry plane
+    friction : Coulomb's coefficient on the plane n = 0, or None for no contact at all
+    turning : the linear part follows large rotations
+    """
+
+    mesh: RodMesh
+    points: Array
+    velocity: Array
+    E: float
+    nu: float
+    rho: float
+    kind: Kind = "incompatible"
+    law: Hardening | None = None
+    yields: Bools | None = None
+    held: Bools | None = None
+    friction: float | None = None
+    turning: bool = False
+
+
+def unsliced(mesh: HexMesh) -> RodMesh:
+    """Return a mesh as a body without slices."""
+    nothing = np.zeros((0, 0), dtype=np.int64)
+    return RodMesh(mesh, nothing, nothing, 0.0, 0.0)
+
+
+def placed(points: Array, angle: float, gap: float) -> Array:
+    """Return points turned by ``angle``, rad, about b and set with the lowest one at n = ``gap``."""
+    c, s = np.cos(angle), np.sin(angle)
+    turned = points @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T
+    turned[:, 2] += gap - turned[:, 2].min()
+    return np.asarray(turned)
+
+
+def rigid_of(model: Model, state: State) -> RigidMotion:
+    """Return the rigid part of the body's motion."""
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    return rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]])
+
+
+def body_model(body: Body) -> Model:
+    """Return the model of one body over the rigid plane n = 0."""
+    mesh, layout = body.mesh.mesh, number(body.mesh, None)
+    yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
+    K = element_stiffness(body.points, mesh.cells, isotropic_stiffness(body.E, body.nu), body.kind)
+    nodal = lumped_mass(body.points, mesh.cells, body.rho)
+    T = tie_operator(mesh.tie, layout.rod, layout.size)
+    mass = assemble_mass(nodal, mesh.cells, T)
+    inverse = _inverse(body, mass, layout)
+    x, v = _start(body, layout)
+    forces: list[Force] = [_linear(body, K, ~yields, layout, mass, x)]
+    zones = _zones(body, yields, layout)
+    contact = _contact(body, layout, inverse)
+    impulses: list[Impulse] = [contact] if contact else []
+    own = tie_operator(mesh.tie, layout.rod, layout.rod_size)
+    return Model(
+        geometry=Geometry(body.mesh, body.points, None, 0.0, int(mesh.level.max())),
+        layout=layout,
+        mass=mass,
+        inverse_mass=inverse,
+        forces=[*forces, *zones],
+        impulses=impulses,
+        hanging=Hanging.of([(mesh.tie, layout.rod)]),
+        zones=zones,
+        book=contact.book if contact else ContactBook(),
+        rod_stiffness=assemble(K, mesh.cells, own),
+        step=SAFETY * float((2 / largest_frequency(K, nodal)).min()),
+        start=(x, v),
+    )
+
+
+def _inverse(body: Body, mass: Array, layout: Layout) -> Array:
+    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
+    inverse[layout.rod[np.abs(body.points[:, 1]) < 1e-12, 1]] = 0.0
+    if body.held is not None:
+        inverse[layout.rod[body.held]] = 0.0
+    return inverse
+
+
+def _start(body: Body, layout: Layout) -> tuple[Array, Array]:
+    x, v = np.zeros(layout.size), np.zeros(layout.size)
+    x[layout.dummy] = dummy_element()
+    x[layout.rod] = body.points
+    v[layout.rod] = body.velocity
+    if body.held is not None:
+        v[layout.rod[body.held]] = 0.0
+    return x, v
+
+
+def _linear(body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x: Array) -> ElasticRod:
+    """Return the linear part: slices by stencil where the mesh has them, the rest by rows."""
+    mesh, n = body.mesh.mesh, layout.rod_size
+    rest = linear.copy()
+    rest[body.mesh.body_cells] = False
+    T = tie_operator(mesh.tie, layout.rod, n)
+    free = layout.rod[~mesh.is_hanging]
+    product = NodeProduct.of(assemble(K[rest], mesh.cells[rest], T), free) if rest.any() else _nothing()
+    frame = _frame(body, free, mass[:n], x[:n])
+    return ElasticRod(_slices(body, K), product, frame, layout.body_shape, np.zeros(n), np.zeros(n))
+
+
+def _nothing() -> NodeProduct:
+    return NodeProduct(
+        np.zeros((0, 3), np.int64),
+        np.zeros(1, np.int64),
+        np.zeros(0, np.int32),
+        np.zeros((0, 9)),
+        np.zeros((0, 3)),
+    )
+
+
+def _slices(body: Body, K: Array) -> SliceOperator:
+    nodes, cells = body.mesh.body_nodes, body.mesh.body_cells
+    if not cells.size:
+        none = np.zeros(0)
+        return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none)
+    section = np.full(len(body.points), -1)
+    section[nodes[:, :2].T] = np.arange(len(nodes))
+    first = body.mesh.mesh.cells[cells[:, 0]]
+    return SliceOperator.of(K[cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
+
+
+def _frame(body: Body, free: Ints, mass: Array, x: Array) -> FixedFrame | TurningFrame:
+    if not body.turning:
+        return FixedFrame(x.copy())
+    weight = mass[free[:, 0]]
+    centre = weight @ x[free] / weight.sum()
+    reference = x.copy()
+    reference[free] -= np.array([centre[0], 0.0, centre[2]])
+    t, b, n = (np.ascontiguousarray(free[:, c]) for c in range(3))
+    return TurningFrame(reference, mass.copy(), t, b, n)
+
+
+def _zones(body: Body, yields: Bools, layout: Layout) -> list[YieldingZone]:
+    if body.law is None or not yields.any():
+        return []
+    cells = body.mesh.mesh.cells[yields]
+    return [
+        YieldingZone.of("rod", layout.rod[cells], body.points[cells], body.E, body.nu, body.law, layout.dummy)
+    ]
+
+
+def _contact(body: Body, layout: Layout, inverse: Array) -> PlaneContact | None:
+    if body.friction is None:
+        return None
+    skin = np.unique(body.mesh.mesh.faces_with(SKIN))
+    free = skin[~body.mesh.mesh.is_hanging[skin]]
+    return PlaneContact(layout.rod[free], inverse, body.friction)

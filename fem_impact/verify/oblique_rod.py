@@ -1,0 +1,110 @@
+"""``oblique-rod``: an elastic rod with a rounded edge striking obliquely, beside modes and Hertz."""
+
+from __future__ import annotations
+
+from math import inf, pi, sqrt
+
+import numpy as np
+
+import rigid
+from fem_impact.estimates import projectile
+from fem_impact.scene import Scene
+from fem_impact.solid.run import SolidResult
+from fem_impact.solid.run import solve as run_solid
+from fem_impact.verify import steel
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.reference.hertz import contact_modulus, hertz
+from fem_impact.verify.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
+from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
+from fem_impact.verify.rod_scene import rod_scene
+
+__all__ = ["PROBLEM"]
+
+E_TOLERANCE, BENDING_RELATIVE, BENDING_ABSOLUTE = 0.04, 0.15, 1e-3
+FAINT = 1e-3  # of the impulse: a touch below it is no contact
+
+
+def _reference(p: Values, scene: Scene) -> ObliqueRebound:
+    body, R = projectile(scene), p["diameter"] / 2
+    rho, z = (float(c) for c in body.contact_point(p["angle"]))
+    d_c, d_d = (float(d) for d in body.arms(p["angle"]))
+    rod = oblique_rod(
+        p["E"],
+        p["nu"],
+        p["rho"],
+        p["length"],
+        R,
+        p["angle"],
+        (body.mass, body.k2),
+        (d_c, d_d),
+        (rho, z),
+    )
+    E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"])
+    tip = sqrt(p["tip_radius"] * rho / np.sin(p["angle"]))
+    reach = 1.1 * hertz(E_star, tip, body.mass, p["v_n"]).radius
+    row = SpringRow(E_star, tangential_ratio(p["nu"]) * E_star, tip, p["f"], reach)
+    return oblique_drop(rod, row, -p["v_n"], -p["v_t"], p["max_time"])
+
+
+def bending_energy(result: SolidResult) -> float:
+    """Return the energy, J, of the modes that move the rod's axis sideways."""
+    mesh, layout = result.model.geometry.rod.mesh, result.model.layout
+    axis = (np.hypot(mesh.points[:, 0], mesh.points[:, 1]) < 1e-9) & ~mesh.is_hanging
+    shape, alpha = result.view.modes.shape, result.scene.impact.angle
+    t, n = (shape[layout.rod[axis, c]] for c in (0, 2))
+    across = abs(np.cos(alpha) * t - np.sin(alpha) * n).max(axis=0)
+    along = abs(np.sin(alpha) * t + np.cos(alpha) * n).max(axis=0)
+    return float(result.flight.energies[across > along].sum())
+
+
+def _checks(result: SolidResult, exact: ObliqueRebound) -> tuple[Check, ...]:
+    impact, rod = result.scene.impact, projectile(result.scene)
+    d_c = rod.arms(impact.angle)[0]
+    e = float(rigid.restitution(impact.v_n, result.motion.V_n, result.motion.Omega, d_c, impact.omega))
+    intervals = result.model.book.intervals
+    total = sum(i.impulse_n for i in intervals)
+    contacts = sum(i.impulse_n > FAINT * total for i in intervals)
+    bending = exact.bending / exact.E_0
+    allowed = max(BENDING_RELATIVE * bending, BENDING_ABSOLUTE)
+    mu = (result.motion.V_t - impact.v_t) / (result.motion.V_n - impact.v_n)
+    return (
+        Check("restitution e", "1", e, exact.restitution, E_TOLERANCE, "absolute"),
+        Check("contacts", "1", contacts, len(exact.contacts), 0.0, "absolute"),
+        Check("bending energy / E_0", "1", bending_energy(result) / result.E_0, bending, allowed, "absolute"),
+        Check("impulse ratio mu", "1", mu, exact.ratio, E_TOLERANCE, "absolute"),
+        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-4, "at most"),
+    )
+
+
+def solve(p: Values) -> Solved:
+    """Run the scene and the modal reference with the same barrier."""
+    barrier = "barrier-elastic" if p["elastic_barrier"] else "barrier-rigid"
+    effects = ("vibration", *(("friction",) if p["f"] else ()), barrier, "large-rotation")
+    scene = rod_scene(p, effects)
+    result = run_solid(scene)
+    geometry = result.model.geometry
+    elements = len(geometry.rod.mesh.cells) + (len(geometry.barrier.cells) if geometry.barrier else 0)
+    return Solved(_checks(result, _reference(p, scene)), result.steps, elements)
+
+
+PARAMETERS = (
+    steel.length(),
+    steel.diameter(),
+    Parameter("tip_radius", "radius of the rounded edge", 3e-3, 1e-4, 0.1, "length"),
+    Parameter("angle", "rod axis to barrier normal", pi / 4, 0.1, 1.4, "angle"),
+    steel.speed("v_n", "approach speed along the normal", 2.1 / sqrt(2)),
+    Parameter("v_t", "speed down the slope", 2.1 / sqrt(2), 0.0, 1e3, "speed"),
+    steel.friction(0.34),
+    *steel.elastic(),
+    Parameter("elastic_barrier", "1: an elastic block, 0: a rigid plane", 1, 0, 1, multiple=1),
+    Parameter("barrier_E", "Young's modulus of the block", 206e9, 1e6, 2e12, "stress"),
+    Parameter("tip_size", "cell edge at the contact", 0.35e-3, 1e-5, 5e-3, "length"),
+    steel.across(),
+    Parameter("max_time", "time after which a run stops", 2e-3, 1e-5, 1e-2, "time"),
+)
+PROBLEM = Problem(
+    "oblique-rod",
+    "an elastic rod strikes obliquely: restitution, contacts, bending energy beside modes and Hertz",
+    PARAMETERS,
+    solve,
+)

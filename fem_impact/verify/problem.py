@@ -1,0 +1,184 @@
+"""What a problem with a known answer is made of: parameters, checks, cost."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from difflib import get_close_matches
+from math import isfinite
+from typing import Any, Literal
+
+from fem_impact.errors import SceneError
+from fem_impact.scene.units import DIMENSIONS, parse_quantity
+
+__all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification"]
+
+Values = Mapping[str, float]
+Kind = Literal["relative", "absolute", "at most"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """A physical or mesh parameter.
+
+    Attributes
+    ----------
+    default, low, high : in ``unit``, SI
+    dimension : a name in `DIMENSIONS`, or empty for a plain number
+    multiple : only multiples of it, 0 for any number
+    """
+
+    name: str
+    words: str
+    default: float
+    low: float
+    high: float
+    dimension: str = ""
+    multiple: int = 0
+
+    @property
+    def unit(self) -> str:
+        """Return the SI unit, ``1`` for a plain number."""
+        return DIMENSIONS[self.dimension].units[0].symbol if self.dimension else "1"
+
+    def read(self, value: float | str) -> float:
+        """Return a value in SI: a number in ``unit``, or text with a unit.
+
+        Raises
+        ------
+        SceneError
+            If it is no number, out of range or not whole or even where it must be.
+        """
+        number = self._number(value)
+        if not isfinite(number) or not self.low <= number <= self.high:
+            raise SceneError(
+                f"must lie from {self.low:g} to {self.high:g} {self.unit}.", key=self.name, value=value
+            )
+        if self.multiple and number % self.multiple:
+            kind = "an even number" if self.multiple == 2 else "a whole number"
+            raise SceneError(f"must be {kind}.", key=self.name, value=value)
+        return number
+
+    def _number(self, value: float | str) -> float:
+        try:
+            return float(value)
+        except (TypeError, ValueError):
+            if self.dimension:
+                return parse_quantity(value, self.dimension, self.name)
+        raise SceneError("is not a number.", key=self.name, value=value)
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A computed value beside its reference.
+
+    ``relative`` and ``absolute`` bound the difference; ``at most`` bounds the excess of ``computed`` over
+    ``reference``.
+    """
+
+    name: str
+    unit: str
+    computed: float
+    reference: float
+    tolerance: float
+    kind: Kind = "relative"
+
+    @property
+    def error(self) -> float:
+        """Return the signed error in the sense of ``kind``."""
+        difference = self.computed - self.reference
+        if self.kind == "relative":
+            return difference / abs(self.reference)
+        return max(0.0, difference) if self.kind == "at most" else difference
+
+    @property
+    def passed(self) -> bool:
+        """Return whether the error is finite and within the tolerance."""
+        return isfinite(self.error) and abs(self.error) <= self.tolerance
+
+    def document(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        return {
+            "name": self.name,
+            "unit": self.unit,
+            "computed": self.computed,
+            "reference": self.reference,
+            "error": self.error,
+            "tolerance": self.tolerance,
+            "kind": self.kind,
+            "passed": self.passed,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What a problem took: seconds, and the explicit steps and elements of its runs."""
+
+    wall_s: float
+    cpu_s: float
+    steps: int
+    elements: int
+
+
+@dataclass(frozen=True, slots=True)
+class Solved:
+    """What a problem's function returns: checks, and the size of the largest run."""
+
+    checks: tuple[Check, ...]
+    steps: int = 0
+    elements: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Verification:
+    """One problem, run: its parameters (SI), checks and cost; ``passed`` is the verdict."""
+
+    name: str
+    parameters: dict[str, float]
+    checks: tuple[Check, ...]
+    cost: Cost
+
+    @property
+    def passed(self) -> bool:
+        """Return whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+    def document(self) -> dict[str, Any]:
+        """Return all of it as plain values."""
+        cost = {key: getattr(self.cost, key) for key in ("wall_s", "cpu_s", "steps", "elements")}
+        return {
+            "problem": self.name,
+            "passed": self.passed,
+            "parameters": self.parameters,
+            "checks": [check.document() for check in self.checks],
+            "cost": cost,
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """A problem: what it shows, its parameters, and the function that runs the solver on it."""
+
+    name: str
+    words: str
+    parameters: tuple[Parameter, ...]
+    solve: Callable[[Values], Solved]
+
+    def run(self, changes: Mapping[str, float | str] | None = None) -> Verification:
+        """Run with some parameters changed; an unknown one is refused."""
+        values = self.values(changes or {})
+        wall, cpu = time.perf_counter(), time.process_time()
+        solved = self.solve(values)
+        cost = Cost(time.perf_counter() - wall, time.process_time() - cpu, solved.steps, solved.elements)
+        return Verification(self.name, values, solved.checks, cost)
+
+    def values(self, changes: Mapping[str, float | str]) -> dict[str, float]:
+        """Return all parameters in SI."""
+        known = {p.name: p for p in self.parameters}
+        for name in changes:
+            if name not in known:
+                near = get_close_matches(name, known, 1)
+                hint = f"Did you mean {near[0]}?" if near else f"Known are: {', '.join(known)}."
+                raise SceneError(f"is no parameter of {self.name}.", key=name, remedy=hint)
+        return {name: p.read(changes[name]) if name in changes else p.default for name, p in known.items()}

@@ -1,0 +1,1 @@
+"""Reference solutions by independent means: numpy and scipy only, nothing of the solver."""

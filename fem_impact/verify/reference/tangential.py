@@ -1,0 +1,62 @@
+"""Hertz contact with tangential compliance and local slip: a row of independent springs.
+
+The method of dimensionality reduction (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6) maps the
+Cattaneo-Mindlin-Jaeger contact of round bodies exactly onto springs at x under the profile x^2 / R, with
+E* and G* per length and Coulomb's law for each spring. Bodies of like material: G*/E* = 2(1-nu)/(2-nu).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SpringRow", "tangential_ratio"]
+
+Array = NDArray[np.float64]
+SPRINGS = 100
+
+
+def tangential_ratio(nu: float) -> float:
+    """Return G* / E* of two bodies with the same elastic constants."""
+    return 2 * (1 - nu) / (2 - nu)
+
+
+@dataclass(slots=True)
+class SpringRow:
+    """Normal and tangential force of one contact, moved in small increments.
+
+    Attributes
+    ----------
+    E_star, G_star : Pa; radius : m; friction : Coulomb's coefficient
+    reach : largest contact radius to come, m
+    """
+
+    E_star: float
+    G_star: float
+    radius: float
+    friction: float
+    reach: float
+    profile: Array = field(init=False)
+    width: Array = field(init=False)
+    shift: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        # even steps of area: the outer springs, where slip begins, lie closer together
+        edges = self.reach * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
+        middle = 0.5 * (edges[1:] + edges[:-1])
+        self.profile = middle**2 / self.radius
+        self.width = 2 * np.diff(edges)
+        self.shift = np.zeros(SPRINGS)
+
+    def normal(self, depth: float) -> float:
+        """Return the normal force, N, at an approach, m."""
+        return 4 / 3 * self.E_star * sqrt(self.radius) * max(depth, 0.0) ** 1.5
+
+    def slide(self, depth: float, step: float) -> float:
+        """Move the contact tangentially by ``step``, m; return the force against it, N."""
+        limit = self.friction * self.E_star / self.G_star * np.maximum(depth - self.profile, 0.0)
+        self.shift = np.clip(self.shift + step, -limit, limit)
+        return float(self.G_star * (self.width @ self.shift))

@@ -1,0 +1,41 @@
+"""Parameters that many problems share, with the rod steel of the study as default."""
+
+from __future__ import annotations
+
+from fem_impact.verify.problem import Parameter
+
+__all__ = ["across", "diameter", "elastic", "friction", "length", "speed"]
+
+
+def length(default: float = 0.24) -> Parameter:
+    """Return the rod's length."""
+    return Parameter("length", "length of the rod", default, 0.02, 2.0, "length")
+
+
+def diameter(default: float = 0.019) -> Parameter:
+    """Return the rod's diameter."""
+    return Parameter("diameter", "diameter of the rod", default, 1e-3, 0.2, "length")
+
+
+def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Parameter, ...]:
+    """Return Young's modulus, Poisson's ratio and density."""
+    return (
+        Parameter("E", "Young's modulus", E, 1e6, 2e12, "stress"),
+        Parameter("nu", "Poisson's ratio", nu, 0.0, 0.49),
+        Parameter("rho", "density", rho, 10.0, 3e4, "density"),
+    )
+
+
+def across(default: int = 8, low: int = 6, high: int = 24) -> Parameter:
+    """Return the number of cells over the diameter, even."""
+    return Parameter("across", "cells over the diameter, even", default, low, high, multiple=2)
+
+
+def speed(name: str, words: str, default: float) -> Parameter:
+    """Return a speed, above 0."""
+    return Parameter(name, words, default, 1e-4, 1e3, "speed")
+
+
+def friction(default: float) -> Parameter:
+    """Return Coulomb's coefficient."""
+    return Parameter("f", "Coulomb friction", default, 0.0, 5.0)

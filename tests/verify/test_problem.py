@@ -1,0 +1,103 @@
+"""Parameters are read and refused, checks judge, the command prints both."""
+
+import json
+
+import pytest
+
+from fem_impact.cli import main
+from fem_impact.errors import SceneError
+from fem_impact.verify import PROBLEMS, Check, Parameter, Problem, problem, verify
+from fem_impact.verify.problem import Solved
+
+LENGTH = Parameter("length", "of it", 0.24, 0.02, 2.0, "length")
+COUNT = Parameter("across", "cells", 8, 6, 24, multiple=2)
+TWICE = Problem(
+    "twice",
+    "a stand-in",
+    (LENGTH, COUNT),
+    lambda p: Solved((Check("double", "m", 2 * p["length"], 0.48, 1e-9),), 3, 4),
+)
+
+
+@pytest.mark.parametrize(("given", "SI"), [("80 mm", 0.08), ("0.08", 0.08), (0.08, 0.08), ("8 cm", 0.08)])
+def test_a_parameter_is_si_or_has_its_unit(given, SI):
+    assert LENGTH.read(given) == SI
+
+
+@pytest.mark.parametrize("given", ["80 MPa", "nan", "3 m", "1 mm", "", "inf"])
+def test_a_bad_length_is_refused(given):
+    with pytest.raises(SceneError, match="length"):
+        LENGTH.read(given)
+
+
+@pytest.mark.parametrize("given", ["7", "8.5", "26", "eight"])
+def test_a_bad_count_is_refused(given):
+    with pytest.raises(SceneError, match="across"):
+        COUNT.read(given)
+
+
+def test_an_unknown_parameter_is_refused_with_a_hint():
+    with pytest.raises(SceneError, match="Did you mean length"):
+        TWICE.run({"lenght": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("kind", "computed", "passed", "error"),
+    [
+        ("relative", 1.01, True, 0.01),
+        ("relative", 0.97, False, -0.03),
+        ("absolute", 1.03, False, 0.03),
+        ("at most", 0.5, True, 0.0),
+        ("at most", 1.03, False, 0.03),
+        ("relative", float("nan"), False, None),
+    ],
+)
+def test_a_check_judges(kind, computed, passed, error):
+    check = Check("x", "1", computed, 1.0, 0.02, kind)
+    assert check.passed is passed
+    if error is not None:
+        assert check.error == pytest.approx(error)
+
+
+def test_a_run_has_values_verdict_and_cost():
+    good, bad = TWICE.run(), TWICE.run({"length": "1 m"})
+    assert good.passed and not bad.passed
+    assert bad.parameters == {"length": 1.0, "across": 8}
+    assert bad.checks[0].error == pytest.approx(2 / 0.48 - 1)
+    assert (good.cost.steps, good.cost.elements) == (3, 4)
+    assert good.document()["checks"][0]["computed"] == 0.48
+
+
+@pytest.mark.parametrize("name", PROBLEMS)
+def test_every_problem_states_its_parameters(name, capsys):
+    found = problem(name)
+    assert found.name == name
+    for p in found.parameters:
+        assert p.read(p.default) == p.default
+    assert main(["verify", name, "--parameters"]) == 0
+    shown = capsys.readouterr().out
+    assert all(p.name in shown and p.unit in shown for p in found.parameters)
+    assert main(["verify", name, "--parameters", "--json"]) == 0
+    assert [p["name"] for p in json.loads(capsys.readouterr().out)] == [p.name for p in found.parameters]
+
+
+def test_the_command_refuses_what_it_does_not_know(capsys):
+    assert main(["verify", "no-such"]) == 3
+    assert main(["verify", "modes", "--set", "lengt=0.1"]) == 3
+    assert main(["verify", "modes", "--set", "length"]) == 3
+    assert main(["verify", "--set", "length=0.1"]) == 3
+    assert main(["verify", "--parameters"]) == 3
+    assert "Did you mean length" in capsys.readouterr().err
+    with pytest.raises(SceneError, match="no problem"):
+        verify("no-such")
+
+
+def test_the_command_prints_the_verdict(capsys):
+    line = ["verify", "modes", "--set", "length=60 mm"]
+    assert main(line) == 6  # so short a bar needs more cells across
+    shown = capsys.readouterr().out
+    assert "modes: FAILED" in shown and "bending 1, ringing" in shown
+    main([*line, "--json"])
+    document = json.loads(capsys.readouterr().out)
+    assert document["parameters"]["length"] == 0.06
+    assert document["passed"] is False

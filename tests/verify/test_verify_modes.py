@@ -1,0 +1,25 @@
+"""Natural frequencies through the solver."""
+
+import pytest
+
+from fem_impact.verify import verify
+
+
+def test_modes_of_a_short_bar():
+    found = verify("modes", {"length": 0.12})
+    assert found.passed
+    assert len(found.checks) == 7
+
+
+def test_modes_of_another_metal_and_size():
+    found = verify(
+        "modes", {"length": 0.3, "diameter": 0.04, "E": "70 GPa", "nu": 0.33, "rho": 2700, "across": 8}
+    )
+    assert found.passed
+
+
+@pytest.mark.validation
+def test_modes_of_the_long_rod():
+    found = verify("modes")
+    assert found.passed
+    assert abs(found.checks[0].error) < 1e-3
