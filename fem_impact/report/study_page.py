@@ -37,8 +37,8 @@ def study_page(folder: Path) -> str:
     body = (
         _cards(study),
         notices(rows),
-        section("Notes", bullets(study.notes)),
         section("Model beside measurement", _comparison(study, folder), _tables(study.comparison)),
+        section("Notes", bullets(study.notes)),
         section("Where the energy went", _partition(study, folder), _energies(rows)),
         section("Runs that failed", _failures(study)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
@@ -51,12 +51,13 @@ def study_page(folder: Path) -> str:
 
 
 def _cards(study: Study) -> Markup:
-    inside = sum(_is_inside(row["verdict"]) for row in study.comparison)
+    measured = [row for row in study.comparison if row["measured_mean"] is not None]
+    inside = sum(_is_inside(row["verdict"]) for row in measured)
     residuals = [abs(row["residual_over_E_0"]) for row in study.rows if row["residual_over_E_0"] is not None]
     seconds = sum(row["wall_s"] or 0.0 for row in study.rows)
     cards = [
         card("runs", str(len(study.rows)), f"{len(study.failures)} failed"),
-        card("inside 95 % intervals", f"{inside} of {len(study.comparison)}", "compared quantities"),
+        card("inside 95 % intervals", f"{inside} of {len(measured)}", "measured quantities"),
         card("largest residual", f"{max(residuals):.1e}" if residuals else "–", "of E₀"),
         card("computing time", f"{seconds:.0f} s", "wall time of the runs, added"),
     ]
@@ -85,8 +86,9 @@ def _tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
 
 def _quantity(name: str, rows: Sequence[Mapping[str, Any]], opened: bool) -> Markup:
     unit = "" if rows[0]["unit"] in ("", "-") else f", {rows[0]['unit']}"
-    inside = sum(_is_inside(row["verdict"]) for row in rows)
-    title = f"{name}{unit}: {inside} of {len(rows)} inside"
+    measured = [row for row in rows if row["measured_mean"] is not None]
+    inside = sum(_is_inside(row["verdict"]) for row in measured)
+    title = f"{name}{unit}: " + (f"{inside} of {len(measured)} inside" if measured else "not measured")
     head = ("set", "model", "measured", "95 % interval of the mean", "n", "verdict")
     shown = table(head, map(_comparison_row, rows), numbers=(1, 2, 3, 4), compact=True)
     return details(title, shown, opened=opened)
@@ -95,7 +97,8 @@ def _quantity(name: str, rows: Sequence[Mapping[str, Any]], opened: bool) -> Mar
 def _comparison_row(row: Mapping[str, Any]) -> list[str | Markup]:
     low, high = row["measured_low"], row["measured_high"]
     between = "–" if low is None or high is None else f"{_three(low)} to {_three(high)}"
-    kind = "inside" if _is_inside(row["verdict"]) else "outside" if row["verdict"] else ""
+    measured = row["measured_mean"] is not None
+    kind = ("inside" if _is_inside(row["verdict"]) else "outside") if measured else ""
     model = _three(row["model"]) + ("" if row["band"] is None else f" ± {row['band']:.2g}")
     count = "–" if row["n"] is None else str(row["n"])
     spread = "" if row["measured_sd"] is None else f" ± {row['measured_sd']:.2g}"
@@ -183,7 +186,8 @@ def _used(study: Study, folder: Path) -> set[str]:
 
 def _lead(study: Study) -> str:
     sets = len({row["set"] for row in study.comparison})
-    return f"{len(study.rows)} runs, {len(study.comparison)} comparisons with {sets} measured sets."
+    compared = sum(row["measured_mean"] is not None for row in study.comparison)
+    return f"{len(study.rows)} runs, {compared} comparisons with {sets} measured sets."
 
 
 def _footer(rows: Sequence[Outcome]) -> str:
