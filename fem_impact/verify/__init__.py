@@ -14,10 +14,13 @@ from fem_impact.verify.problem import Check, Cost, Parameter, Problem, Verificat
 
 __all__ = ["PROBLEMS", "Check", "Cost", "Parameter", "Problem", "Verification", "problem", "verify"]
 
-# name -> module; a module is imported when its problem is asked for
+# name -> module and its problem; a module is imported when its problem is asked for
 PROBLEMS = {
-    "modes": "free_modes",
-    "oblique-rod": "oblique_rod",
+    "modes": ("free_modes", "PROBLEM"),
+    "waves": ("bloch", "PROBLEM"),
+    "free-spin": ("free_flight", "SPIN"),
+    "momentum": ("free_flight", "MOMENTUM"),
+    "oblique-rod": ("oblique_rod", "PROBLEM"),
 }
 
 
@@ -32,7 +35,8 @@ def problem(name: str) -> Problem:
     if name not in PROBLEMS:
         known = ", ".join(PROBLEMS)
         raise SceneError("is no problem of the verification.", key=name, remedy=f"Known are: {known}.")
-    found: Problem = import_module(f"fem_impact.verify.{PROBLEMS[name]}").PROBLEM
+    module, attribute = PROBLEMS[name]
+    found: Problem = getattr(import_module(f"fem_impact.verify.{module}"), attribute)
     return found
 
 

@@ -1,0 +1,126 @@
+"""``free-spin`` and ``momentum``: motions of a rod whose outcome is a conservation law."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+
+from fem_impact.effects import specify
+from fem_impact.estimates import projectile
+from fem_impact.modes import rigid_motion
+from fem_impact.solid.build import build
+from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.run import solve as run_solid
+from fem_impact.solid.state import State
+from fem_impact.verify import steel
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.rod_scene import rod_scene
+
+__all__ = ["MOMENTUM", "SPIN"]
+
+SMALL = 1e-6
+EVERY = 200
+
+
+class _Strain:
+    """Watches the largest share of strain energy until a time."""
+
+    every = EVERY
+
+    def __init__(self, ledger: Ledger, end: float) -> None:
+        self.ledger, self.end, self.most = ledger, end, 0.0
+
+    def observe(self, state: State) -> bool:
+        """Sample."""
+        strain = self.ledger.sample(state)["strain_rod"]
+        self.most = max(self.most, strain / self.ledger.start)
+        return state.time >= self.end
+
+
+def _stretch(model: Model, state: State) -> float:
+    """Return the relative change of the distance between lowest and highest node."""
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    start = model.start[0]
+    ends = places[[np.argmin(start[places[:, 2]]), np.argmax(start[places[:, 2]])]]
+    now, before = (float(np.linalg.norm(np.diff(x[ends], axis=0))) for x in (state.x, start))
+    return now / before - 1
+
+
+def spin(p: Values) -> Solved:
+    """Let a free rod turn: no strain energy, the same length and the same spin."""
+    frozen = dict(p) | {"v_n": 1e-3, "v_t": 0.0, "angle": pi / 4, "max_time": 1e-2}
+    scene = rod_scene(frozen, ("vibration", "barrier-rigid", "large-rotation"))
+    model = build(scene, specify(scene)).coasting()
+    state, ledger = model.initial_state(), model.ledger()
+    watch = _Strain(ledger, p["time"])
+    march(model, state, [watch])
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    Omega = rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]]).Omega
+    checks = (
+        Check("strain energy / E_0", "1", watch.most, 0.0, SMALL, "at most"),
+        Check("change of length", "1", _stretch(model, state), 0.0, SMALL, "absolute"),
+        Check("spin", "rad/s", Omega, p["omega"], SMALL),
+        Check("energy ledger / E_0", "1", ledger.worst / ledger.start, 0.0, SMALL, "at most"),
+    )
+    return Solved(checks, state.step, len(model.geometry.rod.mesh.cells))
+
+
+def momentum(p: Values) -> Solved:
+    """Let a spinning rod strike without friction: impulse, its moment and energy must balance."""
+    scene = rod_scene(p, ("vibration", "barrier-rigid", "large-rotation"))
+    result = run_solid(scene)
+    rod, motion, book = projectile(scene), result.motion, result.model.book
+    impulse, moment = 2 * book.impulse[1], -2 * book.impulse[2]
+    start = result.model.start[0][result.view.places]
+    centre = result.view.mass @ start / result.view.mass.sum()
+    impact = scene.impact
+    before = motion.inertia * impact.omega + motion.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
+    after = motion.inertia * motion.Omega
+    after += motion.mass * (motion.centre[2] * motion.V_t - motion.centre[0] * motion.V_n)
+    turned = 1e-4 * motion.inertia * abs(motion.Omega - impact.omega)
+    kept = (motion.kinetic + result.flight.energy + result.accounts["closing"]) / result.E_0
+    checks = (
+        Check("mass", "kg", motion.mass, rod.mass, 1e-6),
+        Check("normal momentum gained", "N s", motion.mass * (motion.V_n - impact.v_n), impulse, SMALL),
+        Check("tangential velocity", "m/s", motion.V_t, impact.v_t, SMALL),
+        Check("angular momentum gained", "N m s", after - before, moment, turned, "absolute"),
+        Check("energy kept / E_0", "1", kept, 1.0, 5e-4, "absolute"),
+        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-5, "at most"),
+    )
+    return Solved(checks, result.steps, len(result.model.geometry.rod.mesh.cells))
+
+
+_SPIN = Parameter("omega", "spin, positive from n to t", 45.0, -1e3, 1e3, "angular speed")
+_SIZE = (
+    steel.length(0.08),
+    steel.diameter(),
+    Parameter("tip_radius", "radius of the rounded edge", 3e-3, 1e-4, 0.1, "length"),
+    *steel.elastic(),
+)
+_MESH = (
+    Parameter("tip_size", "cell edge at the contact", 0.8e-3, 1e-5, 5e-3, "length"),
+    steel.across(6),
+)
+SPIN = Problem(
+    "free-spin",
+    "a free rod turns in flight: no strain energy, no growth, the same spin",
+    (*_SIZE, _SPIN, Parameter("time", "time of flight", 4e-3, 1e-5, 1e-1, "time"), *_MESH),
+    spin,
+)
+MOMENTUM = Problem(
+    "momentum",
+    "a spinning rod strikes a frictionless plane: momentum, angular momentum and energy balance",
+    (
+        *_SIZE,
+        Parameter("angle", "rod axis to barrier normal", pi / 4, 0.1, 1.4, "angle"),
+        steel.speed("v_n", "approach speed along the normal", 1.5),
+        Parameter("v_t", "speed down the slope", 1.0, 1e-3, 1e3, "speed"),
+        Parameter("omega", "spin, positive from n to t", 20.0, -1e3, 1e3, "angular speed"),
+        *_MESH,
+        Parameter("max_time", "time after which a run stops", 2.5e-3, 1e-5, 1e-2, "time"),
+    ),
+    momentum,
+)
