@@ -99,7 +99,7 @@ PROBLEM = Problem(
         *steel.elastic(),
         Parameter("ratio", "largest radius over wavelength", 0.2, 0.01, 0.5),
         steel.across(),
-        Parameter("aspect", "height of a slice over diameter / across (runs take 1)", 0.75, 0.1, 4.0),
+        Parameter("aspect", "height of a slice over diameter / across (runs take 1)", 0.5, 0.1, 4.0),
     ),
     solve,
 )
