@@ -41,9 +41,12 @@ def lever_of(length: float) -> float:
     return min(LEVER.get(round(length, 6), OTHER_LEVER * length), 0.5 * length)
 
 
-def replay(result: SolidResult) -> Marked:
-    """Return what the camera would have read in the free flight after the run."""
-    motion, alpha = result.motion, result.scene.impact.angle
+def replay(result: SolidResult, V_n: float, V_t: float) -> Marked:
+    """Return what the camera would have read in the free flight after the run.
+
+    ``V_n`` and ``V_t`` are the mass centre's velocities, m/s, with gravity taken out, as it is here.
+    """
+    alpha, turn = result.scene.impact.angle, result.motion.Omega * WINDOW
     axis, across = (
         np.array([np.sin(alpha), 0.0, np.cos(alpha)]),
         np.array([np.cos(alpha), 0.0, -np.sin(alpha)]),
@@ -51,12 +54,8 @@ def replay(result: SolidResult) -> Marked:
     arm = -lever_of(result.scene.projectile.length) * axis
     centre = _start_centre(result)
     shake = _mean_shake(result, np.stack([_nearest(centre, result), _nearest(centre + arm, result)]))
-    upper = np.array([motion.V_t, 0.0, motion.V_n]) + shake[0]
-    lower = (
-        np.array([motion.V_t, 0.0, motion.V_n])
-        + shake[1]
-        + (_turned(arm, motion.Omega * WINDOW) - arm) / WINDOW
-    )
+    upper = np.array([V_t, 0.0, V_n]) + shake[0]
+    lower = np.array([V_t, 0.0, V_n]) + shake[1] + (_turned(arm, turn) - arm) / WINDOW
     # the marker line turns by the angle whose sine is its sideways gain over its length
     gain = float((upper - lower) @ across) * WINDOW / float(np.linalg.norm(arm))
     return Marked(upper[2], upper[0], float(np.arcsin(np.clip(gain, -1, 1))) / WINDOW, lower[2], lower[0])

@@ -26,7 +26,7 @@ RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 def reduce(scene: Scene, result: SolidResult) -> Outcome:
     """Return the Outcome of a run; what cannot be known is null with its reason."""
     motion = _motion(scene, result)
-    values = _provenance(scene, result) | motion | _body(scene, result)
+    values = _provenance(scene, result) | motion | _body(scene, result, motion)
     reasons: dict[str, str] = {}
     for name, arms in _arm_sets(scene, motion, result.motion.inertia / result.motion.mass).items():
         if arms is None:
@@ -35,7 +35,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
             )
         else:
             values |= _with_arms(name, arms, values)
-    values |= _energies(result) | _markers(result) | _cost(scene, result)
+    values |= _energies(result, values) | _markers(result, values) | _cost(scene, result)
     reasons |= {
         "W_damping_over_E_0": "no material damping is modelled",
         "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
@@ -87,11 +87,11 @@ def _motion(scene: Scene, result: SolidResult) -> Values:
     }
 
 
-def _body(scene: Scene, result: SolidResult) -> Values:
+def _body(scene: Scene, result: SolidResult, motion: Values) -> Values:
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = rod.arms(impact.angle)
     k2 = result.motion.inertia / result.motion.mass
-    e = float(rigid.restitution(impact.v_n, result.motion.V_n, result.motion.Omega, d_c, impact.omega))
+    e = float(rigid.restitution(impact.v_n, motion["V_n_m_per_s"], result.motion.Omega, d_c, impact.omega))
     mu_c = rigid.critical_ratio(impact.v_n, impact.v_t, e=e, d_c=d_c, d_d=d_d, k2=k2)
     return {
         "mass_kg": result.motion.mass,
@@ -135,11 +135,13 @@ def _with_arms(name: str, arms: tuple[float, float], values: Values) -> Values:
     return {key: float(number) for key, number in zip(_arm_keys(name), numbers, strict=True)}
 
 
-def _energies(result: SolidResult) -> Values:
+def _energies(result: SolidResult, values: Values) -> Values:
     a, E_0 = result.accounts, result.E_0
+    V_n, V_t, Omega = (values[k] for k in ("V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"))
+    kept = rigid.kinetic_energy(V_n, V_t, Omega, mass=values["mass_kg"], k2=values["k_squared_m2"])
     vibration, floor = result.flight.energy, result.worst
     shares = {
-        "E_r": result.motion.kinetic,
+        "E_r": float(kept),
         "E_vib": vibration,
         "E_vib_floor": floor,
         "W_friction": a["friction"],
@@ -151,14 +153,14 @@ def _energies(result: SolidResult) -> Values:
         "W_closing": a["closing"],
         "residual": a["residual"],
     }
-    values: Values = {f"{name}_over_E_0": float(value / E_0) for name, value in shares.items()}
+    found: Values = {f"{name}_over_E_0": float(value / E_0) for name, value in shares.items()}
     check = result.vibration_check
-    values["E_vib_check_over_E_0"] = None if check is None else check / E_0
-    return values | {"E_0_J": E_0, "E_vib_below_floor": bool(vibration < floor)}
+    found["E_vib_check_over_E_0"] = None if check is None else check / E_0
+    return found | {"E_0_J": E_0, "E_vib_below_floor": bool(vibration < floor)}
 
 
-def _markers(result: SolidResult) -> Values:
-    marked = replay(result)
+def _markers(result: SolidResult, values: Values) -> Values:
+    marked = replay(result, values["V_n_m_per_s"], values["V_t_m_per_s"])
     return {
         "marker_V_n_m_per_s": marked.V_n,
         "marker_V_t_m_per_s": marked.V_t,

@@ -4,15 +4,45 @@ from __future__ import annotations
 
 import numpy as np
 
+from fem_impact.solid.contact import SurfaceContact
 from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
+from meshes import SKIN
 
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
-def doubts(model: Model) -> tuple[str, ...]:
+class SkinWatch:
+    """Watches the rod's skin outside the contact patch: it must never come down to a meshed barrier."""
+
+    every = 100
+
+    def __init__(self, model: Model) -> None:
+        contact, mesh = model.impulses[-1], model.geometry.rod.mesh
+        heights = model.layout.rod[np.unique(mesh.faces_with(SKIN)), 2]
+        touching = contact.rod.places[:, 2] if isinstance(contact, SurfaceContact) else heights
+        self.rows = heights[~np.isin(heights, touching)]
+        self.lowest = np.inf
+
+    def observe(self, state: State) -> bool:
+        """Keep the lowest height so far."""
+        self.lowest = min(self.lowest, float(np.min(state.x[self.rows], initial=np.inf)))
+        return False
+
+    def doubt(self) -> str:
+        """Return a sentence when skin went below the barrier's surface."""
+        if self.lowest >= 0:
+            return ""
+        return (
+            f"Skin of the rod outside its fine zone went {-self.lowest * 1e6:.0f} um below the barrier's "
+            "surface without touching: the contact is wider than the fine zone."
+        )
+
+
+def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:
     """Return sentences on contact and yielding that left the fine zones."""
-    found = [_at_border(model, zone) for zone in model.zones]
+    found = [watch.doubt(), *(_at_border(model, zone) for zone in model.zones)]
     if model.book.outside:
         found.append(
             f"{model.book.outside} rod nodes left the fine zone of the barrier while below its surface: "

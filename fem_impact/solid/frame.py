@@ -54,7 +54,7 @@ class TurningFrame:
     b: Ints
     n: Ints
     angle: float = 0.0
-    work: Array = field(default_factory=lambda: np.zeros(3))
+    work: Array = field(default_factory=lambda: np.zeros(2))
 
     def localise(self, x: Array, d: Array) -> None:
         """Set ``d`` to the displacements of ``x`` seen in the frame, and update the angle."""
@@ -68,18 +68,24 @@ class TurningFrame:
 
 @kernel
 def _localise(x, X, mass, t, b, n, d, work):  # type: ignore[no-untyped-def]
-    along, across = 0.0, 0.0
+    along, across, total, centre_t, centre_n = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(len(t)):
         p, q = t[i], n[i]
+        total += mass[p]
+        centre_t += mass[p] * x[p]
+        centre_n += mass[p] * x[q]
         along += mass[p] * (X[p] * x[p] + X[q] * x[q])
         across += mass[p] * (X[p] * x[q] - X[q] * x[p])
     work[0], work[1] = along, across
     rho = np.sqrt(along * along + across * across)
     c, s = along / rho, across / rho
+    centre_t /= total
+    centre_n /= total
+    # from the mass centre: a common offset would do no work, but cost digits
     for i in range(len(t)):
         p, q = t[i], n[i]
-        d[p] = c * x[p] + s * x[q] - X[p]
-        d[q] = c * x[q] - s * x[p] - X[q]
+        d[p] = c * (x[p] - centre_t) + s * (x[q] - centre_n) - X[p]
+        d[q] = c * (x[q] - centre_n) - s * (x[p] - centre_t) - X[q]
         d[b[i]] = x[b[i]] - X[b[i]]
 
 

@@ -29,7 +29,7 @@ def evaluate(model: Model, state: State) -> None:
 
 def advance(model: Model, state: State) -> None:
     """Kick, resolve impulses, drift; forces must be up to date."""
-    state.kick = 0.5 * (state.dt + state.dt_next) if state.step else state.dt_next
+    state.kick = 0.5 * (state.dt + state.dt_next)
     state.v += state.kick * model.inverse_mass * state.force
     for item in model.impulses:
         item.resolve(state)
@@ -43,8 +43,8 @@ def advance(model: Model, state: State) -> None:
 def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
     """Step until an observer says stop.
 
-    Velocities stand half a step behind positions; the first kick from the given start velocity is a
-    full one, because nothing acts yet at time 0.
+    Velocities stand half a step behind positions, so the first kick from the given start velocity is
+    a half one (no step has led to the start).
     """
     while True:
         evaluate(model, state)

@@ -18,7 +18,7 @@ from fem_impact.modes import Flight, RigidMotion
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.progress import Progress
 from fem_impact.solid.build import build
-from fem_impact.solid.doubts import doubts
+from fem_impact.solid.doubts import SkinWatch, doubts
 from fem_impact.solid.fields import Fields
 from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, evaluate, march
@@ -85,7 +85,8 @@ def solve(
     guard, stop = StepGuard(model), Separation(model, view, scene.accuracy.max_time)
     frames = _frames(scene, model, view, out)
     history = _history(scene, model, view, watch, out)
-    observers: list[Observer] = [guard, watch, *history, *frames, stop]
+    skin = SkinWatch(model)
+    observers: list[Observer] = [guard, watch, *history, *frames, skin, stop]
     if progress is not None:
         observers.append(Meter(progress, watch, model, scene.accuracy.max_time, scene.id))
     if progress is not None and not compiled_before():
@@ -115,7 +116,7 @@ def solve(
         finished=stop.finished,
         reason=stop.reason,
         cost=cost,
-        warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model),
+        warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model, skin),
     )
     return replace(result, vibration_check=coast(model, view, state)) if stop.finished else result
 

@@ -94,8 +94,8 @@ def compute(case: Case) -> Failure | None:
     mark = stamp(case.scene)  # of the program that runs, not of what lies there when it is done
     try:
         simulate(case.scene, out=case.out)
-    except FemImpactError as error:
-        return Failure(case, str(error))
+    except Exception as error:  # whatever went wrong, the other cases of the study go on
+        return Failure(case, str(error) if isinstance(error, FemImpactError) else repr(error))
     # written last: a result without its stamp is computed again
     write_text(case.out / STAMP, mark)
     return None

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field, replace
 from multiprocessing import get_context
 from pathlib import Path
@@ -99,6 +99,10 @@ def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
     """Return the outcome with its two-mesh bands, and store it."""
     if isinstance(coarse, Failure):
         return fine.replace(reasons={"bands": f"the coarser mesh failed: {coarse.reason}"})
+    if coarse["tip_size_m"] <= fine["tip_size_m"]:
+        return fine.replace(
+            reasons={"bands": "the second mesh is not coarser: give a smaller accuracy.tip_size"}
+        )
     banded = fine.replace(bands=bands(fine, coarse))
     banded.write(out / "outcome.json")
     return banded
@@ -126,14 +130,18 @@ def _collect(futures: dict[Future[Any], Case], results: Results, total: int, pro
     begun, first = time.monotonic(), len(results)
     for future in as_completed(futures):
         case = futures[future]
-        results[case.out.name] = future.result() or _read(case)
+        results[case.out.name] = _result(future, case)
         done = len(results)
         eta = (time.monotonic() - begun) / (done - first) * (total - done)
         progress(CaseProgress(case.out.name, done, total, eta))
 
 
-def _read(case: Case) -> Outcome | Failure:
-    return stored(case) or Failure(case, "its result cannot be read back")
+def _result(future: Future[Any], case: Case) -> Outcome | Failure:
+    try:
+        failure: Failure | None = future.result()
+    except BrokenExecutor as error:
+        return Failure(case, f"its process died: {error}")
+    return failure or stored(case) or Failure(case, "its result cannot be read back")
 
 
 def write_study(

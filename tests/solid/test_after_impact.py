@@ -150,7 +150,7 @@ def test_gradients_of_a_cube():
 def test_camera_reads_a_rigid_flight_exactly(result):
     alpha, arm = result.scene.impact.angle, lever_of(0.08)
     for V_n, V_t, Omega in ((0.4, -1.2, 0.0), (0.4, -1.2, 12.0), (0.4, -1.2, -30.0)):
-        seen = replay(_moving(result, V_n, V_t, Omega))
+        seen = replay(_moving(result, V_n, V_t, Omega), V_n, V_t)
         assert (seen.V_n, seen.V_t) == pytest.approx((V_n, V_t))
         # the sine of the turned angle, read back by its arc sine
         assert seen.Omega == pytest.approx(Omega, rel=1e-9, abs=1e-12)
@@ -161,7 +161,7 @@ def test_camera_reads_a_rigid_flight_exactly(result):
 
 
 def test_camera_reads_vibration_as_a_difference_over_its_window(result):
-    still, shaken = replay(_moving(result, 0.4)), replay(_moving(result, 0.4, shake=1.0))
+    still, shaken = (replay(_moving(result, 0.4, shake=s), 0.4, 0.0) for s in (0.0, 1.0))
     assert (
         0
         < abs(shaken.V_cn - still.V_cn)

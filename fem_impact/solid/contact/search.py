@@ -30,7 +30,7 @@ def _invert(x, places, quad, t, b):  # type: ignore[no-untyped-def]
     b0, b1 = x[places[quad[0], 1]], x[places[quad[1], 1]]
     b2, b3 = x[places[quad[2], 1]], x[places[quad[3], 1]]
     xi, eta = 0.0, 0.0
-    for _ in range(6):
+    for _ in range(12):
         w0, w1, w2, w3 = bilinear(xi, eta)
         r_t = t - (w0 * t0 + w1 * t1 + w2 * t2 + w3 * t3)
         r_b = b - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3)
@@ -42,7 +42,6 @@ def _invert(x, places, quad, t, b):  # type: ignore[no-untyped-def]
         if det == 0.0:
             break
         d_xi, d_eta = (r_t * b_eta - r_b * t_eta) / det, (t_xi * r_b - b_xi * r_t) / det
-        # a far quad's inverse map may not exist: walk in its direction instead of jumping
         xi = min(max(xi + d_xi, -3.0), 3.0)
         eta = min(max(eta + d_eta, -3.0), 3.0)
         if abs(d_xi) + abs(d_eta) < 1e-12:
@@ -51,19 +50,35 @@ def _invert(x, places, quad, t, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _way_out(x, places, quad, neighbours, t, b):  # type: ignore[no-untyped-def]
+    """Return the edge to leave a quad by: -1 when (t, b) is inside, -2 when only borders lie between.
+
+    Out through the open edge that the point lies farthest outside of; edges turn left around the quad.
+    """
+    leave, farthest, outside = -1, 0.0, False
+    for edge in range(4):
+        p, q = quad[edge], quad[(edge + 1) % 4]
+        along_t, along_b = x[places[q, 0]] - x[places[p, 0]], x[places[q, 1]] - x[places[p, 1]]
+        length = np.sqrt(along_t * along_t + along_b * along_b)
+        beyond = ((t - x[places[p, 0]]) * along_b - (b - x[places[p, 1]]) * along_t) / (length * length)
+        if beyond > SLACK:
+            outside = True
+            if neighbours[edge] >= 0 and beyond * length > farthest:
+                leave, farthest = edge, beyond * length
+    return leave if leave >= 0 or not outside else -2
+
+
+@kernel
 def locate(x, places, quads, neighbours, start, t, b):  # type: ignore[no-untyped-def]
     """Walk from quad ``start`` to the one over (t, b): (quad or -1, xi, eta)."""
     q = start
     for _ in range(LONGEST_WALK):
-        xi, eta = _invert(x, places, quads[q], t, b)
-        out_xi, out_eta = abs(xi) - 1.0, abs(eta) - 1.0
-        if max(out_xi, out_eta) <= SLACK:
+        edge = _way_out(x, places, quads[q], neighbours[q], t, b)
+        if edge == -2:
+            return -1, 0.0, 0.0
+        if edge == -1:
+            xi, eta = _invert(x, places, quads[q], t, b)
             return q, min(max(xi, -1.0), 1.0), min(max(eta, -1.0), 1.0)
-        edge = (1 if xi > 0 else 3) if out_xi >= out_eta else (2 if eta > 0 else 0)
-        if neighbours[q, edge] < 0:  # at a border try the other way out, then give up
-            edge = (2 if eta > 0 else 0) if out_xi >= out_eta else (1 if xi > 0 else 3)
-            if neighbours[q, edge] < 0 or min(out_xi, out_eta) <= SLACK:
-                return -1, xi, eta
         q = neighbours[q, edge]
     return -1, 0.0, 0.0
 
