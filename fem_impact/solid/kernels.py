@@ -1,13 +1,16 @@
-"""Compiler settings and the small algebra shared by the compiled kernels."""
+"""Compiler settings shared by the compiled kernels, and where their machine code is kept."""
 
 from __future__ import annotations
 
+import hashlib
+import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
 
+SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
 
 # Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
@@ -15,9 +18,30 @@ F = TypeVar("F", bound=Callable[..., Any])
 FAST = {"contract", "arcp", "nsz"}
 
 
+def _cache_folder() -> Path:
+    """Return a folder named after all sources of the solver.
+
+    The compiler's own check looks at one file at a time: a kernel would keep an outdated copy of a
+    helper that it took from another file.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        digest.update(path.read_bytes())
+    return Path(__file__).parent / "__pycache__" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+def _keep_compiled_code() -> None:
+    folder = _cache_folder()
+    if "NUMBA_CACHE_DIR" not in os.environ and os.access(Path(__file__).parent, os.W_OK):
+        SETTINGS.CACHE_DIR = str(folder)
+
+
+_keep_compiled_code()
+
+
 def compiled_before() -> bool:
-    """Return whether compiled kernels of an earlier run lie in the cache beside the sources."""
-    return any((Path(__file__).parent / "__pycache__").glob("yielding_kernel.update-*.nbi"))
+    """Return whether compiled kernels of an earlier run of these sources lie in the cache."""
+    return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob("yielding_kernel.update-*.nbi"))
 
 
 def kernel(function: F) -> F:
