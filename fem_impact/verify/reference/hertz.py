@@ -33,6 +33,7 @@ def hertz(E_star: float, radius: float, mass: float, speed: float) -> HertzImpac
 
     Examples
     --------
+    >>> from math import pi
     >>> R = 9.5e-3
     >>> steel = hertz(contact_modulus(210e9, .29, 210e9, .29), R, 4 / 3 * pi * R**3 * 7850, 1.0)
     >>> round(steel.force, 1), round(steel.duration * 1e6, 2), round(steel.radius * 1e3, 3)
