@@ -1,6 +1,6 @@
 """What the time loop knows: items that push, items that act on velocities, and their accounts.
 
-The loop holds three lists of these and nothing else. An effect that is off has no item.
+The loop holds two lists of these, and observers, and nothing else. An effect that is off has no item.
 """
 
 from __future__ import annotations
