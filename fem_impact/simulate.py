@@ -35,16 +35,19 @@ def simulate(
     Raises
     ------
     SceneError
-        If the fidelity is unknown.
+        If the fidelity is unknown, or the tip has no fine zone where one is needed.
     RunError
         If the run cannot go on; what was computed stays in ``out``.
     """
     if fidelity != "solid":
         raise SceneError("is not available yet.", key="fidelity", value=fidelity, remedy='Use "solid".')
+    from fem_impact.effects import specify
     from fem_impact.output import make_directory, write_text
     from fem_impact.reduce import reduce, write_contacts
+    from fem_impact.solid.build import require_fine_zone
     from fem_impact.solid.run import solve
 
+    require_fine_zone(scene, specify(scene))
     if out is not None:
         make_directory(out)
         write_text(out / "scene.toml", scene.to_toml())

@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.effects.spec import ModelSpec
+from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.solid.boundary import spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, largest_frequency, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.geometry import Geometry, build_geometry
+from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
@@ -221,13 +222,32 @@ def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layo
     return Weight(gravity * mass[:n] * direction[:n], x[:n].copy())
 
 
+def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
+    """Refuse a tip without a fine zone where one is needed (SceneError)."""
+    if levels_of(scene) == 0 and (spec.meshed_barrier or spec.rod_law is not None):
+        base = scene.projectile.diameter / scene.accuracy.across
+        raise SceneError(
+            "leaves the tip as coarse as the rod: nothing could yield and the barrier would have no fine zone.",
+            key="accuracy.tip_size",
+            value=scene.accuracy.tip_size,
+            remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
+        )
+
+
 def stable_step(bodies: list[Body]) -> float:
     """Return the largest step, s, that no element forbids."""
     return min(float((2 / largest_frequency(b.stiffness, b.mass)).min()) for b in bodies)
 
 
 def build(scene: Scene, spec: ModelSpec) -> Model:
-    """Return the model of a scene; parts whose slot is empty are never made."""
+    """Return the model of a scene; parts whose slot is empty are never made.
+
+    Raises
+    ------
+    SceneError
+        If the tip is so coarse that there is no fine zone to touch or to yield in.
+    """
+    require_fine_zone(scene, spec)
     geometry = build_geometry(scene, START_GAP, spec.meshed_barrier)
     layout = number(geometry.rod, geometry.barrier)
     bodies = _bodies(scene, spec, geometry, layout)
