@@ -16,6 +16,9 @@ __all__ = ["PROBLEMS", "Check", "Cost", "Parameter", "Problem", "Verification", 
 
 # name -> module and its problem; a module is imported when its problem is asked for
 PROBLEMS = {
+    "bar": ("bar", "PROBLEM"),
+    "hertz": ("hertz_sphere", "PROBLEM"),
+    "sears": ("axial_rod", "PROBLEM"),
     "modes": ("free_modes", "PROBLEM"),
     "waves": ("bloch", "PROBLEM"),
     "free-spin": ("free_flight", "SPIN"),

@@ -1,0 +1,139 @@
+"""``bar``: a bar without lateral strain strikes a rigid wall, and bounces between two walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from math import pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+import meshes
+from fem_impact.solid.contact.book import RECORD
+from fem_impact.solid.contact.plane import touch_plane
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+from fem_impact.verify import steel
+from fem_impact.verify.bodies import Body, body_model, placed, rigid_of
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.reference.bar import Strike, strike
+from fem_impact.verify.watch import Force, Until
+
+__all__ = ["PROBLEM"]
+
+Array = NDArray[np.float64]
+
+PLATEAU, DURATION, GROWTH = 0.005, 0.01, 1e-3
+WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
+AFTER = 1.3  # durations that are followed
+FLIGHT = 0.3  # time between two walls over the duration of a strike
+COARSER = 5  # the bar between two walls has so many times fewer slices
+
+
+def _model(p: Values, slices: int, gap: float, across: int) -> Model:
+    radius = p["diameter"] / 2
+    flat = np.array([[0.0, 0.0], [radius, 0.0]])
+    rod = meshes.rod(flat, p["length"], across, slice_length=p["length"] / slices, nose=False)
+    speed = np.zeros_like(rod.mesh.points)
+    speed[:, 2] = -p["speed"]
+    points = placed(rod.mesh.points, 0.0, gap)
+    return body_model(Body(rod, points, speed, p["E"], 0.0, p["rho"], friction=0.0))
+
+
+@dataclass(slots=True)
+class Ceiling:
+    """A second rigid wall at n = height: the solver's plane contact, seen upside down."""
+
+    nodes: NDArray[np.int64]
+    inverse_mass: Array
+    height: float
+    record: Array = field(default_factory=lambda: np.zeros(RECORD))
+    bounces: int = 0
+
+    def resolve(self, state: State) -> None:
+        """Turn the wall's own nodes upside down, let them touch, turn them back."""
+        n = self.nodes[:, 2]
+        for vector in (state.v, state.force):
+            vector[n] *= -1
+        state.x[n] = self.height - state.x[n]
+        before = self.record[5]
+        touch_plane(
+            self.nodes,
+            state.x,
+            state.v,
+            state.force,
+            self.inverse_mass,
+            state.kick,
+            state.dt_next,
+            0.0,
+            self.record,
+        )
+        self.bounces += int(self.record[5] > 0 and before == 0)
+        for vector in (state.v, state.force):
+            vector[n] *= -1
+        state.x[n] = self.height - state.x[n]
+
+    def accounts(self, state: State) -> Accounts:
+        """Return nothing: this wall's closing loss is left to the energy that is checked."""
+        return {}
+
+
+def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
+    model = _model(p, int(p["slices"]), 0.0, int(p["across"]))
+    state, force = model.initial_state(), Force(model)
+    energy = Until(model.ledger(), AFTER * exact.duration)
+    march(model, state, [force, energy])
+    plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration)
+    spans = model.book.intervals
+    checks = [
+        Check("plateau of the wall force", "N", plateau, exact.force, PLATEAU),
+        Check("duration", "s", spans[-1].end - spans[0].start, exact.duration, DURATION),
+        Check("contacts", "1", force.touches, 1, 0.0, "absolute"),
+        Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], 1.0, 0.02, "absolute"),
+        Check("largest energy / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
+    ]
+    return checks, state.step, len(model.geometry.rod.mesh.cells)
+
+
+def _many_strikes(p: Values, exact: Strike) -> list[Check]:
+    """Bounce for the time that so many bounces without loss would take."""
+    slices = max(4, int(p["slices"]) // COARSER)
+    gap = FLIGHT * exact.duration * p["speed"]
+    model = _model(p, slices, gap / 2, 6)
+    top = model.geometry.rod_points[:, 2] > gap / 2 + 0.999 * p["length"]
+    ceiling = Ceiling(model.layout.rod[top], model.inverse_mass, p["length"] + gap)
+    walled = replace(model, impulses=[*model.impulses, ceiling])
+    state = walled.initial_state()
+    energy = Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)
+    march(walled, state, [energy])
+    return [
+        Check("touches both walls", "1", float(ceiling.bounces > 0), 1.0, 0.0, "absolute"),
+        Check("largest energy of all bounces / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
+    ]
+
+
+def solve(p: Values) -> Solved:
+    """Strike once, then bounce."""
+    exact = strike(p["E"], p["rho"], pi * p["diameter"] ** 2 / 4, p["length"], p["speed"])
+    checks, steps, elements = _one_strike(p, exact)
+    if p["bounces"]:
+        checks += _many_strikes(p, exact)
+    return Solved(tuple(checks), steps, elements)
+
+
+PROBLEM = Problem(
+    "bar",
+    "a bar without lateral strain on a rigid wall: plateau, duration, one release; then two walls",
+    (
+        steel.length(),
+        steel.diameter(),
+        steel.speed("speed", "approach speed", 2.0),
+        *(q for q in steel.elastic() if q.name != "nu"),
+        Parameter("slices", "cells along the bar", 100, 10, 2000, multiple=1),
+        steel.across(6),
+        Parameter("bounces", "bounces between two walls, 0 for none", 1000, 0, 1e5, multiple=2),
+    ),
+    solve,
+)

@@ -1,0 +1,73 @@
+"""Observers of the verification: contact force and mechanical energy, every step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+
+__all__ = ["Force", "Until"]
+
+IMPULSE_N, ACTIVE = 1, 5
+MECHANICAL = ("kinetic_rod", "strain_rod")
+
+
+class Force:
+    """Records the normal force, N, of the whole body on the plane over each step."""
+
+    every = 1
+
+    def __init__(self, model: Model) -> None:
+        self.book = model.book
+        self.times: list[float] = []
+        self.values: list[float] = []
+
+    def observe(self, state: State) -> bool:
+        """Take the impulse of the step that led here."""
+        if state.step:
+            self.times.append(state.time - 0.5 * state.dt)
+            self.values.append(2 * float(self.book.step[IMPULSE_N]) / state.kick)
+        return False
+
+    @property
+    def touches(self) -> int:
+        """Return how often force sets in after having been absent."""
+        on = np.array(self.values) > 0
+        return int((np.diff(np.concatenate([[0], on.astype(int)])) == 1).sum())
+
+    @property
+    def span(self) -> tuple[float, float]:
+        """Return the times of the first and the last force, s."""
+        on = np.flatnonzero(np.array(self.values) > 0)
+        return self.times[int(on[0])], self.times[int(on[-1])]
+
+    def mean(self, start: float, end: float) -> float:
+        """Return the mean force between two times after the first touch."""
+        t = np.array(self.times) - self.span[0]
+        return float(np.array(self.values)[(t >= start) & (t <= end)].mean())
+
+    def peak(self, window: float) -> float:
+        """Return the largest force averaged over a window, s: single nodes close in small jerks."""
+        t, y = np.array(self.times), np.array(self.values)
+        width = max(1, round(window / float(np.diff(t).mean())))
+        return float(np.convolve(y, np.ones(width) / width, "valid").max())
+
+
+class Until:
+    """Watches mechanical energy over that of the start, until a time or a condition."""
+
+    def __init__(
+        self, ledger: Ledger, end: float, done: Callable[[], bool] = lambda: False, every: int = 10
+    ) -> None:
+        self.ledger, self.end, self.done, self.every = ledger, end, done, every
+        self.most = 0.0
+
+    def observe(self, state: State) -> bool:
+        """Sample; stop at the end."""
+        found = self.ledger.sample(state)
+        self.most = max(self.most, sum(found[name] for name in MECHANICAL) / self.ledger.start)
+        return state.time >= self.end or self.done()

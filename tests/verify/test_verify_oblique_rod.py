@@ -1,0 +1,35 @@
+"""Oblique drops of an elastic rod beside modes, Hertz and friction."""
+
+import pytest
+
+from fem_impact.verify import verify
+
+
+def test_a_coarse_tip_on_a_rigid_plane():
+    found = verify("oblique-rod", {"elastic_barrier": 0, "tip_size": "0.8 mm", "across": 6})
+    assert found.passed
+    values = {c.name: c.computed for c in found.checks}
+    assert 0.10 < values["bending energy / E_0"] < 0.13
+    assert values["impulse ratio mu"] == pytest.approx(0.34, abs=1e-3)
+
+
+@pytest.mark.validation
+@pytest.mark.parametrize(
+    ("f", "e", "bending"), [(0.0, 0.853, 0.058), (0.34, 0.396, 0.114), (0.55, 0.733, 0.036)]
+)
+def test_the_long_rod_on_an_elastic_block(f, e, bending):
+    found = verify("oblique-rod", {"f": f})
+    assert found.passed
+    values = {c.name: c.computed for c in found.checks}
+    assert values["restitution e"] == pytest.approx(e, abs=0.06)
+    assert values["bending energy / E_0"] == pytest.approx(bending, rel=0.2)
+
+
+@pytest.mark.validation
+def test_the_short_rod_converges_to_the_reference():
+    short = {"f": 0.0, "length": "80 mm", "v_n": 2.97, "v_t": 2.97}
+    errors = [
+        abs(verify("oblique-rod", short | {"tip_size": h}).checks[2].error) for h in (0.6e-3, 0.3e-3, 0.15e-3)
+    ]
+    assert errors[0] > errors[1] > errors[2]
+    assert errors[2] < 0.003
