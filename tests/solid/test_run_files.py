@@ -1,0 +1,117 @@
+"""The files of one run: histories, contacts, fields and the outcome tell the same story."""
+
+import numpy as np
+import pytest
+
+from fem_impact.outcome import Outcome
+from fem_impact.output import read_fields, read_table
+from fem_impact.scene import load, replace_all
+from fem_impact.simulate import simulate
+from fem_impact.solid.fields import centre_gradients, mises
+
+ACCOUNTS = (
+    "E_kinetic_rod_J",
+    "E_strain_rod_J",
+    "E_plastic_rod_J",
+    "E_kinetic_barrier_J",
+    "E_strain_barrier_J",
+    "E_plastic_barrier_J",
+    "W_friction_J",
+    "W_closing_J",
+    "W_radiated_J",
+    "E_gravity_J",
+    "residual_J",
+)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """A coarse run that ends in mid-contact: short, and everything is in motion."""
+    out = tmp_path_factory.mktemp("run")
+    changes = {
+        "accuracy.tip_size": "0.8 mm",
+        "accuracy.across": 6,
+        "accuracy.max_time": "0.1 ms",
+        "save.frames": 60,
+    }
+    told = []
+    outcome = simulate(replace_all(load("t5b"), changes), out=out, progress=told.append)
+    return out, outcome, told
+
+
+def test_the_run_says_that_it_was_cut_off(run):
+    _, outcome, told = run
+    assert outcome["finished"] is False
+    assert outcome["stopped_because"].startswith("Reached max_time = 0.1 ms")
+    assert outcome["E_vib_check_over_E_0"] is None
+    assert told[-1].contact.endswith("nodes touch") and abs(told[-1].energy_drift) < 1e-5
+
+
+def test_the_outcome_reads_back(run):
+    out, outcome, _ = run
+    assert Outcome.read(out / "outcome.json") == outcome
+    assert load(out / "scene.toml").digest() == outcome["scene_digest"]
+
+
+def test_accounts_add_up_to_E_0_in_every_row(run):
+    out, outcome, _ = run
+    table = read_table(out / "history.csv")
+    total = sum(table.numbers(name) for name in ACCOUNTS)
+    assert len(total) > 50
+    assert total == pytest.approx(outcome["E_0_J"], rel=1e-12)
+    assert np.abs(table.numbers("residual_J")).max() < 1e-5 * outcome["E_0_J"]
+    for name in ("W_friction_J", "E_plastic_rod_J", "E_plastic_barrier_J", "W_radiated_J"):
+        assert (np.diff(table.numbers(name)) > -1e-9 * outcome["E_0_J"]).all(), name
+
+
+def test_the_last_row_is_the_outcome(run):
+    out, outcome, _ = run
+    table = read_table(out / "history.csv")
+    for column, key in (("W_friction_J", "W_friction"), ("E_plastic_barrier_J", "E_plastic_barrier")):
+        share = table.numbers(column)[-1] / outcome["E_0_J"]
+        assert share == pytest.approx(outcome[f"{key}_over_E_0"], rel=0.02), column
+
+
+def test_force_and_contacts_carry_the_same_impulse(run):
+    out, outcome, _ = run
+    table = read_table(out / "history.csv")
+    t = table.numbers("time_s")
+    (contact,) = outcome["contacts"]
+    assert read_table(out / "contacts.csv").numbers("impulse_n_Ns") == pytest.approx(
+        [contact["impulse_n_Ns"]]
+    )
+    for axis in "nt":
+        impulse = (table.numbers(f"force_{axis}_N")[1:] * np.diff(t)).sum()
+        assert impulse == pytest.approx(contact[f"impulse_{axis}_Ns"], rel=0.02)
+
+
+def test_fields_hold_both_bodies_in_motion(run):
+    out, outcome, _ = run
+    fields = read_fields(out / "fields.vtkhdf")
+    last = len(fields.times) - 1
+    assert len(fields.times) >= 8 and (np.diff(fields.times) > 0).all()
+    body = np.asarray(fields.static["body"])
+    assert (body == 0).sum() == outcome["elements_rod"] and (body == 1).sum() == outcome["elements_barrier"]
+    assert np.abs(fields.point_data("displacement", 0)).max() == 0.0
+    rod = np.unique(fields.cells[body == 0])
+    start = fields.point_data("velocity", 0)[rod]
+    assert start[:, 2] == pytest.approx(outcome["v_n_m_per_s"], rel=1e-6)
+    assert start[:, 0] == pytest.approx(outcome["v_t_m_per_s"], rel=1e-6)
+    strain, stress = fields.cell_data("plastic_strain", last), fields.cell_data("mises", last)
+    for number, flow in ((0, 546e6), (1, 320e6)):
+        assert strain[body == number].max() > 0.01
+        yielded = (body == number) & (strain > 0.01)
+        assert stress[yielded].max() > 0.9 * flow
+    assert (strain[np.linalg.norm(fields.points[fields.cells].mean(axis=1), axis=1) > 0.02] == 0).all()
+
+
+def test_mises_of_a_uniform_strain():
+    """Uniaxial strain e: sigma_1 - sigma_2 = 2 G e, which is the von Mises stress."""
+    rng = np.random.default_rng(3)
+    corners = np.array([(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
+    x = corners + rng.uniform(-0.1, 0.1, corners.shape)
+    cells = np.arange(8)[None]
+    E, nu, e = 200e9, 0.3, 1e-4
+    u = np.zeros((1, 8, 3))
+    u[0, :, 1] = e * x[:, 1] + 7.0
+    assert mises(centre_gradients(x, cells), u, E, nu) == pytest.approx([E / (1 + nu) * e])
