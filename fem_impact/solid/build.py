@@ -227,7 +227,7 @@ def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
     if levels_of(scene) == 0 and (spec.meshed_barrier or spec.rod_law is not None):
         base = scene.projectile.diameter / scene.accuracy.across
         raise SceneError(
-            "leaves the tip as coarse as the rod: nothing could yield and the barrier would have no fine zone.",
+            "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
             key="accuracy.tip_size",
             value=scene.accuracy.tip_size,
             remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
