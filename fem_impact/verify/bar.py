@@ -59,7 +59,7 @@ class Ceiling:
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]
         before = self.record[5]
-        touch_plane(
+        touch_plane(  # type: ignore[no-untyped-call]
             self.nodes,
             state.x,
             state.v,

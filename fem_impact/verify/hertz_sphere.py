@@ -30,7 +30,9 @@ def solve(p: Values) -> Solved:
     points = placed(mesh.mesh.points, 0.0, 0.0)
     speed = np.zeros_like(points)
     speed[:, 2] = -v
-    model = body_model(Body(mesh, points, speed, p["E"], p["nu"], p["rho"], friction=0.0))
+    # flat cells inside the round skin lack volume: the true mass is what strikes
+    rho = p["rho"] * 4 / 3 * pi * R**3 / (2 * float(np.sum(meshes.volume(mesh.mesh))))
+    model = body_model(Body(mesh, points, speed, p["E"], p["nu"], rho, friction=0.0))
     found = run_strike(model, AFTER * exact.duration, exact.duration)
     checks = (
         Check("largest force", "N", found.force, exact.force, TOLERANCE),
@@ -46,7 +48,7 @@ PROBLEM = Problem(
     "an elastic sphere strikes a frictionless rigid plane: force and time of contact",
     (
         Parameter("radius", "radius of the sphere", 9.5e-3, 1e-4, 1.0, "length"),
-        steel.speed("speed", "approach speed", 4.0),
+        steel.speed("speed", "approach speed", 0.5),
         *steel.elastic(210e9),
         Parameter("cells", "cells over the contact radius", 8, 2, 20),
         steel.across(8),

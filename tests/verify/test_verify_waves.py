@@ -1,7 +1,5 @@
 """Guided waves in the solver's slices."""
 
-import pytest
-
 from fem_impact.verify import verify
 
 

@@ -56,7 +56,7 @@ def _legendre_tables(count: int, length: float) -> tuple[Array, Array, Array]:
     s, weight = legendre.leggauss(count + 2)
     values = legendre.legvander(s, count - 1)
     slopes = np.stack([legendre.legval(s, legendre.legder(row)) for row in np.eye(count)], axis=1)
-    return values, slopes * 2 / length, weight * length / 2
+    return np.asarray(values), np.asarray(slopes * 2 / length), np.asarray(weight * length / 2)
 
 
 def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BeamModes:

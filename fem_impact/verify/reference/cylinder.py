@@ -65,7 +65,11 @@ def _axis(length: float) -> tuple[Array, Array, Array]:
     s, w = legendre.leggauss(AXIAL_DEGREE + 3)
     n = AXIAL_DEGREE + 1
     slopes = np.stack([legendre.legval(s, legendre.legder(row)) for row in np.eye(n)], axis=1)
-    return legendre.legvander(s, AXIAL_DEGREE), slopes * 2 / length, w * length / 2
+    return (
+        np.asarray(legendre.legvander(s, AXIAL_DEGREE)),
+        np.asarray(slopes * 2 / length),
+        np.asarray(w * length / 2),
+    )
 
 
 def _derivatives(parities: tuple[int, int], radius: float) -> tuple[list[tuple[Array, int]], Array]:
@@ -115,5 +119,5 @@ def cylinder_frequencies(
     bending = _class_frequencies([(0, 0), (1, 1), (1, 0)], *size)
     stretching = _class_frequencies([(1, 0), (0, 1), (0, 0)], *size)
     c_s = sqrt(E / (2 * (1 + nu)) / rho)
-    torsion = c_s / (2 * length) * np.arange(1, count + 1)
+    torsion = np.asarray(c_s / (2 * length) * np.arange(1, count + 1), dtype=np.float64)
     return Frequencies(bending[2 : 2 + count], stretching[1 : 1 + count], torsion)

@@ -53,7 +53,7 @@ class SpringRow:
 
     def normal(self, depth: float) -> float:
         """Return the normal force, N, at an approach, m."""
-        return 4 / 3 * self.E_star * sqrt(self.radius) * max(depth, 0.0) ** 1.5
+        return float(4 / 3 * self.E_star * sqrt(self.radius) * max(depth, 0.0) ** 1.5)
 
     def slide(self, depth: float, step: float) -> float:
         """Move the contact tangentially by ``step``, m; return the force against it, N."""

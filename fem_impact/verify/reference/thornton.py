@@ -9,7 +9,7 @@ __all__ = ["thornton_restitution", "yield_speed"]
 
 def yield_speed(limit: float, E_star: float, radius: float, mass: float) -> float:
     """Return the speed, m/s, at which the peak pressure reaches the limiting contact pressure, Pa."""
-    return (pi / (2 * E_star)) ** 2 * sqrt(8 * pi * radius**3 / (15 * mass)) * limit**2.5
+    return float((pi / (2 * E_star)) ** 2 * sqrt(8 * pi * radius**3 / (15 * mass)) * limit**2.5)
 
 
 def thornton_restitution(speed: float, yields_at: float) -> float:
@@ -23,4 +23,5 @@ def thornton_restitution(speed: float, yields_at: float) -> float:
     if speed <= yields_at:
         return 1.0
     y = yields_at / speed
-    return sqrt(6 * sqrt(3) / 5) * sqrt(1 - y**2 / 6) * (y / (y + 2 * sqrt(6 / 5 - y**2 / 5))) ** 0.25
+    losses = (y / (y + 2 * sqrt(6 / 5 - y**2 / 5))) ** 0.25
+    return float(sqrt(6 * sqrt(3) / 5) * sqrt(1 - y**2 / 6) * losses)
