@@ -18,6 +18,7 @@ __all__ = ["PROBLEMS", "Check", "Cost", "Parameter", "Problem", "Verification", 
 PROBLEMS = {
     "bar": ("bar", "PROBLEM"),
     "hertz": ("hertz_sphere", "PROBLEM"),
+    "oblique-sphere": ("oblique_sphere", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),
     "wall-bar": ("wall_bar", "PROBLEM"),
     "modes": ("free_modes", "PROBLEM"),
