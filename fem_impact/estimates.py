@@ -34,7 +34,7 @@ class ContactEstimate:
     pressure: float
 
 
-def yield_names(scene: Scene) -> list[Material]:
+def yielding_materials(scene: Scene) -> list[Material]:
     """Return the materials that may yield in this scene."""
     named = {"rod-plasticity": scene.projectile.material, "barrier-elastoplastic": scene.barrier.material}
     return [material for name, material in named.items() if name in scene.effects]
@@ -84,7 +84,7 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     elastic = ContactEstimate(
         depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, 4 / (3 * pi) * E_star * sqrt(depth / R)
     )
-    softer = yield_names(scene)
+    softer = yielding_materials(scene)
     limit = LIMIT_PRESSURE * min((m.yield_stress for m in softer), default=float("inf"))
     if elastic.pressure <= limit:
         return elastic

@@ -52,6 +52,12 @@ class HexMesh:
         """(n,) True where a node follows others by its tie."""
         return np.asarray(self.tie.diagonal() == 0.0)
 
+    @property
+    def free_skin(self) -> IntArray:
+        """(k,) nodes of the SKIN that follow no others."""
+        skin = np.unique(self.faces_with(SKIN))
+        return np.asarray(skin[~self.is_hanging[skin]])
+
     def faces_with(self, tag: int) -> IntArray:
         """(k', 4) outer faces of one tag."""
         return np.asarray(self.faces[self.face_tag == tag])

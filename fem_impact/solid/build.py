@@ -15,7 +15,7 @@ from fem_impact.solid.boundary import spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, largest_frequency, lumped_mass
-from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.items import Force, Impulse
@@ -122,43 +122,18 @@ def _start(bodies: list[Body], layout: Layout, scene: Scene, mass: Array) -> tup
     return x, v
 
 
-def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
-    """Return the mass centre (3,), m, of the nodes in ``places``; b is 0 by symmetry."""
-    m = mass[places[:, 0]]
-    centre = m @ x[places] / m.sum()
-    centre[1] = 0.0
-    return np.asarray(centre)
-
-
 def _elastic_rod(
     body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, turning: bool
 ) -> ElasticRod:
     rod, n = geometry.rod, layout.rod_size
-    section = np.full(len(body.points), -1)
-    section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
-    first = body.mesh.cells[rod.body_cells[:, 0]]
-    slices = SliceOperator.of(
-        body.stiffness[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]]
-    )
+    slices = SliceOperator.of_rod(rod, body.stiffness)
     linear = ~body.yields
     linear[rod.body_cells] = False
     T = tie_operator(body.mesh.tie, body.places, n)
-    nose = NodeProduct.of(
-        assemble(body.stiffness[linear], body.mesh.cells[linear], T), body.places[~body.mesh.is_hanging]
-    )
-    frame = _frame(body, layout, mass, x, turning)
-    return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
-
-
-def _frame(body: Body, layout: Layout, mass: Array, x: Array, turning: bool) -> FixedFrame | TurningFrame:
-    n = layout.rod_size
-    if not turning:
-        return FixedFrame(x[:n].copy())
     free = body.places[~body.mesh.is_hanging]
-    reference = x.copy()
-    reference[free] -= mass_centre(mass, x, free)
-    t, b, normal = (np.ascontiguousarray(free[:, c]) for c in range(3))
-    return TurningFrame(reference[:n], mass[:n], t, b, normal)
+    nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), free)
+    frame = TurningFrame.at(x[:n], mass[:n], free) if turning else FixedFrame(x[:n].copy())
+    return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
 
 
 def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, Array]:
@@ -206,9 +181,7 @@ def _contact(
 ) -> PlaneContact | SurfaceContact:
     f = spec.friction or 0.0
     if len(bodies) == 1:
-        skin = np.unique(bodies[0].mesh.faces_with(SKIN))
-        free = skin[~bodies[0].mesh.is_hanging[skin]]
-        return PlaneContact(bodies[0].places[free], inverse_mass, f)
+        return PlaneContact(bodies[0].places[bodies[0].mesh.free_skin], inverse_mass, f)
     rod, barrier = (make_patch(_skin(body, geometry), body.places, body.points) for body in bodies)
     return SurfaceContact.of(rod, barrier, inverse_mass, f, BAND * geometry.tip_size, x)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.elements import isotropic_stiffness
-from fem_impact.solid.hexmodes import SIGNS
+from fem_impact.solid.hexmodes import reference_gradients
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.state import State
@@ -19,9 +19,9 @@ Ints = NDArray[np.int64]
 
 def centre_gradients(points: Array, cells: Ints) -> Array:
     """Return shape gradients (m, 8, 3), 1/m, at the cell centres."""
-    x = points[cells]
-    J = np.einsum("ai,maj->mij", SIGNS / 8.0, x)
-    return np.asarray(np.einsum("ai,mji->maj", SIGNS / 8.0, np.linalg.inv(J)))
+    (centre,) = reference_gradients(np.zeros((1, 3)))
+    J = np.einsum("ai,maj->mij", centre, points[cells])
+    return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
 def mises(gradient: Array, u: Array, E: float, nu: float) -> Array:

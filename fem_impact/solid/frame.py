@@ -11,6 +11,7 @@ so linear and angular momentum and energy are all conserved, and a free spin cos
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +22,20 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
+    """Return the mass centre (3,), m, of the nodes in ``places``; b is 0 by symmetry."""
+    m = mass[places[:, 0]]
+    centre = m @ x[places] / m.sum()
+    centre[1] = 0.0
+    return np.asarray(centre)
+
+
 @dataclass(slots=True)
 class FixedFrame:
     """Small rotations: displacements are differences of positions."""
 
     reference: Array
-    angle: float = 0.0
+    angle: ClassVar[float] = 0.0
 
     def localise(self, x: Array, d: Array) -> None:
         """Set ``d`` to the displacements of ``x``."""
@@ -53,13 +62,24 @@ class TurningFrame:
     t: Ints
     b: Ints
     n: Ints
-    angle: float = 0.0
     work: Array = field(default_factory=lambda: np.zeros(2))
 
+    @classmethod
+    def at(cls, x: Array, mass: Array, free: Ints) -> TurningFrame:
+        """Start at positions ``x`` (size,) of free nodes with unknowns ``free`` (nodes, 3)."""
+        reference = x.copy()
+        reference[free] -= mass_centre(mass, x, free)
+        t, b, n = (np.ascontiguousarray(free[:, c]) for c in range(3))
+        return cls(reference, mass.copy(), t, b, n)
+
     def localise(self, x: Array, d: Array) -> None:
-        """Set ``d`` to the displacements of ``x`` seen in the frame, and update the angle."""
+        """Set ``d`` to the displacements of ``x`` seen in the frame, and turn the frame."""
         _localise(x, self.reference, self.mass, self.t, self.b, self.n, d, self.work)
-        self.angle = float(np.arctan2(self.work[1], self.work[0]))
+
+    @property
+    def angle(self) -> float:
+        """Return the angle from t towards n, rad, at the last positions."""
+        return float(np.arctan2(self.work[1], self.work[0]))
 
     def add_force(self, d: Array, y: Array, force: Array) -> None:
         """Add the force whose potential is half d . y."""

@@ -8,8 +8,11 @@ holds one number for each of ``LANES`` elements, so that the compiler turns lane
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem_impact.solid.kernels import inlined, kernel
+
+Array = NDArray[np.float64]
 
 # corners of the reference cube in VTK order
 SIGNS = np.array(
@@ -17,6 +20,13 @@ SIGNS = np.array(
 )
 LANES = 16
 THIRD = 1.0 / 3.0
+
+
+def reference_gradients(at: Array) -> Array:
+    """Return dN/dxi (points, 8 nodes, 3) of the trilinear hexahedron at places (points, 3) in [-1, 1]^3."""
+    factor = 1 + SIGNS[None] * at[:, None]
+    product = [factor[..., j] * factor[..., k] for j, k in ((1, 2), (0, 2), (0, 1))]
+    return np.asarray(SIGNS[None] * np.stack(product, axis=-1) / 8)
 
 
 @inlined

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.progress import Progress
+from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.fields import Fields
 from fem_impact.solid.ledger import ACCOUNTS, Ledger
 from fem_impact.solid.model import Model
@@ -62,7 +63,7 @@ class History:
         force_t, force_n = self._force(state)
         row: dict[str, float] = {COLUMNS[k]: v for k, v in self.watch.accounts.items()}
         row |= {"time_s": state.time, "force_n_N": force_n, "force_t_N": force_t}
-        row |= {"contact_nodes": int(self.model.book.step[5])}
+        row |= {"contact_nodes": int(self.model.book.step[ACTIVE])}
         row |= {"V_n_m_per_s": motion.V_n, "V_t_m_per_s": motion.V_t, "Omega_rad_per_s": motion.Omega}
         self.writer.append(row)
         return False
@@ -109,7 +110,7 @@ class Meter:
         """Report."""
         spent = clock.monotonic() - self.begun
         eta = spent * (self.end / state.time - 1) if state.time > 0.02 * self.end else None
-        nodes = int(self.model.book.step[5])
+        nodes = int(self.model.book.step[ACTIVE])
         words = f"{nodes} nodes touch" if nodes else "no contact"
         self.show(Progress(state.time, self.end, state.step, self.watch.drift, words, eta, self.note))
         return False

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from fem_impact.modes import Flight, RigidMotion, RodModes, flight, rigid_motion, rod_modes
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from meshes import SKIN
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,8 +42,7 @@ class RodView:
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
         modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0)
-        skin = np.unique(mesh.faces_with(SKIN))
-        skin = skin[~mesh.is_hanging[skin]]
+        skin = mesh.free_skin
         low = skin[np.argsort(model.geometry.rod_points[skin, 2])[:TIP_NODES]]
         return cls(places, model.mass[places[:, 0]], n, model.layout.rod[low], modes)
 

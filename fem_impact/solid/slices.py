@@ -14,6 +14,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem_impact.solid.kernels import kernel
+from meshes import RodMesh
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -33,6 +34,14 @@ class SliceOperator:
     def apply(self, d: Array, y: Array) -> None:
         """Set ``y`` to the product with ``d``, both (rows, layers)."""
         apply_slices(self.start, self.columns, self.below, self.lower, self.upper, self.above, d, y)
+
+    @classmethod
+    def of_rod(cls, rod: RodMesh, K: Array) -> SliceOperator:
+        """Build from a rod's mesh and the element matrices (cells, 24, 24) of all its cells."""
+        section = np.full(len(rod.mesh.points), -1)
+        section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
+        first = rod.mesh.cells[rod.body_cells[:, 0]]
+        return cls.of(K[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
 
     @classmethod
     def of(cls, K: Array, lower_nodes: Ints, upper_nodes: Ints) -> SliceOperator:

@@ -8,30 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.errors import RunError
-from fem_impact.solid.hexmodes import SIGNS
+from fem_impact.solid.hexmodes import reference_gradients
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+from fem_impact.solid.yielding_kernel import CORNERS
 
 Array = NDArray[np.float64]
 
 SMALLEST = 0.02  # of the first step: below it the elements are crushed beyond use
 
 
-def reference_gradients() -> Array:
-    """Return dN/dxi (8 points, 8 nodes, 3) of the trilinear hexahedron at the 2 x 2 x 2 Gauss points."""
-    factors = 1 + SIGNS[None] * (SIGNS / np.sqrt(3.0))[:, None]
-    product = np.stack(
-        [
-            factors[..., 1] * factors[..., 2],
-            factors[..., 0] * factors[..., 2],
-            factors[..., 0] * factors[..., 1],
-        ],
-        axis=-1,
-    )
-    return np.asarray(SIGNS[None] * product / 8)
-
-
-REFERENCE = reference_gradients()
+REFERENCE = reference_gradients(CORNERS)
 
 
 def gradient_squares(x: Array) -> Array:

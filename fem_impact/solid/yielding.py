@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import LANES, SIGNS
+from fem_impact.solid.hexmodes import LANES, SIGNS, reference_gradients
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import CORNERS, FULL_ELASTIC, FULL_PLASTIC, ROWS, Blocks, update
@@ -100,7 +100,4 @@ def gauss_volumes(x: Array) -> Array:
 
     The order of the points is that of the kernel (xi fastest).
     """
-    factor = 1 + SIGNS[None] * CORNERS[:, None]
-    product = [factor[..., j] * factor[..., k] for j, k in ((1, 2), (0, 2), (0, 1))]
-    gradient = SIGNS[None] * np.stack(product, axis=-1) / 8
-    return np.asarray(np.linalg.det(np.einsum("qai,maj->mqij", gradient, x)))
+    return np.asarray(np.linalg.det(np.einsum("qai,maj->mqij", reference_gradients(CORNERS), x)))

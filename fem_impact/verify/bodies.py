@@ -31,7 +31,7 @@ from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
-from meshes import SKIN, HexMesh, RodMesh
+from meshes import HexMesh, RodMesh
 
 __all__ = ["Body", "body_model", "placed", "rigid_of", "unsliced"]
 
@@ -147,7 +147,7 @@ def _linear(body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x:
     T = tie_operator(mesh.tie, layout.rod, n)
     free = layout.rod[~mesh.is_hanging]
     product = NodeProduct.of(assemble(K[rest], mesh.cells[rest], T), free) if rest.any() else _nothing()
-    frame = _frame(body, free, mass[:n], x[:n])
+    frame = TurningFrame.at(x[:n], mass[:n], free) if body.turning else FixedFrame(x[:n].copy())
     return ElasticRod(_slices(body, K), product, frame, layout.body_shape, np.zeros(n), np.zeros(n))
 
 
@@ -162,25 +162,10 @@ def _nothing() -> NodeProduct:
 
 
 def _slices(body: Body, K: Array) -> SliceOperator:
-    nodes, cells = body.mesh.body_nodes, body.mesh.body_cells
-    if not cells.size:
+    if not body.mesh.body_cells.size:
         none = np.zeros(0)
         return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none)
-    section = np.full(len(body.points), -1)
-    section[nodes[:, :2].T] = np.arange(len(nodes))
-    first = body.mesh.mesh.cells[cells[:, 0]]
-    return SliceOperator.of(K[cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
-
-
-def _frame(body: Body, free: Ints, mass: Array, x: Array) -> FixedFrame | TurningFrame:
-    if not body.turning:
-        return FixedFrame(x.copy())
-    weight = mass[free[:, 0]]
-    centre = weight @ x[free] / weight.sum()
-    reference = x.copy()
-    reference[free] -= np.array([centre[0], 0.0, centre[2]])
-    t, b, n = (np.ascontiguousarray(free[:, c]) for c in range(3))
-    return TurningFrame(reference, mass.copy(), t, b, n)
+    return SliceOperator.of_rod(body.mesh, K)
 
 
 def _zones(body: Body, yields: Bools, layout: Layout) -> list[YieldingZone]:
@@ -195,6 +180,4 @@ def _zones(body: Body, yields: Bools, layout: Layout) -> list[YieldingZone]:
 def _contact(body: Body, layout: Layout, inverse: Array) -> PlaneContact | None:
     if body.friction is None:
         return None
-    skin = np.unique(body.mesh.mesh.faces_with(SKIN))
-    free = skin[~body.mesh.mesh.is_hanging[skin]]
-    return PlaneContact(layout.rod[free], inverse, body.friction)
+    return PlaneContact(layout.rod[body.mesh.mesh.free_skin], inverse, body.friction)
