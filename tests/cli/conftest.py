@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from fem_impact.cli import main
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.progress import Progress
 
@@ -71,19 +70,3 @@ def stand(monkeypatch):
     _module(monkeypatch, "fem_impact.render", render=work("render", lambda: film))
     _module(monkeypatch, "fem_impact.report", write_report=work("report", lambda: "report.html"))
     return stand
-
-
-@pytest.fixture
-def cli(capsys, tmp_path, monkeypatch):
-    """Call the command in an empty directory; return exit code, standard output and standard error."""
-    monkeypatch.chdir(tmp_path)
-
-    def call(*words):
-        try:
-            code = main([str(word) for word in words])
-        except SystemExit as stop:
-            code = stop.code
-        out, err = capsys.readouterr()
-        return code, out, err
-
-    return call
