@@ -30,6 +30,7 @@ class Options(argparse.Namespace):
     scene: str = ""
     changes: Sequence[str] = ()
     ids: Sequence[str] = ()
+    name: str = ""
     out: Path | None = None
     problem: str | None = None
     parameters: bool = False
@@ -100,10 +101,14 @@ def _add_study(commands: Commands) -> None:
     parser = _command(
         commands, "study", "compute the paper's sets and compare them with it", "fem_impact.cli_run:study"
     )
-    parser.add_argument("name", choices=["sets"], help="sets: the published series of tests")
+    parser.add_argument(
+        "name",
+        choices=["sets", "convergence"],
+        help="sets: the published series of tests; convergence: their limits for vanishing elements",
+    )
     parser.add_argument("ids", nargs="*", metavar="ID", help="sets to compute (default: all of them)")
-    parser.add_argument("--quick", action="store_true", help="three rods with a coarse tip, about a minute")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/sets)")
+    parser.add_argument("--quick", action="store_true", help="coarse meshes, for a first look")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
     parser.add_argument(
         "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
     )

@@ -46,6 +46,32 @@ def run(options: Options) -> int:
 
 
 def study(options: Options) -> int:
+    """Run the named study and print its table."""
+    return {"sets": _sets, "convergence": _convergence}[options.name](options)
+
+
+def _convergence(options: Options) -> int:
+    """Compute measured sets on a family of meshes and print every quantity's limit."""
+    ids = _checked_ids(options.ids)
+    out = checked_out(options.out or Path("results") / "convergence")
+    from fem_impact.study import run_convergence
+    from fem_impact.study.convergence import ACROSS, QUICK_ACROSS
+
+    meter = _meter(options)
+    try:
+        across = QUICK_ACROSS if options.quick else ACROSS
+        result = run_convergence(ids, across, out, meter, options.workers or _cores())
+    finally:
+        meter.close()
+    if options.json:
+        print_json({name: getattr(result, name) for name in ("rows", "failures")})
+    else:
+        sys.stderr.writelines(f"failed: {f['scene_id']}: {f['error']}\n" for f in result.failures)
+        sys.stdout.write(f"{result.table}\nresults: {out}\n")
+    return RunError.exit_code if result.failures else 0
+
+
+def _sets(options: Options) -> int:
     """Compute measured sets, compare them with the paper and print the table."""
     ids = _checked_ids(options.ids) or (QUICK_SETS if options.quick else ())
     out = checked_out(options.out or Path("results") / "sets")

@@ -25,7 +25,8 @@ def summary(rows: list[dict[str, Any]], comparison: list[Row], friction: list[di
     return "\n\n".join(tables) + "\n"
 
 
-def _table(head: list[str], body: list[list[str]]) -> str:
+def table(head: list[str], body: list[list[str]]) -> str:
+    """Return a Markdown table: the first column to the left, the others to the right."""
     lines = [head, ["---", *["---:"] * (len(head) - 1)], *body]
     return "\n".join(f"| {' | '.join(line)} |" for line in lines)
 
@@ -33,7 +34,7 @@ def _table(head: list[str], body: list[list[str]]) -> str:
 def _beside(comparison: list[Row]) -> str:
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = list(dict.fromkeys(row["set"] for row in comparison))
-    return _table(["set", *COMPARED], [[name, *(cells[name, q] for q in COMPARED)] for name in names])
+    return table(["set", *COMPARED], [[name, *(cells[name, q] for q in COMPARED)] for name in names])
 
 
 def _cell(row: Row) -> str:
@@ -55,7 +56,7 @@ def _shares(outcomes: list[dict[str, Any]]) -> str:
         body.append(
             [o["scene_id"], *shares, f"{o['residual_over_E_0']:.0e}", f"{o['steps']}", f"{o['cpu_s']:.0f}"]
         )
-    return _table(head, body)
+    return table(head, body)
 
 
 def _percent(outcome: Mapping[str, Any], key: str) -> str:
@@ -70,4 +71,4 @@ def _friction(friction: list[dict[str, Any]]) -> str:
     quantities = list(dict.fromkeys(row["quantity"] for row in friction))
     cells = {(row["set"], row["quantity"]): " / ".join(f"{x:.3g}" for x in row["model"]) for row in friction}
     f = {row["set"]: " / ".join(f"{x:g}" for x in row["f"]) for row in friction}
-    return _table(["set", "f", *quantities], [[n, f[n], *(cells[n, q] for q in quantities)] for n in names])
+    return table(["set", "f", *quantities], [[n, f[n], *(cells[n, q] for q in quantities)] for n in names])

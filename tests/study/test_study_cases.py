@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from study_fakes import outcome
 
 import fem_impact.simulate
 from fem_impact.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
@@ -18,16 +19,6 @@ from fem_impact.study.bands import EXTRA, bands
 from fem_impact.study.cases import STAMP, Case, Failure, compute, source_digest, stamp, stored
 from fem_impact.study.sets import COARSER, cases_of, run_cases
 from rigid.experiments import Statistic, measured_set
-
-
-def outcome(**changed):
-    """A complete record with plain numbers."""
-    kinds = {"text": "text", "texts": [], "flag": True, "count": 3, "number": 0.25}
-    values = {key.name: kinds[key.kind] for key in KEYS if key.kind in kinds}
-    values |= {"versions": {}, "contacts": [], "schema_version": 1, "finished": True, "fidelity": "solid"}
-    values |= {"scene_id": "t5b", "E_vib_below_floor": False, "mu": 0.5, "tip_size_m": 4e-4} | changed
-    lacking = {k.name: "not in the test" for k in KEYS if k.nullable and values.get(k.name) is None}
-    return Outcome(values, reasons=lacking)
 
 
 class Here(Executor):
