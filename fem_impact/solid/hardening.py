@@ -10,8 +10,23 @@ from scipy.optimize import brentq
 
 
 @dataclass(frozen=True, slots=True)
+class RateFactor:
+    """Factor 1 + C ln(rate / slowest) of the flow stress for plastic strain rates above ``slowest``, 1/s.
+
+    Johnson & Cook 1985, doi:10.1016/0013-7944(85)90052-9, eq 1, without its thermal softening.
+    """
+
+    C: float
+    slowest: float = 1.0
+
+    def at(self, rate: ArrayLike) -> NDArray[np.float64]:
+        """Return the factor at plastic strain rates, 1/s, of any shape."""
+        return np.asarray(1 + self.C * np.log(np.maximum(np.asarray(rate) / self.slowest, 1.0)))
+
+
+@dataclass(frozen=True, slots=True)
 class Hardening:
-    """Flow stress sigma(eps_p) = yield_stress (1 + slope eps_p)^exponent.
+    """Flow stress sigma(eps_p) = yield_stress (1 + slope eps_p)^exponent, times a rate factor if any.
 
     ``exponent = 1`` is linear hardening with modulus ``yield_stress * slope``; ``slope = 0`` is
     perfect plasticity.
@@ -20,6 +35,7 @@ class Hardening:
     yield_stress: float
     slope: float
     exponent: float
+    rate: RateFactor | None = None
 
     def __post_init__(self) -> None:
         if not self.yield_stress > 0:

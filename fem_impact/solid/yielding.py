@@ -31,6 +31,7 @@ class YieldingZone:
     blocks : their places and state
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
+    rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
     """
 
     body: str
@@ -39,6 +40,7 @@ class YieldingZone:
     G: float
     K: float
     law: Array
+    rate: Array | None
     work: Array
 
     @classmethod
@@ -62,11 +64,13 @@ class YieldingZone:
             scratch=np.zeros(ROWS * LANES),
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
-        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, np.zeros(2))
+        rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
+        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, rate, np.zeros(2))
 
     def add_force(self, state: State) -> None:
         """Advance stresses to the present positions and subtract the nodal forces."""
-        update(state.x, state.v, state.dt, state.force, self.blocks, self.G, self.K, self.law, self.work)
+        z, law = self.blocks, self.law
+        update(state.x, state.v, state.dt, state.force, z, self.G, self.K, law, self.rate, self.work)
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""

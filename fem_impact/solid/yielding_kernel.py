@@ -139,17 +139,46 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
     return dp, new
 
 
+@inlined
+def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Solve q - 3 G dp = sigma(strain + dp) (1 + C ln(dp / (rate_0 dt))), C and rate_0 in ``rate``.
+
+    Returns the increment, the stress and the flow stress at vanishing rate. Newton's method from the
+    increment without the rate factor, which is too large; a step that would overshoot zero is cut.
+    """
+    dp, new = _plastic_increment(q, flow, strain, G3, law)
+    slow = rate[1] * dt
+    if dp <= slow:
+        return dp, new, new
+    factor = 1.0
+    for _ in range(60):
+        base = 1.0 + law[1] * (strain + dp)
+        new = law[0] * base ** law[2]
+        factor = 1.0 + rate[0] * np.log(max(dp / slow, 1.0))
+        miss = q - G3 * dp - new * factor
+        if abs(miss) < 1e-12 * q:
+            break
+        steep = law[2] * law[1] * new / base * factor + (new * rate[0] / dp if dp > slow else 0.0)
+        dp = max(dp + miss / (G3 + steep), 0.1 * dp)
+    return dp, new * factor, new
+
+
 @kernel
-def _return_map(w, stress, weight, flow, strain, G3, law):  # type: ignore[no-untyped-def]
+def _return_map(w, stress, weight, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Bring yielding points back to the flow stress; return the plastic work done, J.
 
-    The work uses the mean of the old and new stress, as the energy balance of the step does.
+    The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate``
+    is None for a material without rate hardening: the compiler then drops that branch.
     """
     work = 0.0
     for l in range(LANES):
         if w[TRIAL2 * LANES + l] > flow[l] * flow[l]:
             q = sqrt(w[TRIAL2 * LANES + l])
-            dp, new = _plastic_increment(q, flow[l], strain[l], G3, law)
+            if rate is None:
+                dp, new = _plastic_increment(q, flow[l], strain[l], G3, law)
+                slow = new
+            else:
+                dp, new, slow = _hardened_increment(q, flow[l], strain[l], G3, law, rate, dt)
             along = 0.0
             for i in range(6):
                 double = 1.0 if i < 3 else 2.0
@@ -157,7 +186,7 @@ def _return_map(w, stress, weight, flow, strain, G3, law):  # type: ignore[no-un
                 stress[i * LANES + l] *= new / q
             work += 0.5 * (new + 1.5 * along / q) * dp * weight[l]
             strain[l] += dp
-            flow[l] = new
+            flow[l] = slow
     return work
 
 
@@ -211,7 +240,7 @@ class Blocks(NamedTuple):
     ----------
     dof : (blocks, 3, 8, LANES) int64
     stress : (blocks, 8, 6 * LANES) Kirchhoff deviator, Pa
-    strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress in Pa
+    strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress at vanishing rate in Pa
     weight : (blocks, 8, LANES) reference volume of each Gauss point, m3
     pressure, volume : (blocks, LANES), Pa (tension positive), reference m3
     scratch : (ROWS * LANES,)
@@ -228,7 +257,7 @@ class Blocks(NamedTuple):
 
 
 @kernel
-def update(x, v, dt, force, z, G, K, law, work):  # type: ignore[no-untyped-def]
+def update(x, v, dt, force, z, G, K, law, rate, work):  # type: ignore[no-untyped-def]
     """Advance all blocks ``z`` by the increment ``dt v`` to ``x`` and subtract their nodal forces.
 
     ``work[0]`` gains the plastic work, ``work[1]`` is set to the elastic energy, J.
@@ -243,7 +272,9 @@ def update(x, v, dt, force, z, G, K, law, work):  # type: ignore[no-untyped-def]
             X, Y, Z = CORNERS[g, 0], CORNERS[g, 1], CORNERS[g, 2]
             stress, weight = z.stress[b, g], z.weight[b, g]
             _trial(w, stress, 2.0 * G, X, Y, Z)
-            work[FULL_PLASTIC] += _return_map(w, stress, weight, z.flow[b, g], z.strain[b, g], 3.0 * G, law)
+            work[FULL_PLASTIC] += _return_map(
+                w, stress, weight, z.flow[b, g], z.strain[b, g], 3.0 * G, law, rate, dt
+            )
             _add_energy(w, stress, weight, 4.0 * G)
             _add_force(w, stress, weight, z.pressure[b], X, Y, Z)
         scatter_modes(w[FORCE * LANES :], z.dof[b], force)

@@ -1,11 +1,13 @@
 """The yielding zone: B-bar stiffness at rest, objectivity, closed forms, work, and the flow curve."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import solid_shapes as shapes
 
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
-from fem_impact.solid.hardening import linear_hardening, power_hardening
+from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
 from fem_impact.solid.hexmodes import LANES
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
@@ -146,6 +148,52 @@ def test_confined_compression_before_yield():
     assert _compress(rig, 1e-3, 20) == pytest.approx(-(LAME + 2 * G) * 1e-3 * np.exp(1e-3) * h**2, rel=1e-6)
     assert rig.zone.work[0] == 0.0
     assert rig.flat("strain").max() == 0.0
+
+
+RATE = RateFactor(C=0.05, slowest=2.0)
+
+
+@pytest.mark.parametrize("modulus", [0.0, 5e9])
+def test_confined_compression_at_a_constant_rate(modulus):
+    """Once the flow is steady, p' = 2 G e' / (3 G + H factor), so the factor is known in closed form."""
+    h, e, steps = 1e-3, 0.05, 400
+    rig = Rig(*shapes.grid((1, 1, 1), h), replace(linear_hardening(300e6, modulus), rate=RATE))
+    force = _compress(rig, e, steps)
+    factor = RATE.at(2 / 3 * e / (steps * DT))
+    factor = RATE.at(2 * G * e / (steps * DT) / (3 * G + modulus * factor))
+    plastic = rig.flat("strain")
+    assert plastic == pytest.approx((2 * G * e - 300e6 * factor) / (3 * G + modulus * factor), rel=2e-4)
+    flow = (300e6 + modulus * plastic) * factor
+    assert mises(rig.stress()) == pytest.approx(flow, rel=2e-4)
+    assert force == pytest.approx(-(BULK * e + 2 / 3 * flow.mean()) * np.exp(e) * h**2, rel=2e-4)
+
+
+def test_strip_pulled_at_a_constant_rate():
+    """Uniaxial stress: sigma = sigma_y (1 + C ln(e' / slowest)), the sides free of force."""
+    h, e, steps = 1e-3, 0.02, 400
+    rate = e / (steps * DT)
+    sigma = 300e6 * (1 + 0.05 * np.log(rate / 2.0))
+    rig = Rig(*shapes.grid((1, 1, 1), h), replace(linear_hardening(300e6, 0.0), rate=RATE))
+    start = rig.points.copy()
+    for k in range(1, steps + 1):
+        along = e * k / steps
+        stress = min(E * along, sigma)
+        sides = -NU * stress / E - 0.5 * (along - stress / E)
+        force = rig.lead(start * np.exp([sides, sides, along]))
+    top, side = np.isclose(start[:, 2], h), np.isclose(start[:, 0], h)
+    assert force[top, 2].sum() == pytest.approx(sigma * h**2 * np.exp(-e), rel=1e-3)
+    assert abs(force[side, 0].sum()) < 1e-3 * sigma * h**2
+
+
+def test_below_the_slowest_rate_the_factor_is_one():
+    law, slow = power_hardening(E, 300e6, 450e6), RateFactor(C=0.05, slowest=1e9)
+    assert np.array_equal(_wander(law, 0.004).force, _wander(replace(law, rate=slow), 0.004).force)
+
+
+def test_work_closes_with_rate_hardening():
+    rig = _wander(replace(linear_hardening(300e6, 5e9), rate=RATE), 0.004, steps=600)
+    assert rig.zone.work[0] > 10 * rig.zone.work[1] > 0
+    assert rig.work == pytest.approx(rig.zone.work.sum(), rel=1e-3)
 
 
 def _wander(law, amplitude, steps=300, seed=6, counts=(2, 1, 1)):
