@@ -9,14 +9,15 @@ import pytest
 from study_fakes import outcome
 
 import fem_impact.simulate
+import fem_impact.sources as sources_module
 from fem_impact.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
 from fem_impact.errors import RunError
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.scene import MEASURED_SETS, load
-from fem_impact.study import cases as cases_module
+from fem_impact.sources import source_digest, stamp
 from fem_impact.study import run_sets
 from fem_impact.study.bands import EXTRA, bands
-from fem_impact.study.cases import STAMP, Case, Failure, compute, source_digest, stamp, stored
+from fem_impact.study.cases import STAMP, Case, Failure, compute, stored
 from fem_impact.study.sets import COARSER, cases_of, run_cases
 from rigid.experiments import Statistic, measured_set
 
@@ -109,7 +110,7 @@ def test_a_changed_scene_or_program_never_reads_a_stale_result(solver, tmp_path,
     assert stored(case)["scene_id"] == "t5b"
     other = replace(case.scene, impact=replace(case.scene.impact, v_n=-1.0))
     assert stored(Case(other, case.out)) is None
-    monkeypatch.setattr(cases_module, "source_digest", lambda: "another program")
+    monkeypatch.setattr(sources_module, "source_digest", lambda: "another program")
     assert stored(case) is None
 
 
@@ -132,7 +133,7 @@ def test_sources_changed_during_a_run_do_not_sign_its_result(solver, tmp_path, m
     """The stamp must name the program that ran, not the one that lies there when it is done."""
     source = tmp_path / "kernel.py"
     source.write_text("old")
-    monkeypatch.setattr(cases_module, "_sources", lambda: [source])
+    monkeypatch.setattr(sources_module, "_sources", lambda: [source])
     quick = fem_impact.simulate.simulate
 
     def slow(scene, out, **rest):
@@ -151,7 +152,7 @@ def test_sources_changed_during_a_run_do_not_sign_its_result(solver, tmp_path, m
 
 
 def test_the_digest_covers_what_makes_numbers():
-    names = {path.name for path in cases_module._sources()}
+    names = {path.name for path in sources_module._sources()}
     assert {"yielding_kernel.py", "impulses.py", "rod.py", "reduce.py", "markers.py", "eigen.py"} <= names
     assert not {"film.py", "run_page.py"} & names
     assert stamp(load("t5b")) != stamp(load("t5c"))
@@ -159,7 +160,7 @@ def test_the_digest_covers_what_makes_numbers():
 
 def test_the_digest_covers_the_arms_that_e_is_worked_out_with():
     """e_paper of an outcome uses the arms in the packaged table of sets: other arms, another result."""
-    assert "sets.toml" in {path.name for path in cases_module._sources()}
+    assert "sets.toml" in {path.name for path in sources_module._sources()}
 
 
 def test_a_failing_case_is_a_row(solver, tmp_path):
