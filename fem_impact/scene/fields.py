@@ -114,6 +114,15 @@ ACCURACY = (
         source="chosen for this package; check its cost with a second value",
     ),
     Field(
+        "block_margin",
+        "width of the barrier block beyond its fine zone",
+        "length",
+        1e-3,
+        0.1,
+        default=6e-3,
+        source="chosen for this package: springs and dampers stand for the rest; `study sets` widens it once",
+    ),
+    Field(
         "max_time",
         "latest time at which the run stops",
         "time",

@@ -21,8 +21,6 @@ Array = NDArray[np.float64]
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
 # geometric mean), and how many cells it has at least
 ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
-# the block reaches this far beyond its fine zone (the springs stand for the rest)
-BLOCK_MARGIN = 6e-3
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)
 SLIDE = 5.0
 
@@ -83,6 +81,7 @@ def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, flo
     t, b, n = zone
     slide = SLIDE * contact_estimate(scene).depth * abs(scene.impact.v_t) / max(abs(scene.impact.v_n), 1e-6)
     box = Zone(np.zeros(3), np.eye(3), np.array([-t - slide, 0.0, -n]), np.array([t, b, 0.0]))
-    low = np.array([-t - slide - BLOCK_MARGIN, 0.0, -n - BLOCK_MARGIN])
-    high = np.array([t + BLOCK_MARGIN, b + BLOCK_MARGIN, 0.0])
+    margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
+    low = np.array([-t - slide - margin, 0.0, -n - margin])
+    high = np.array([t + margin, b + margin, 0.0])
     return meshes.block(low, high, base, zone=box, levels=levels)

@@ -1,4 +1,4 @@
-"""The study as Markdown tables, one row a set: beside the measurement, where the energy went, friction."""
+"""The study as Markdown tables, beside the measurement, where the energy went, inputs."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fem_impact.compare import Row
+from fem_impact.study.sensitivity import WORDS
 
 COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
 SHARES = (
@@ -19,9 +20,12 @@ SHARES = (
 )
 
 
-def summary(rows: list[dict[str, Any]], comparison: list[Row], friction: list[dict[str, Any]]) -> str:
-    """Return the tables, with that of the friction interval if it was computed."""
-    tables = [_beside(comparison), _shares(rows), *([_friction(friction)] if friction else [])]
+def summary(rows: list[Row], comparison: list[Row], changed: list[Row], explained: list[Row]) -> str:
+    """Return the tables, with those of the changed inputs if they were computed."""
+    tables = [_beside(comparison), _shares(rows)]
+    if changed:
+        words = "\n".join(f"- `{name}`: {meaning}" for name, meaning in WORDS.items())
+        tables += [_changes(changed), _explanations(explained), words]
     return "\n\n".join(tables) + "\n"
 
 
@@ -65,10 +69,34 @@ def _percent(outcome: Mapping[str, Any], key: str) -> str:
     return f"{value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
 
 
-def _friction(friction: list[dict[str, Any]]) -> str:
-    """Return a row a set: f and, at its low / stated / high value, each quantity on the coarser mesh."""
-    names = list(dict.fromkeys(row["set"] for row in friction))
-    quantities = list(dict.fromkeys(row["quantity"] for row in friction))
-    cells = {(row["set"], row["quantity"]): " / ".join(f"{x:.3g}" for x in row["model"]) for row in friction}
-    f = {row["set"]: " / ".join(f"{x:g}" for x in row["f"]) for row in friction}
-    return table(["set", "f", *quantities], [[n, f[n], *(cells[n, q] for q in quantities)] for n in names])
+def _changes(changed: list[Row]) -> str:
+    """Return a row a set and quantity: its value on the coarser mesh and what each input changes."""
+    found: dict[tuple[str, str], dict[str, Row]] = {}
+    for row in changed:
+        found.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
+    body = [
+        [*key, f"{next(iter(of.values()))['base']:.3g}", *(_change(of.get(name)) for name in WORDS)]
+        for key, of in found.items()
+    ]
+    return table(["set", "quantity", "coarser mesh", *WORDS], body)
+
+
+def _change(row: Row | None) -> str:
+    return "" if row is None else f"{row['changed'] - row['base']:+.2g}"
+
+
+def _explanations(explained: list[Row]) -> str:
+    """Return a row a quantity that lies outside: what alone could bring it in, and what cannot."""
+    head = ["set", "quantity", "model", "measured", "could explain it", "cannot"]
+    body = [
+        [
+            row["set"],
+            row["quantity"],
+            f"{row['model']:.3g}",
+            f"{row['measured_mean']:.3g}",
+            ", ".join(row["could"]) or "none of these",
+            ", ".join(f"{name} ({s:+.0%})" for name, s in row["shares"].items() if name not in row["could"]),
+        ]
+        for row in explained
+    ]
+    return table(head, body)

@@ -18,9 +18,9 @@ from fem_impact.progress import CaseProgress
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
 from fem_impact.study.cases import Case, Failure, compute, stored
-from fem_impact.study.friction import friction_cases, friction_notes, friction_rows
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
+from fem_impact.study.sensitivity import INPUTS, explanations, sensitivity_cases, sensitivity_rows
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
@@ -44,14 +44,14 @@ class StudyResult:
 
 
 def cases_of(set_id: str, quick: bool, out: Path) -> dict[str, Case]:
-    """Return the set's case, its coarser twin and, unless quick, that at both ends of friction."""
+    """Return the set's case, its coarser twin and, unless quick, that with each uncertain input changed."""
     scene = load(set_id)
     if quick:
         scene = replace_all(scene, {"accuracy.tip_size": f"{QUICK_TIP * 1e3:g} mm"})
     size = COARSER * scene.accuracy.tip_size
     coarse = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:g} mm", "save.frames": 0})
     twin = Case(coarse, out / f"{set_id}-coarse")
-    return {"fine": Case(scene, out / set_id), "coarse": twin} | ({} if quick else friction_cases(twin))
+    return {"fine": Case(scene, out / set_id), "coarse": twin} | ({} if quick else sensitivity_cases(twin))
 
 
 def run_sets(
@@ -83,14 +83,14 @@ def run_sets(
     )
     failed = [f for f in done.values() if isinstance(f, Failure)]
     failures = [{"scene_id": f.case.out.name, "error": f.reason} for f in failed]
-    outcomes, friction = [], []
+    outcomes, changed = [], []
     for name in chosen:
         found = {kind: done[case.out.name] for kind, case in cases[name].items()}
         if isinstance(found["fine"], Outcome):
             outcomes.append(with_bands(found["fine"], found["coarse"], out / name))
         if not quick:
-            friction += friction_rows(found["low"], found["coarse"], found["high"])
-    result = write_study(outcomes, failures, friction, out)
+            changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUTS})
+    result = write_study(outcomes, failures, changed, out)
     notes = present([out / o["scene_id"] for o in outcomes], out, progress, films)
     return replace(result, notes=notes)
 
@@ -145,21 +145,23 @@ def _result(future: Future[Any], case: Case) -> Outcome | Failure:
 
 
 def write_study(
-    outcomes: list[Outcome], failures: list[dict[str, str]], friction: list[dict[str, Any]], out: Path
+    outcomes: list[Outcome], failures: list[dict[str, str]], changed: list[Row], out: Path
 ) -> StudyResult:
     """Write study.json, comparison.csv and summary.md, and return the study."""
     comparison = [row for outcome in outcomes for row in compare(outcome)]
+    explained = explanations(comparison, changed)
     rows = [outcome.to_dict() for outcome in outcomes]
     document = {
         "schema": SCHEMA,
         "rows": rows,
         "comparison": comparison,
-        "friction": friction,
+        "sensitivity": changed,
+        "explanations": explained,
         "failures": failures,
-        "notes": friction_notes(friction),
+        "notes": [],
     }
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
-    write_text(out / "summary.md", summary(rows, comparison, friction))
+    write_text(out / "summary.md", summary(rows, comparison, changed, explained))
     table = "\n".join([text_table(comparison), *(f"failed: {f['scene_id']}: {f['error']}" for f in failures)])
     return StudyResult(rows, comparison, table, failures)

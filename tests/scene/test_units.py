@@ -10,7 +10,8 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import format_quantity, parse_quantity
 from fem_impact.scene.units import DIMENSIONS, parse_number
 
-finite = st.floats(allow_nan=False, allow_infinity=False, min_value=-1e30, max_value=1e30)
+magnitudes = st.floats(1e-200, 1e30)
+finite = magnitudes | magnitudes.map(lambda x: -x) | st.just(0.0)
 DECIMAL = [(d.name, u.symbol, u.power) for d in DIMENSIONS.values() for u in d.units if u.factor == 1.0]
 
 

@@ -18,6 +18,7 @@ from fem_impact.sources import source_digest, stamp
 from fem_impact.study import run_sets
 from fem_impact.study.bands import EXTRA, bands
 from fem_impact.study.cases import STAMP, Case, Failure, compute, stored
+from fem_impact.study.sensitivity import INPUTS
 from fem_impact.study.sets import COARSER, cases_of, run_cases
 from rigid.experiments import Statistic, measured_set
 
@@ -180,11 +181,12 @@ def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(solver, tmp_
     assert "coarser mesh failed" in study.rows[0]["reasons"]["bands"]
 
 
-def test_friction_ends_are_run_unless_quick(solver, tmp_path):
+def test_changed_inputs_are_run_unless_quick(solver, tmp_path):
     study, engine, _ = _run(tmp_path, quick=False)
-    assert set(engine.cases) == {"t5b", "t5b-coarse", "t5b-coarse-friction-low", "t5b-coarse-friction-high"}
+    changed = {f"t5b-coarse-{i.name}" for i in INPUTS}
+    assert set(engine.cases) == {"t5b", "t5b-coarse"} | changed
     written = json.loads((tmp_path / "study.json").read_text())
-    assert {row["quantity"] for row in written["friction"]} >= {"e", "mu"}
+    assert {row["quantity"] for row in written["sensitivity"]} >= {"e", "mu"}
     assert study.failures == []
 
 

@@ -1,15 +1,16 @@
-"""The study's Markdown, its friction ends, and pictures that may be missing."""
+"""The study's Markdown, its changed inputs, and pictures that may be missing."""
 
 import pytest
+from study_fakes import outcome
 
 import fem_impact.render
 import fem_impact.report
 from fem_impact.errors import MissingLibraryError
 from fem_impact.progress import NullMeter
-from fem_impact.study import friction as friction_module
-from fem_impact.study.friction import friction_cases, friction_notes, friction_rows
+from fem_impact.study.cases import Failure
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
+from fem_impact.study.sensitivity import explanations, sensitivity_rows
 from fem_impact.study.sets import cases_of
 
 
@@ -46,7 +47,7 @@ OUTCOME = {f"{name}_over_E_0": 0.1234 for name in SHARES} | {
 
 
 def test_marks_tell_inside_undecided_and_outside_apart():
-    beside = summary([OUTCOME], COMPARISON, []).splitlines()[2]
+    beside = summary([OUTCOME], COMPARISON, [], []).splitlines()[2]
     cells = [cell.strip() for cell in beside.strip("|").split("|")]
     assert cells == [
         "t5b",
@@ -60,7 +61,7 @@ def test_marks_tell_inside_undecided_and_outside_apart():
 
 
 def test_shares_are_percent_with_their_bands():
-    cells = summary([OUTCOME], COMPARISON, []).splitlines()[6].strip("|").split("|")
+    cells = summary([OUTCOME], COMPARISON, [], []).splitlines()[6].strip("|").split("|")
     assert [cell.strip() for cell in cells] == [
         "t5b",
         "12.3",
@@ -72,36 +73,42 @@ def test_shares_are_percent_with_their_bands():
     ]
 
 
-def test_a_study_has_both_ends_of_friction_and_a_quick_one_has_none(tmp_path):
+def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     cases = cases_of("t3-contaminated", False, tmp_path)
-    assert list(cases) == ["fine", "coarse", "low", "high"]
-    surface = cases["coarse"].scene.surface
-    ends = [cases[end].scene.surface.friction for end in ("low", "high")]
-    assert ends == [surface.friction_low, surface.friction_high]
-    assert cases["low"].scene.accuracy == cases["coarse"].scene.accuracy
-    assert len({case.out for case in cases.values()}) == 4
+    assert list(cases) == ["fine", "coarse", "friction-low", "friction-high", "yield", "block"]
+    base = cases["coarse"].scene
+    assert cases["friction-low"].scene.surface.friction == base.surface.friction_low
+    assert cases["friction-high"].scene.surface.friction == base.surface.friction_high
+    stronger = cases["yield"].scene
+    assert stronger.projectile.material.yield_stress == pytest.approx(1.5 * 546e6)
+    assert stronger.barrier.material.ultimate_stress == pytest.approx(1.5 * 446e6)
+    assert cases["block"].scene.accuracy.block_margin == pytest.approx(9e-3)
+    assert len({case.out for case in cases.values()}) == 6
     assert list(cases_of("t3-contaminated", True, tmp_path)) == ["fine", "coarse"]
-    assert friction_cases(cases["coarse"]).keys() == {"low", "high"}
 
 
-def test_friction_rows_and_their_sentence(monkeypatch):
-    monkeypatch.setattr(friction_module, "Outcome", dict)
-    outcomes = [
-        {"scene_id": "t4", "friction_f": f, "e_paper": e, "mu": mu, "Omega_rad_per_s": 1.0}
-        | {"E_vib_over_E_0": 0.01, "W_friction_over_E_0": 0.2}
-        for f, e, mu in ((0.45, 0.40, 0.45), (0.57, 0.36, 0.52), (0.7, 0.31, 0.57))
-    ]
-    rows = friction_rows(*outcomes)
-    assert rows[1] == {"set": "t4", "quantity": "mu", "f": [0.45, 0.57, 0.7], "model": [0.45, 0.52, 0.57]}
-    (note,) = friction_notes(rows)
-    assert "from 0.45 to 0.7 moves e from 0.400 to 0.310 and mu from 0.450 to 0.570" in note
-    assert "0.360 and 0.520 at the stated f = 0.57" in note
-    table = summary([OUTCOME], COMPARISON, rows).split("\n\n")[2]
-    assert "| t4 | 0.45 / 0.57 / 0.7 | 0.4 / 0.36 / 0.31 |" in table
+def changed(name, quantity, value):
+    return {"set": "t5b", "input": name, "quantity": quantity, "base": 0.30, "changed": value}
 
 
-def test_a_failed_end_gives_no_row(tmp_path):
-    assert friction_rows(None, None, None) == []
+def test_rows_hold_runs_and_other_arms():
+    base = outcome(e_paper=0.3, e_edge=0.35, e_impulse=0.4)
+    rows = sensitivity_rows(base, {"yield": outcome(e_paper=0.42), "block": Failure(None, "folded")})
+    e = {row["input"]: (row["base"], row["changed"]) for row in rows if row["quantity"] == "e"}
+    assert e == {"yield": (0.3, 0.42), "arms-edge": (0.3, 0.35), "arms-impulse": (0.3, 0.4)}
+    assert sensitivity_rows(Failure(None, "folded"), {}) == []
+
+
+def test_an_input_explains_a_miss_only_if_it_reaches_the_interval():
+    miss = row("e", "miss by +3.0 SD", model=0.5) | {"measured_low": 0.30, "measured_high": 0.35}
+    changes = [changed("yield", "e", 0.12), changed("block", "e", 0.20), changed("friction-low", "e", 0.40)]
+    (found,) = explanations([miss, row("mu", "inside")], changes)
+    assert found["could"] == ["yield"]
+    assert found["shares"]["block"] == pytest.approx(0.10 / 0.173)
+    assert found["shares"]["friction-low"] < 0
+    told = summary([OUTCOME], COMPARISON, changes, [found])
+    assert "| t5b | e | 0.5 | 0.327 | yield | block (+58%), friction-low (-58%) |" in told
+    assert "| t5b | e | 0.3 | +0.1 |" in told
 
 
 @pytest.mark.parametrize("films", [True, False])

@@ -1,0 +1,138 @@
+"""What the uncertain inputs do: each set again with one input changed, on the coarser mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.compare import Row
+from fem_impact.outcome import Outcome
+from fem_impact.scene import replace_all
+from fem_impact.study.cases import Case, Failure
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+SHOWN = {
+    "e": "e_paper",
+    "mu": "mu",
+    "Omega": "Omega_rad_per_s",
+    "E_ln/E_0": "E_ln_paper_over_E_0",
+    "E_lt/E_0": "E_lt_paper_over_E_0",
+    "E_r/E_0": "E_r_over_E_0",
+    "vibration/E_0": "E_vib_over_E_0",
+    "friction/E_0": "W_friction_over_E_0",
+}
+STRONGER = 1.5  # hardness and tensile test of the two steels bound the yield stress within this factor
+WIDER = 1.5
+
+
+@dataclass(frozen=True, slots=True)
+class Input:
+    """An uncertain input: its name, what it is changed to, in words, and the changed keys of a scene."""
+
+    name: str
+    words: str
+    changes: Callable[[Scene], dict[str, Any]]
+
+
+def _stronger(scene: Scene) -> dict[str, Any]:
+    bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
+    return {
+        f"{body}.material.{key}": f"{STRONGER * getattr(steel, key) / 1e6:.9g} MPa"
+        for body, steel in bodies.items()
+        for key in ("yield_stress", "ultimate_stress")
+    }
+
+
+INPUTS = (
+    Input(
+        "friction-low",
+        "lowest friction of its interval",
+        lambda s: {"surface.friction": s.surface.friction_low},
+    ),
+    Input(
+        "friction-high",
+        "highest friction of its interval",
+        lambda s: {"surface.friction": s.surface.friction_high},
+    ),
+    Input("yield", f"yield and ultimate stress of both steels times {STRONGER:g}", _stronger),
+    Input(
+        "block",
+        f"barrier block with {WIDER:g} times the margin around the fine zone",
+        lambda s: {"accuracy.block_margin": f"{WIDER * s.accuracy.block_margin * 1e3:.9g} mm"},
+    ),
+)
+# the same run read with other lever arms of the impulse: no run of its own
+ARMS = {
+    "arms-edge": ("edge", "arms of the tip's edge radius"),
+    "arms-impulse": ("impulse", "arms of the impulse"),
+}
+WORDS = {i.name: i.words for i in INPUTS} | {name: words for name, (_, words) in ARMS.items()}
+
+
+def sensitivity_cases(coarse: Case) -> dict[str, Case]:
+    """Return the coarser case with each input changed, by the input's name."""
+    place, name = coarse.out.parent, coarse.out.name
+    return {
+        i.name: Case(replace_all(coarse.scene, i.changes(coarse.scene)), place / f"{name}-{i.name}")
+        for i in INPUTS
+    }
+
+
+def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]) -> list[Row]:
+    """Return one row an input and quantity: set, input, quantity, base and changed value."""
+    if not isinstance(coarse, Outcome):
+        return []
+    runs = {name: run for name, run in changed.items() if isinstance(run, Outcome)}
+    rows = [_row(coarse, name, words, run[key]) for name, run in runs.items() for words, key in SHOWN.items()]
+    return rows + [
+        _row(coarse, name, words, coarse[SHOWN[words].replace("paper", arms)])
+        for name, (arms, _) in ARMS.items()
+        for words in ("e", "E_ln/E_0", "E_lt/E_0")
+    ]
+
+
+def _row(coarse: Outcome, name: str, quantity: str, changed: float) -> Row:
+    base = coarse[SHOWN[quantity]]
+    return {
+        "set": coarse["scene_id"],
+        "input": name,
+        "quantity": quantity,
+        "base": base,
+        "changed": changed,
+    }
+
+
+def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> list[Row]:
+    """Return, for each quantity outside its 95 % interval, what share of the miss each input makes up.
+
+    A share of 1 brings the model to the measured mean; one below 0 takes it further away. Inputs that reach
+    the interval could explain the miss, since they may lie anywhere up to what they were changed to. The
+    change is that of the coarser mesh, carried over to the finer one's value.
+    """
+    found: dict[tuple[str, str], dict[str, float]] = {}
+    for row in sensitivities:
+        change = row["changed"] - row["base"]
+        found.setdefault((row["set"], row["quantity"]), {})[row["input"]] = change
+    measured = [row for row in comparison if row["measured_mean"] is not None]
+    outside = [row for row in measured if row["verdict"] != "inside"]
+    return [
+        _explanation(row, found[key]) for row in outside if (key := (row["set"], row["quantity"])) in found
+    ]
+
+
+def _explanation(row: Row, changes: Mapping[str, float]) -> Row:
+    model, mean = row["model"], row["measured_mean"]
+    edge = row["measured_low"] if model < row["measured_low"] else row["measured_high"]
+    shares = {name: change / (mean - model) for name, change in changes.items()}
+    enough = (edge - model) / (mean - model)
+    return {
+        "set": row["set"],
+        "quantity": row["quantity"],
+        "model": model,
+        "measured_mean": mean,
+        "shares": shares,
+        "could": [name for name, share in shares.items() if share >= enough],
+    }
