@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem_impact.effects.spec import ModelSpec
@@ -14,7 +15,7 @@ from fem_impact.estimates import projectile
 from fem_impact.solid.boundary import spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, largest_frequency, lumped_mass
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
@@ -23,6 +24,7 @@ from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.stable import stable_step
 from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import SKIN, HexMesh
 
@@ -33,7 +35,6 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
-SAFETY = 0.9  # of the stable step
 START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
 BAND = 0.02  # contact band over the tip size, see SurfaceContact
 
@@ -207,9 +208,10 @@ def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
         )
 
 
-def stable_step(bodies: list[Body]) -> float:
-    """Return the largest step, s, that no element forbids."""
-    return min(float((2 / largest_frequency(b.stiffness, b.mass)).min()) for b in bodies)
+def _assembled(body: Body, size: int, shift: int = 0) -> sp.csr_matrix:
+    """Return a body's stiffness over ``size`` unknowns, ``shift`` places lower than the flat vector's."""
+    T = tie_operator(body.mesh.tie, body.places - shift, size)
+    return assemble(body.stiffness, body.mesh.cells, T)
 
 
 def build(scene: Scene, spec: ModelSpec) -> Model:
@@ -236,14 +238,18 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     forces += zones
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
+    n, place = layout.rod_size, layout.barrier_slice
+    rod_stiffness = _assembled(rod, n)
+    steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
     if len(bodies) == 2:
+        block_stiffness = _assembled(bodies[1], place.stop - n, n)
+        steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])
         block, damping = _elastic_block(bodies[1], layout, x)
         forces.append(block)
         impulses.append(_dashpots(damping, layout, inverse_mass))
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])
-    T = tie_operator(rod.mesh.tie, rod.places, layout.rod_size)
     return Model(
         geometry=geometry,
         layout=layout,
@@ -254,7 +260,7 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         hanging=hanging,
         zones=zones,
         book=contact.book,
-        rod_stiffness=assemble(rod.stiffness, rod.mesh.cells, T),
-        step=SAFETY * stable_step(bodies),
+        rod_stiffness=rod_stiffness,
+        steps=steps,
         start=(x, v),
     )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -35,7 +35,7 @@ class Model:
     zones : the yielding zones among the forces
     book : record of the contact
     rod_stiffness : (n, n) elastic stiffness of the whole half rod over its free unknowns, N/m
-    step : stable step with its safety factor, s
+    steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
     """
 
@@ -49,8 +49,13 @@ class Model:
     zones: Sequence[YieldingZone]
     book: ContactBook
     rod_stiffness: sp.csr_matrix
-    step: float
+    steps: Mapping[str, float]
     start: tuple[Array, Array]
+
+    @property
+    def step(self) -> float:
+        """Return the step, s, that no body forbids."""
+        return min(self.steps.values())
 
     def initial_state(self) -> State:
         """Return the state just before the first contact."""

@@ -18,7 +18,6 @@ from fem_impact.solid.elements import (
     Kind,
     element_stiffness,
     isotropic_stiffness,
-    largest_frequency,
     lumped_mass,
 )
 from fem_impact.solid.frame import FixedFrame, TurningFrame
@@ -29,6 +28,7 @@ from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.stable import stable_step
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import HexMesh, RodMesh
@@ -38,8 +38,6 @@ __all__ = ["Body", "body_model", "placed", "rigid_of", "unsliced"]
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
-
-SAFETY = 0.9
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +103,7 @@ def body_model(body: Body) -> Model:
     contact = _contact(body, layout, inverse)
     impulses: list[Impulse] = [contact] if contact else []
     own = tie_operator(mesh.tie, layout.rod, layout.rod_size)
+    stiffness = assemble(K, mesh.cells, own)
     return Model(
         geometry=Geometry(body.mesh, body.points, None, 0.0, int(mesh.level.max())),
         layout=layout,
@@ -115,8 +114,8 @@ def body_model(body: Body) -> Model:
         hanging=Hanging.of([(mesh.tie, layout.rod)]),
         zones=zones,
         book=contact.book if contact else ContactBook(),
-        rod_stiffness=assemble(K, mesh.cells, own),
-        step=SAFETY * float((2 / largest_frequency(K, nodal)).min()),
+        rod_stiffness=stiffness,
+        steps={"rod": stable_step(stiffness, inverse[: layout.rod_size])},
         start=(x, v),
     )
 

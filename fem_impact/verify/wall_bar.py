@@ -68,7 +68,9 @@ def _model(kind: Kind, speed: float) -> Model:
     velocity = np.zeros_like(points)
     velocity[:, 2] = -speed
     mesh = unsliced(replace(block, points=points))
-    return replace(body_model(Body(mesh, points, velocity, E, NU, RHO, kind=kind, held=held)), step=STEP)
+    return replace(
+        body_model(Body(mesh, points, velocity, E, NU, RHO, kind=kind, held=held)), steps={"rod": STEP}
+    )
 
 
 def solve(p: Values) -> Solved:
