@@ -10,7 +10,7 @@ from fem_impact.errors import OutputPathError, ResultError
 __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
-_OWN_FILES = (*RESULT_FILES, "scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
+_OWN_FILES = (*RESULT_FILES, "store.sqlite", "scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
 
 
 def checked_out(out: Path) -> Path:

@@ -17,6 +17,10 @@ __all__ = ["Options", "build_parser", "read_line"]
 
 _SCENE = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
 _SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
+STUDIES = {
+    "sets": "the published series of tests beside the model",
+    "convergence": "their limits for vanishing elements",
+}
 _RESULT = "directory that a run or a study wrote"
 
 
@@ -36,6 +40,9 @@ class Options(argparse.Namespace):
     parameters: bool = False
     quick: bool = False
     workers: int | None = None
+    scheduler: str = ""
+    estimate: bool = False
+    fidelity: str = ""
     result: Path
     set_id: str | None = None
     file: Path
@@ -99,18 +106,19 @@ def _add_run(commands: Commands) -> None:
 
 def _add_study(commands: Commands) -> None:
     parser = _command(
-        commands, "study", "compute the paper's sets and compare them with it", "fem_impact.cli_run:study"
+        commands, "study", "compute many runs and draw conclusions from them", "fem_impact.cli_study:study"
     )
-    parser.add_argument(
-        "name",
-        choices=["sets", "convergence"],
-        help="sets: the published series of tests; convergence: their limits for vanishing elements",
-    )
-    parser.add_argument("ids", nargs="*", metavar="ID", help="sets to compute (default: all of them)")
-    parser.add_argument("--quick", action="store_true", help="coarse meshes, for a first look")
+    listed = "; ".join(f"{name}: {words}" for name, words in STUDIES.items())
+    parser.add_argument("name", choices=STUDIES, metavar="NAME", help=listed)
+    parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
+    parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
     parser.add_argument(
         "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask.distributed cluster to run on")
+    parser.add_argument(
+        "--estimate", action="store_true", help="say how long it takes on 1 to 1000 workers, and stop"
     )
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 

@@ -14,6 +14,7 @@ __all__ = [
     "NullMeter",
     "Progress",
     "TerminalMeter",
+    "clock_text",
     "describe",
     "meter_for",
 ]
@@ -120,18 +121,21 @@ def describe(progress: Progress | CaseProgress) -> str:
     """Return one line: t, step, energy drift, contact state (or cases done) and the time still needed."""
     if isinstance(progress, CaseProgress):
         done = f"{progress.done} of {progress.total} runs done"
-        return f"{done}, last {progress.note}, ETA {_clock_text(progress.eta_s)}"
+        return f"{done}, last {progress.note}, ETA {clock_text(progress.eta_s)}"
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
         f"step {progress.step}",
         f"energy drift {progress.energy_drift:+.1e}",
         progress.contact,
-        f"ETA {_clock_text(progress.eta_s)}" if progress.eta_s is not None else "",
+        f"ETA {clock_text(progress.eta_s)}" if progress.eta_s is not None else "",
     )
     return "  ".join(part for part in parts if part)
 
 
-def _clock_text(seconds: float) -> str:
+def clock_text(seconds: float) -> str:
+    """Return a duration in words."""
     minutes, rest = divmod(round(seconds), 60)
+    if minutes >= 60:
+        return f"{minutes // 60} h {minutes % 60:02d} min"
     return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

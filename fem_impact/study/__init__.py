@@ -1,6 +1,5 @@
 """Studies: many runs behind an executor, resumable, each result whole or absent."""
 
-from fem_impact.study.convergence import Convergence, run_convergence
-from fem_impact.study.sets import StudyResult, run_sets
+from fem_impact.study.request import Request, StudyResult, estimate_study, run_study
 
-__all__ = ["Convergence", "StudyResult", "run_convergence", "run_sets"]
+__all__ = ["Request", "StudyResult", "estimate_study", "run_study"]

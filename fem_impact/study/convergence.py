@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Sequence
-from concurrent.futures import Executor
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.figures.convergence import convergence_figure
 from fem_impact.outcome import Outcome
-from fem_impact.output import make_directory, write_text
+from fem_impact.output import write_text
+from fem_impact.scale import Job, Results
 from fem_impact.scene import load, replace_all
-from fem_impact.study.cases import Case, Failure
 from fem_impact.study.markdown import table
+from fem_impact.study.request import Request, StudyResult, failures_of
 from fem_impact.study.richardson import limit
-from fem_impact.study.sets import run_cases
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
@@ -40,15 +38,6 @@ QUANTITIES = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Convergence:
-    """One row a set and quantity (sizes, values, limit, order, band, scatter), its text, what failed."""
-
-    rows: list[Row]
-    table: str
-    failures: list[dict[str, str]]
-
-
 def family(scene: Scene, across: Iterable[int]) -> list[Scene]:
     """Return the scene on meshes that differ in the size of all cells and in nothing else."""
     d = scene.projectile.diameter
@@ -65,37 +54,24 @@ def family(scene: Scene, across: Iterable[int]) -> list[Scene]:
     ]
 
 
-def run_convergence(
-    ids: Iterable[str],
-    across: Sequence[int],
-    out: Path,
-    progress: Meter,
-    workers: int,
-    executor: Executor | None = None,
-) -> Convergence:
-    """Compute sets on a family of meshes and extrapolate every quantity.
+def jobs_of(name: str, quick: bool) -> list[Job]:
+    """Return the jobs of a set, one a mesh, from coarse to fine."""
+    scenes = family(load(name), QUICK_ACROSS if quick else ACROSS)
+    return [Job(f"{name}-{scene.accuracy.across}", scene) for scene in scenes]
 
-    Parameters
-    ----------
-    ids : set ids; `SETS` when empty
-    across : cells over the diameter, three or more
-    out : study directory; finished cases in it are not computed again
-    """
-    names = list(ids) or list(SETS)
-    cases = {
-        name: [Case(s, out / f"{name}-{s.accuracy.across}") for s in family(load(name), sorted(set(across)))]
-        for name in names
-    }
-    make_directory(out)
-    done = run_cases([case for group in cases.values() for case in group], progress, workers, executor)
-    failures = [
-        {"scene_id": f.case.out.name, "error": f.reason} for f in done.values() if isinstance(f, Failure)
-    ]
+
+def plan(request: Request) -> list[Job]:
+    """Return the jobs of the sets that are asked for, or of `SETS`."""
+    return [job for name in request.ids or SETS for job in jobs_of(name, request.quick)]
+
+
+def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+    """Extrapolate every quantity of every set; write table, data and figure."""
     rows = []
-    for name in names:
-        runs = [done[case.out.name] for case in cases[name]]
+    for name in request.ids or SETS:
+        runs = [results[job.name] for job in jobs_of(name, request.quick)]
         rows += convergence_rows(name, [run for run in runs if isinstance(run, Outcome)])
-    return _write(rows, failures, out)
+    return _write(rows, failures_of(results), request.out)
 
 
 def convergence_rows(name: str, runs: Sequence[Outcome]) -> list[Row]:
@@ -121,13 +97,13 @@ def _limit(sizes: list[float], values: list[float]) -> Row:
     }
 
 
-def _write(rows: list[Row], failures: list[dict[str, str]], out: Path) -> Convergence:
+def _write(rows: list[Row], failures: list[dict[str, str]], out: Path) -> StudyResult:
     text = convergence_table(rows)
     document = {"schema": SCHEMA, "rows": rows, "failures": failures}
     write_text(out / "convergence.json", json.dumps(document, indent=1, allow_nan=False))
     write_text(out / "summary.md", text)
     convergence_figure(rows, out / "convergence.svg")
-    return Convergence(rows, text, failures)
+    return StudyResult(document, text)
 
 
 def convergence_table(rows: list[Row]) -> str:

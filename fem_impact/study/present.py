@@ -11,13 +11,13 @@ from fem_impact.progress import CaseProgress, Meter
 FILM_FRAMES = 60
 
 
-def present(runs: Iterable[Path], study: Path, progress: Meter, films: bool) -> list[str]:
+def present(runs: Iterable[Path], study: Path, progress: Meter) -> list[str]:
     """Write film and page of each run and the page of the study; return what could not be made."""
     from fem_impact.report import write_report
 
     folders, notes = list(runs), []
     for done, run in enumerate(folders, 1):
-        if films and (run / "fields.vtkhdf").is_file():
+        if (run / "fields.vtkhdf").is_file():
             notes += _attempt(run, _film)
         notes += _attempt(run, write_report)
         progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.compare import Row
 from fem_impact.outcome import Outcome
+from fem_impact.scale import Failure, Job
 from fem_impact.scene import replace_all
-from fem_impact.study.cases import Case, Failure
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -72,13 +73,11 @@ ARMS = {
 WORDS = {i.name: i.words for i in INPUTS} | {name: words for name, (_, words) in ARMS.items()}
 
 
-def sensitivity_cases(coarse: Case) -> dict[str, Case]:
-    """Return the coarser case with each input changed, by the input's name."""
-    place, name = coarse.out.parent, coarse.out.name
-    return {
-        i.name: Case(replace_all(coarse.scene, i.changes(coarse.scene)), place / f"{name}-{i.name}")
-        for i in INPUTS
-    }
+def sensitivity_jobs(coarse: Job, out: Path) -> dict[str, Job]:
+    """Return the coarser job with each input changed, by the input's name."""
+    scenes = {i.name: replace_all(coarse.scene, i.changes(coarse.scene)) for i in INPUTS}
+    names = {name: f"{coarse.name}-{name}" for name in scenes}
+    return {name: Job(names[name], scene, out=out / names[name]) for name, scene in scenes.items()}
 
 
 def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]) -> list[Row]:

@@ -3,96 +3,66 @@
 from __future__ import annotations
 
 import json
-import time
-from collections.abc import Iterable
-from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, as_completed
-from dataclasses import dataclass, field, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.compare import Row, compare, text_table
 from fem_impact.outcome import Outcome
-from fem_impact.output import COMPARISON, make_directory, write_table, write_text
-from fem_impact.progress import CaseProgress
+from fem_impact.output import COMPARISON, write_table, write_text
+from fem_impact.scale import Failure, Job, Results
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.bands import bands
-from fem_impact.study.cases import Case, Failure, compute, stored
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
-from fem_impact.study.sensitivity import INPUTS, explanations, sensitivity_cases, sensitivity_rows
+from fem_impact.study.request import Request, StudyResult, failures_of
+from fem_impact.study.sensitivity import INPUTS, explanations, sensitivity_jobs, sensitivity_rows
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
 
-Results = dict[str, Outcome | Failure]
+__all__ = ["conclude", "jobs_of", "plan"]
 
 SCHEMA = "fem-impact/study/1"
 QUICK_TIP = 0.6e-3  # m
+QUICK_SETS = ("t3-machined", "t4", "t5b")
 COARSER = 2.0  # tip size of the second mesh over that of the first
 
 
-@dataclass(frozen=True, slots=True)
-class StudyResult:
-    """Outcomes as plain rows, the comparison, its text table, what failed, what could not be drawn."""
-
-    rows: list[dict[str, Any]]
-    comparison: list[Row]
-    table: str
-    failures: list[dict[str, str]]
-    notes: list[str] = field(default_factory=list)
-
-
-def cases_of(set_id: str, quick: bool, out: Path) -> dict[str, Case]:
-    """Return the set's case, its coarser twin and, unless quick, that with each uncertain input changed."""
+def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
+    """Return the set's job, its coarser twin and, unless quick, that with each uncertain input changed."""
     scene = load(set_id)
     if quick:
         scene = replace_all(scene, {"accuracy.tip_size": f"{QUICK_TIP * 1e3:g} mm"})
     size = COARSER * scene.accuracy.tip_size
     coarse = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:g} mm", "save.frames": 0})
-    twin = Case(coarse, out / f"{set_id}-coarse")
-    return {"fine": Case(scene, out / set_id), "coarse": twin} | ({} if quick else sensitivity_cases(twin))
-
-
-def run_sets(
-    ids: Iterable[str],
-    quick: bool,
-    out: Path,
-    progress: Meter,
-    workers: int,
-    executor: Executor | None = None,
-    films: bool = True,
-) -> StudyResult:
-    """Compute measured sets and compare them.
-
-    Parameters
-    ----------
-    ids : set ids; all 13 when empty
-    quick : coarse tips, for a first look
-    out : study directory; finished cases in it are not computed again
-    progress : told after every case
-    workers : processes, one thread each
-    executor : any other executor to run the cases in
-    films : make a film of each set as well
-    """
-    chosen = list(ids) or list(MEASURED_SETS)
-    cases = {name: cases_of(name, quick, out) for name in chosen}
-    make_directory(out)
-    done = run_cases(
-        [case for group in cases.values() for case in group.values()], progress, workers, executor
+    twin = Job(f"{set_id}-coarse", coarse, out=out / f"{set_id}-coarse")
+    return {"fine": Job(set_id, scene, out=out / set_id), "coarse": twin} | (
+        {} if quick else sensitivity_jobs(twin, out)
     )
-    failed = [f for f in done.values() if isinstance(f, Failure)]
-    failures = [{"scene_id": f.case.out.name, "error": f.reason} for f in failed]
-    outcomes, changed = [], []
-    for name in chosen:
-        found = {kind: done[case.out.name] for kind, case in cases[name].items()}
+
+
+def chosen(request: Request) -> tuple[str, ...]:
+    """Return the sets that are asked for: all of them, or one of each rod for a first look."""
+    return request.ids or (QUICK_SETS if request.quick else MEASURED_SETS)
+
+
+def plan(request: Request) -> list[Job]:
+    """Return the jobs of the measured sets."""
+    groups = (jobs_of(name, request.quick, request.out) for name in chosen(request))
+    return [job for group in groups for job in group.values()]
+
+
+def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+    """Compare the sets with the measurements; write study.json, tables, films and pages."""
+    out, outcomes, changed = request.out, [], []
+    for name in chosen(request):
+        found = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
         if isinstance(found["fine"], Outcome):
             outcomes.append(with_bands(found["fine"], found["coarse"], out / name))
-        if not quick:
+        if not request.quick:
             changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUTS})
-    result = write_study(outcomes, failures, changed, out)
-    notes = present([out / o["scene_id"] for o in outcomes], out, progress, films)
-    return replace(result, notes=notes)
+    document, text = write_study(outcomes, failures_of(results), changed, out)
+    return StudyResult(document, text, present([out / o["scene_id"] for o in outcomes], out, progress))
 
 
 def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
@@ -108,47 +78,11 @@ def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
     return banded
 
 
-def run_cases(cases: list[Case], progress: Meter, workers: int, executor: Executor | None = None) -> Results:
-    """Return the result of every case by the name of its directory; stored ones are read."""
-    results: Results = {}
-    for case in cases:
-        found = stored(case)
-        if found is not None:
-            results[case.out.name] = found
-    waiting = [case for case in cases if case.out.name not in results]
-    if waiting:
-        owned = executor or ProcessPoolExecutor(min(workers, len(waiting)), mp_context=get_context("spawn"))
-        try:
-            _collect({owned.submit(compute, case): case for case in waiting}, results, len(cases), progress)
-        finally:
-            if executor is None:
-                owned.shutdown(cancel_futures=True)
-    return results
-
-
-def _collect(futures: dict[Future[Any], Case], results: Results, total: int, progress: Meter) -> None:
-    begun, first = time.monotonic(), len(results)
-    for future in as_completed(futures):
-        case = futures[future]
-        results[case.out.name] = _result(future, case)
-        done = len(results)
-        eta = (time.monotonic() - begun) / (done - first) * (total - done)
-        progress(CaseProgress(case.out.name, done, total, eta))
-
-
-def _result(future: Future[Any], case: Case) -> Outcome | Failure:
-    try:
-        failure: Failure | None = future.result()
-    except BrokenExecutor as error:
-        return Failure(case, f"its process died: {error}")
-    return failure or stored(case) or Failure(case, "its result cannot be read back")
-
-
 def write_study(
     outcomes: list[Outcome], failures: list[dict[str, str]], changed: list[Row], out: Path
-) -> StudyResult:
-    """Write study.json, comparison.csv and summary.md, and return the study."""
-    comparison = [row for outcome in outcomes for row in compare(outcome)]
+) -> tuple[dict[str, Any], str]:
+    """Write study.json, comparison.csv and summary.md; return the document and its text table."""
+    comparison: list[Row] = [row for outcome in outcomes for row in compare(outcome)]
     explained = explanations(comparison, changed)
     rows = [outcome.to_dict() for outcome in outcomes]
     document = {
@@ -163,5 +97,5 @@ def write_study(
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
     write_text(out / "summary.md", summary(rows, comparison, changed, explained))
-    table = "\n".join([text_table(comparison), *(f"failed: {f['scene_id']}: {f['error']}" for f in failures)])
-    return StudyResult(rows, comparison, table, failures)
+    failed = (f"failed: {f['scene_id']}: {f['error']}" for f in failures)
+    return document, "\n".join([text_table(comparison), *failed])

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
+import fem_impact.study
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.progress import Progress
 
@@ -44,7 +45,7 @@ def _module(monkeypatch, name, **contents):
 
 @pytest.fixture
 def stand(monkeypatch):
-    """Replace simulate, run_sets, render and write_report."""
+    """Replace simulate, run_study, render and write_report."""
     stand = Stand()
 
     def work(name, result):
@@ -59,14 +60,13 @@ def stand(monkeypatch):
 
         return called
 
-    table = types.SimpleNamespace(
-        rows=[{"id": "t4", "e": 0.2}], comparison=[], table="the table", failures=[], notes=["no film: no GL"]
-    )
+    document = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": [], "notes": ["f matters"]}
+    table = types.SimpleNamespace(document=document, text="the table", notes=["no film: no GL"])
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     _module(
         monkeypatch, "fem_impact.simulate", simulate=work("simulate", lambda: stand.outcome or an_outcome())
     )
-    _module(monkeypatch, "fem_impact.study", run_sets=work("run_sets", lambda: table))
+    monkeypatch.setattr(fem_impact.study, "run_study", work("run_study", lambda: table))
     _module(monkeypatch, "fem_impact.render", render=work("render", lambda: film))
     _module(monkeypatch, "fem_impact.report", write_report=work("report", lambda: "report.html"))
     return stand

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from fem_impact.scene import load
+from fem_impact.study import Request
 
 
 def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
@@ -37,8 +38,8 @@ def test_json_is_one_document_and_nothing_else(cli, stand):
     _, out, _ = cli("run", "t5b", "--json")
     assert json.loads(out)["scene_id"] == "t5b"
     _, out, _ = cli("study", "sets", "t4", "--json")
-    told = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": [], "notes": ["no film: no GL"]}
-    assert json.loads(out) == told
+    told = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": []}
+    assert json.loads(out) == {**told, "notes": ["f matters", "no film: no GL"]}
 
 
 def test_quiet_shows_no_progress(cli, stand):
@@ -79,13 +80,14 @@ def test_a_fault_of_the_program_is_not_hidden(cli, stand):
         cli("run", "t5b", "--quiet")
 
 
-def test_study_passes_ids_and_quick_picks_the_three_rods(cli, stand):
+def test_study_passes_what_is_asked(cli, stand):
     assert cli("study", "sets", "t4", "t5a", "t4", "--workers", "1")[0] == 0
-    assert cli("study", "sets", "--quick")[0] == 0
-    assert cli("study", "sets")[0] == 0
-    called = [args[:2] for _, args, _ in stand.calls]
-    assert called == [(("t4", "t5a"), False), (("t3-machined", "t4", "t5b"), True), ((), False)]
-    assert stand.calls[0][1][4] == 1
+    assert cli("study", "convergence", "--quick", "--out", "here")[0] == 0
+    names = [args[0] for _, args, _ in stand.calls]
+    asked = [args[1] for _, args, _ in stand.calls]
+    assert names == ["sets", "convergence"]
+    assert asked[0] == Request(Path("results/sets"), ("t4", "t5a"))
+    assert asked[1] == Request(Path("here"), (), quick=True)
 
 
 def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
@@ -97,7 +99,7 @@ def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
 
 def test_sets_may_follow_the_options(cli, stand):
     assert cli("study", "sets", "t5a", "--quick", "t4", "--quiet")[0] == 0
-    assert stand.calls[0][1][:2] == (("t5a", "t4"), True)
+    assert stand.calls[0][1][1] == Request(Path("results/sets"), ("t5a", "t4"), quick=True)
 
 
 @pytest.mark.parametrize(

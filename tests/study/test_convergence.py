@@ -6,12 +6,11 @@ import pytest
 from study_fakes import outcome
 
 from fem_impact.progress import NullMeter
+from fem_impact.scale import Failure
 from fem_impact.scene import load
 from fem_impact.solid.geometry import levels_of
-from fem_impact.study import convergence as convergence_module
-from fem_impact.study import run_convergence
-from fem_impact.study.cases import Failure
-from fem_impact.study.convergence import LEVELS, QUANTITIES, convergence_rows, family
+from fem_impact.study import Request
+from fem_impact.study.convergence import LEVELS, QUANTITIES, conclude, convergence_rows, family, plan
 
 NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
 
@@ -21,21 +20,16 @@ def run(size):
     return outcome(**values)
 
 
-@pytest.fixture
-def solver(monkeypatch):
-    """A solver that answers at once; the mesh of ``broken`` cells fails."""
-    broken = set()
-
-    def run_cases(cases, *_):
-        return {
-            case.out.name: Failure(case, "An element folded.")
-            if case.scene.accuracy.across in broken
-            else run(case.scene.accuracy.tip_size)
-            for case in cases
-        }
-
-    monkeypatch.setattr(convergence_module, "run_cases", run_cases)
-    return broken
+def study(out, broken=()):
+    """The study of t5b, whose meshes of ``broken`` cells failed."""
+    request = Request(out, ("t5b",))
+    results = {
+        job.name: Failure(job.name, "An element folded.")
+        if job.scene.accuracy.across in broken
+        else run(job.scene.accuracy.tip_size)
+        for job in plan(request)
+    }
+    return conclude(request, results, NullMeter())
 
 
 def test_all_meshes_of_a_family_are_split_as_often():
@@ -53,25 +47,28 @@ def test_every_quantity_has_its_limit():
     assert rows["mu"]["limit"] == pytest.approx(0.5)
 
 
-def test_the_study_writes_table_data_and_figure(solver, tmp_path):
-    study = run_convergence(["t5b"], (6, 8, 12), tmp_path, NullMeter(), 1)
-    line = next(line for line in study.table.splitlines() if line.startswith("| t5b | e |"))
+def test_the_study_writes_table_data_and_figure(tmp_path):
+    found = study(tmp_path, broken={10})
+    line = next(line for line in found.text.splitlines() if line.startswith("| t5b | e |"))
     cells = [cell.strip() for cell in line.strip("|").split("|")]
     assert cells[2:] == ["0.3604", "0.3703", "0.3802", "0.4", "1.0", "0.025"]
-    assert json.loads((tmp_path / "convergence.json").read_text())["rows"] == study.rows
+    assert json.loads((tmp_path / "convergence.json").read_text())["rows"] == found.document["rows"]
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + 3 * len(QUANTITIES)
     assert (tmp_path / "convergence.svg").stat().st_size > 1000
 
 
-def test_a_failed_mesh_is_said_and_the_others_still_count(solver, tmp_path):
-    solver.add(8)
-    study = run_convergence(["t5b"], (6, 8, 10, 12), tmp_path, NullMeter(), 1)
-    assert [f["scene_id"] for f in study.failures] == ["t5b-8"]
-    assert len(study.rows[0]["values"]) == 3
-    assert "t5b" in study.table
+def test_a_failed_mesh_is_said_and_the_others_still_count(tmp_path):
+    found = study(tmp_path, broken={8})
+    assert [f["scene_id"] for f in found.document["failures"]] == ["t5b-8"]
+    assert len(found.document["rows"][0]["values"]) == 3
+    assert "t5b" in found.text
 
 
-def test_two_meshes_have_no_limit(solver, tmp_path):
-    solver.update({6, 8})
-    study = run_convergence(["t5b"], (6, 8, 10, 12), tmp_path, NullMeter(), 1)
-    assert study.rows == []
+def test_two_meshes_have_no_limit(tmp_path):
+    assert study(tmp_path, broken={6, 8}).document["rows"] == []
+
+
+def test_a_quick_study_has_three_coarser_meshes(tmp_path):
+    full, quick = (plan(Request(tmp_path, ("t5b",), quick=q)) for q in (False, True))
+    assert len(quick) == 3
+    assert quick[0].scene.accuracy.tip_size > full[0].scene.accuracy.tip_size

@@ -1,0 +1,101 @@
+"""The command ``study``: many runs, in local processes or on a cluster."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import closing, contextmanager
+from difflib import get_close_matches
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.cli_meter import chosen_meter
+from fem_impact.cli_out import checked_out
+from fem_impact.cli_parser import Options
+from fem_impact.cli_print import print_json
+from fem_impact.errors import RunError, SceneError
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Meter
+    from fem_impact.scale import Estimate
+    from fem_impact.study import Request
+
+__all__ = ["study"]
+
+
+def study(options: Options) -> int:
+    """Run the named study and print its result, or say how long it would take."""
+    ids = _checked_ids(options.ids)
+    out = checked_out(options.out or Path("results") / options.name)
+    from fem_impact.study import Request
+
+    request = Request(out, ids, options.quick, options.fidelity)
+    with closing(chosen_meter(options)) as meter, _workers(options) as executor:
+        if options.estimate:
+            return _estimate(options, request, meter, executor)
+        return _study(options, request, meter, executor)
+
+
+def _study(options: Options, request: Request, meter: Meter, executor: Executor) -> int:
+    from fem_impact.study import run_study
+
+    result = run_study(options.name, request, meter, executor)
+    meter.close()
+    if options.json:
+        print_json({**result.document, "notes": [*result.document.get("notes", []), *result.notes]})
+    else:
+        sys.stderr.writelines(f"note: {note}\n" for note in result.notes)
+        sys.stdout.write(f"{result.text.rstrip()}\nresults: {request.out}\n")
+    return RunError.exit_code if result.document["failures"] else 0
+
+
+def _estimate(options: Options, request: Request, meter: Meter, executor: Executor) -> int:
+    from dataclasses import asdict
+
+    from fem_impact.study import estimate_study
+
+    found = estimate_study(options.name, request, meter, executor)
+    meter.close()
+    if options.json:
+        print_json(asdict(found))
+    else:
+        sys.stdout.write(_estimate_text(found))
+    return 0
+
+
+def _estimate_text(found: Estimate) -> str:
+    from fem_impact.progress import clock_text
+
+    lines = [f"{found.jobs} jobs, {found.stored} of them stored; work left: {clock_text(found.work_s)}"]
+    lines += [_kind_line(kind) for kind in found.kinds]
+    lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in found.wall_s.items()]
+    lines += [f"The longest job takes {clock_text(found.longest_s)}; no number of workers beats that."]
+    return "\n".join(lines) + "\n"
+
+
+def _kind_line(kind: dict[str, object]) -> str:
+    size = kind["tip_size_m"]
+    name = f"{kind['fidelity']}" + (f", tip {float(str(size)) * 1e3:.2g} mm" if size else "")
+    basis = f"mean of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
+    return f"  {kind['jobs']} jobs {name}: {kind['cost_s']:.3g} s each ({basis})"
+
+
+@contextmanager
+def _workers(options: Options) -> Iterator[Executor]:
+    from fem_impact.scale import LocalProcesses, on_scheduler
+
+    lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
+    with lent as executor:
+        yield executor
+
+
+def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
+    from fem_impact.scene import MEASURED_SETS
+
+    for name in ids:
+        if name not in MEASURED_SETS:
+            near = get_close_matches(name, MEASURED_SETS, 1)
+            remedy = f"Did you mean {near[0]}?" if near else f"Measured: {', '.join(MEASURED_SETS)}."
+            raise SceneError("is not a measured set.", key="ID", value=name, remedy=remedy)
+    return tuple(dict.fromkeys(ids))

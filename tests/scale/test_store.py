@@ -1,0 +1,156 @@
+"""Results by content address: read back whole or not at all, never for another scene or program."""
+
+import json
+
+import pytest
+from scale_tasks import Here, job, simulate
+
+import fem_impact.simulate
+import fem_impact.sources as sources_module
+from fem_impact.errors import OutputPathError, ResultError
+from fem_impact.progress import NullMeter
+from fem_impact.scale import Failure, Store, run_jobs
+from fem_impact.scale import job as job_module
+from fem_impact.scene import load
+from fem_impact.sources import source_digest, stamp
+
+
+@pytest.fixture(autouse=True)
+def solver(monkeypatch):
+    monkeypatch.setattr(fem_impact.simulate, "simulate", simulate)
+
+
+def run(store, *jobs):
+    engine = Here()
+    return run_jobs(jobs, store, NullMeter(), engine), engine.names
+
+
+def test_what_is_stored_is_not_computed_again(tmp_path):
+    store = tmp_path / "study" / "store.sqlite"
+    first, names = run(store, job("a"), job("b"))
+    assert (list(first), names) == (["a", "b"], ["a", "b"])
+    again, names = run(store, job("b"), job("a"), job("c"))
+    assert (list(again), names) == (["b", "a", "c"], ["c"])
+    assert again["a"] == first["a"]
+
+
+def test_a_result_belongs_to_one_scene_fidelity_and_program(tmp_path, monkeypatch):
+    store = tmp_path / "store.sqlite"
+    run(store, job("a"))
+    other = job_module.Job("a", job("a").scene.replace("impact.v_n", "-1 m/s"), "rigid")
+    assert run(store, other)[1] == ["a"]
+    assert run(store, job_module.Job("a", job("a").scene, "solid"))[1] == ["a"]
+    monkeypatch.setattr(job_module, "source_digest", lambda: "another program")
+    monkeypatch.setattr("fem_impact.scale.run.source_digest", lambda: "another program")
+    assert run(store, job("a"))[1] == ["a"]
+
+
+def test_a_run_with_files_is_computed_again_when_they_are_not_its_own(tmp_path):
+    store, wanted = tmp_path / "store.sqlite", job("a", out=tmp_path / "a")
+    first, _ = run(store, wanted)
+    result = tmp_path / "a" / "outcome.json"
+    assert run(store, wanted)[1] == []
+    result.write_text(result.read_text()[:200])
+    assert run(store, wanted)[1] == ["a"]
+    first["a"].replace(created_utc="2001-01-01T00:00:00+00:00").write(result)
+    assert run(store, wanted)[1] == ["a"]
+    result.unlink()
+    assert run(store, wanted)[1] == ["a"]
+
+
+def test_a_run_that_begins_takes_the_old_outcome_away(tmp_path, monkeypatch):
+    wanted = job("a", out=tmp_path / "a")
+    run(tmp_path / "store.sqlite", wanted)
+
+    def killed(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(fem_impact.simulate, "simulate", killed)
+    with pytest.raises(KeyboardInterrupt):
+        run(tmp_path / "other.sqlite", wanted)
+    assert not (tmp_path / "a" / "outcome.json").exists()
+
+
+def test_failures_of_the_run_last_and_faults_are_tried_again(tmp_path):
+    store = tmp_path / "store.sqlite"
+    found, _ = run(store, job("a", "fail"), job("b"), job("c", "break"))
+    assert found["a"] == Failure("a", "An element folded at 12.00 us.")
+    assert "a fault of the program" in found["c"].reason
+    assert found["b"]["scene_id"] == "b"
+    again, names = run(store, job("a", "fail"), job("b"), job("c", "break"))
+    assert names == ["c"]
+    assert again["a"] == found["a"]
+
+
+def test_a_damaged_record_is_computed_again(tmp_path):
+    store = tmp_path / "store.sqlite"
+    run(store, job("a"))
+    with Store.open(store) as base, base._base:
+        base._base.execute("UPDATE results SET outcome = replace(outcome, '0.25', '0.26')")
+    assert run(store, job("a"))[1] == ["a"]
+
+
+def test_a_file_that_is_no_store_is_named(tmp_path):
+    store = tmp_path / "store.sqlite"
+    store.write_bytes(b"no data base at all" * 100)
+    with pytest.raises(ResultError, match=r"store\.sqlite: is damaged .* Move it away"):
+        run(store, job("a"))
+    with pytest.raises(OutputPathError, match="cannot be opened"), Store.open(tmp_path):
+        pass
+
+
+def test_costs_are_kept_by_fidelity_and_tip_size(tmp_path):
+    store = tmp_path / "store.sqlite"
+    run(store, job("a", "sleep 0.02"), job("b", "fail"), job_module.Job("s", job("s").scene, "solid"))
+    with Store.open(store) as base:
+        costs = base.costs()
+    assert set(costs) == {("rigid", 0.0), ("solid", load("t5b").accuracy.tip_size)}
+    assert len(costs["rigid", 0.0]) == 1
+    assert 0.02 <= costs["rigid", 0.0][0] < 0.2
+
+
+def test_sources_changed_during_a_run_do_not_sign_its_result(tmp_path, monkeypatch):
+    """The answer must name the program that ran, not the one that lies there when it is done."""
+    source = tmp_path / "kernel.py"
+    source.write_text("old")
+    monkeypatch.setattr(sources_module, "_sources", lambda: {"kernel.py": source})
+
+    def slow(scene, **rest):
+        source.write_text("new")
+        return simulate(scene, **rest)
+
+    monkeypatch.setattr(fem_impact.simulate, "simulate", slow)
+    source_digest.cache_clear()
+    try:
+        before = source_digest()
+        source_digest.cache_clear()
+        assert job_module.compute(job("a")).program == before
+    finally:
+        source_digest.cache_clear()
+
+
+def test_the_digest_covers_what_makes_numbers():
+    names = set(sources_module._sources())
+    wanted = (
+        "solid/yielding_kernel.py",
+        "reduce.py",
+        "markers.py",
+        "modes/eigen.py",
+        "scene/data/surfaces.toml",
+    )
+    assert {f"fem_impact/{name}" for name in wanted} <= names
+    assert {"meshes/rod.py", "rigid/experiments/data/sets.toml"} <= names
+    assert not {"fem_impact/render/film.py", "fem_impact/cli_run.py", "fem_impact/scale/run.py"} & names
+    assert stamp(load("t5b")) != stamp(load("t5c"))
+
+
+def test_the_digest_covers_the_libraries(monkeypatch):
+    before = source_digest.__wrapped__()
+    monkeypatch.setattr(sources_module.metadata, "version", lambda name: "0")
+    assert source_digest.__wrapped__() != before
+
+
+def test_answers_of_a_failure_are_plain_text(tmp_path):
+    answer = job_module.compute(job("a"))
+    assert json.loads(answer.outcome)["scene_id"] == "a"
+    assert (answer.reason, answer.lasting) == ("", False)

@@ -1,0 +1,90 @@
+"""The study of the measured sets: two meshes a set, bands, friction ends, failures as rows."""
+
+import json
+from dataclasses import replace
+
+import pytest
+from study_fakes import outcome
+
+from fem_impact.outcome import Outcome
+from fem_impact.progress import NullMeter
+from fem_impact.scale import Failure
+from fem_impact.study import Request, run_study
+from fem_impact.study import request as request_module
+from fem_impact.study.sensitivity import INPUTS
+from fem_impact.study.sets import COARSER, QUICK_SETS, conclude, jobs_of, plan
+
+
+@pytest.fixture(autouse=True)
+def no_pages(monkeypatch):
+    monkeypatch.setattr("fem_impact.study.sets.present", lambda *_: ["no film"])  # tested elsewhere
+
+
+def computed(jobs, broken=()):
+    """What the jobs give; e grows with the tip size."""
+    return {job.name: Failure(job.name, "folded") if job.name in broken else fake(job) for job in jobs}
+
+
+def fake(job):
+    size = job.scene.accuracy.tip_size
+    return outcome(scene_id=job.scene.id, tip_size_m=size, e_paper=0.3 + 100 * size, E_vib_over_E_0=0.01)
+
+
+def study(out, *ids, broken=(), quick=True):
+    request = Request(out, ids, quick)
+    return conclude(request, computed(plan(request), broken), NullMeter())
+
+
+def test_a_set_is_two_meshes_and_a_table(tmp_path):
+    found = study(tmp_path, "t5b")
+    (row,) = found.document["rows"]
+    assert row["bands"]["e_paper"] == pytest.approx(100 * 0.6e-3)
+    assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
+    assert (tmp_path / "comparison.csv").is_file()
+    assert "t5b" in found.text
+    assert found.notes == ["no film"]
+    assert Outcome.read(tmp_path / "t5b" / "outcome.json")["bands"]["e_paper"] == pytest.approx(0.06)
+
+
+def test_the_study_runs_its_jobs_through_the_store(tmp_path, monkeypatch):
+    asked = []
+
+    def run_jobs(jobs, store, progress, executor):
+        asked.append((store, executor))
+        return computed(jobs)
+
+    monkeypatch.setattr(request_module, "run_jobs", run_jobs)
+    found = run_study("sets", Request(tmp_path / "s", ("t5b",), quick=True), NullMeter(), "an executor")
+    assert asked == [(tmp_path / "s" / "store.sqlite", "an executor")]
+    assert found.document["failures"] == []
+
+
+def test_a_failing_job_is_a_row(tmp_path):
+    found = study(tmp_path, "t5b", "t5c", broken=("t5c",))
+    assert [r["scene_id"] for r in found.document["rows"]] == ["t5b"]
+    assert found.document["failures"] == [{"scene_id": "t5c", "error": "folded"}]
+    assert "failed: t5c: folded" in found.text
+
+
+def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(tmp_path):
+    (row,) = study(tmp_path, "t5b", broken=("t5b-coarse",)).document["rows"]
+    assert row["bands"] is None
+    assert "coarser mesh failed" in row["reasons"]["bands"]
+
+
+def test_a_first_look_is_one_set_a_rod(tmp_path):
+    assert [job.name for job in plan(Request(tmp_path, quick=True))][::2] == list(QUICK_SETS)
+
+
+def test_changed_inputs_are_run_unless_quick(tmp_path):
+    found = study(tmp_path, "t5b", quick=False)
+    assert {row["input"] for row in found.document["sensitivity"]} >= {i.name for i in INPUTS}
+    assert study(tmp_path, "t5b").document["sensitivity"] == []
+
+
+def test_the_coarser_twin(tmp_path):
+    group = jobs_of("t5b", False, tmp_path)
+    fine, coarse = group["fine"].scene, group["coarse"].scene
+    assert coarse.accuracy.tip_size == pytest.approx(COARSER * fine.accuracy.tip_size)
+    assert coarse.save.frames == 0
+    assert replace(coarse, accuracy=fine.accuracy, save=fine.save) == fine
