@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import RunError
-from fem_impact.scale.estimate import Eta, expected_costs
+from fem_impact.scale.costs import Eta, expected_costs
 from fem_impact.scale.job import Answer, Failure, Job, compute, read_outcome
 from fem_impact.scale.local import LocalProcesses
 from fem_impact.scale.store import Store

@@ -10,6 +10,7 @@ from fem_impact.scene import MEASURED_SETS
 from fem_impact.study.bands import EXTRA, bands
 from rigid.experiments import Statistic, measured_set
 
+
 @pytest.mark.parametrize("ratio", [2.0, 1.5, 3.0])
 def test_bands_are_exact_for_first_order(ratio):
     h = 0.3e-3

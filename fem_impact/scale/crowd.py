@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.scale.estimate import expected_costs, makespan
+from fem_impact.scale.costs import expected_costs, makespan
 from fem_impact.scale.run import run_jobs, stored
 from fem_impact.scale.store import Store
 
