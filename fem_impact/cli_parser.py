@@ -33,6 +33,7 @@ class Options(argparse.Namespace):
     quiet: bool = False
     scene: str = ""
     changes: Sequence[str] = ()
+    fidelity: str = "solid"
     ids: Sequence[str] = ()
     name: str = ""
     out: Path | None = None
@@ -100,6 +101,12 @@ def _command(commands: Commands, name: str, words: str, handler: str) -> argpars
 def _add_run(commands: Commands) -> None:
     parser = _command(commands, "run", "compute one scene and write its results", "fem_impact.cli_run:run")
     _add_scene_words(parser)
+    parser.add_argument(
+        "--fidelity",
+        choices=["rigid", "modal", "solid"],
+        default="solid",
+        help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 

@@ -43,8 +43,12 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
-    lines += ["", *(f"note: {sentence}" for sentence in (*record["validity"], *record["warnings"]))]
+    lines += ["", *(f"note: {sentence}" for sentence in _sentences(record))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
+
+
+def _sentences(record: Mapping[str, Any]) -> list[str]:
+    return [*record["assumptions"], *record["validity"], *record["warnings"]]
 
 
 def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None:

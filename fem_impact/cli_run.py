@@ -27,7 +27,7 @@ def run(options: Options) -> int:
 
     meter = chosen_meter(options)
     try:
-        outcome = simulate(scene, fidelity="solid", out=out, progress=meter)
+        outcome = simulate(scene, fidelity=options.fidelity, out=out, progress=meter)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}") from None
     finally:
@@ -40,9 +40,9 @@ def run(options: Options) -> int:
 
 
 def _default_out(scene: Scene, options: Options) -> Path:
-    """Return results/ID, with a part of the digest when the shipped scene was changed."""
+    """Return results/ID, with the digest's start when the scene was changed, and the fidelity if reduced."""
     name = f"{scene.id}-{scene.digest()[:8]}" if options.changes else scene.id
-    return Path("results") / name
+    return Path("results") / (name if options.fidelity == "solid" else f"{name}-{options.fidelity}")
 
 
 def _stopped(cause: str, out: Path) -> int:

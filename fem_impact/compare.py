@@ -101,12 +101,18 @@ def _row(outcome: Mapping[str, Any], quantity: Quantity, found: Statistic | None
             "measured_low": found.low,
             "measured_high": found.high,
             "n": found.n,
-            "verdict": verdict(model, band, found),
+            "verdict": verdict(model, band, found) if model is not None else _unknown(outcome, quantity),
         }
     return row
 
 
+def _unknown(outcome: Mapping[str, Any], quantity: Quantity) -> str:
+    return f"not known: {outcome['reasons'][quantity.key]}"
+
+
 def _unseen_verdict(outcome: Mapping[str, Any], quantity: Quantity) -> str:
+    if outcome[quantity.key] is None:
+        return _unknown(outcome, quantity)
     if quantity.key == "E_vib_over_E_0" and outcome["E_vib_below_floor"]:
         return "below floor"
     return "not measurable by camera"
@@ -126,7 +132,6 @@ def text_table(rows: list[Row]) -> str:
             span = f"{row['measured_low']:.3f} .. {row['measured_high']:.3f}"
             measured = f"{row['measured_mean']:9.3f} {row['measured_sd']:7.3f}  {span:<18}"
         band = f"{row['band']:8.4f}" if row["band"] is not None else f"{'-':>8}"
-        lines.append(
-            f"{row['set']:<16}{row['quantity']:<22}{row['model']:9.4f} {band}  {measured}{row['verdict']}"
-        )
+        model = f"{row['model']:9.4f}" if row["model"] is not None else f"{'-':>9}"
+        lines.append(f"{row['set']:<16}{row['quantity']:<22}{model} {band}  {measured}{row['verdict']}")
     return "\n".join(lines)

@@ -45,7 +45,8 @@ def principal_radii(scene: Scene) -> tuple[float, float]:
     rod, alpha = scene.projectile, scene.impact.angle
     rho, _ = projectile(scene).contact_point(alpha)
     R1 = rod.tip_radius if rod.tip_radius > 0 else rod.diameter / 200
-    around = float(rho) / sin(alpha) if alpha > 0 else FLATTEST
+    at_pole = R1 if rod.tip == "A" else FLATTEST
+    around = float(rho) / sin(alpha) if alpha > 0 else at_pole
     return R1, min(max(around, R1), FLATTEST)
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
 
@@ -13,46 +14,79 @@ if TYPE_CHECKING:
     from fem_impact.progress import Progress
     from fem_impact.scene import Scene
 
-__all__ = ["simulate"]
+__all__ = ["FIDELITIES", "simulate"]
+
+Report = Callable[["Progress"], None]
+
+FIDELITIES = ("rigid", "modal", "solid")
 
 
 def simulate(
-    scene: Scene,
-    fidelity: Literal["solid"] = "solid",
-    out: Path | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    scene: Scene, fidelity: str = "solid", out: Path | None = None, progress: Report | None = None
 ) -> Outcome:
     """Compute an impact.
 
     Parameters
     ----------
     scene : Scene
-    fidelity : ``solid``, the explicit finite-element model
-    out : directory for outcome.json, history.csv, contacts.csv, fields.vtkhdf and scene.toml; none of
-        them is written without it
-    progress : called every few hundred steps
+    fidelity : ``rigid``, impulses of a rigid rod, under a millisecond; ``modal``, free modes and a local
+        contact law, some ten milliseconds once the modes of the rod are known; ``solid``, the explicit
+        finite-element model, seconds to minutes
+    out : directory for outcome.json and scene.toml, contacts.csv where contacts have a duration, and
+        history.csv and fields.vtkhdf of the solid fidelity; none of them is written without it
+    progress : called every few hundred steps of the solid fidelity
 
     Raises
     ------
     SceneError
-        If the fidelity is unknown, or the tip has no fine zone where one is needed.
+        If the fidelity is unknown, or the tip has no fine zone where the solid fidelity needs one.
     RunError
         If the run cannot go on; what was computed stays in ``out``.
     """
-    if fidelity != "solid":
-        raise SceneError("is not available yet.", key="fidelity", value=fidelity, remedy='Use "solid".')
-    from fem_impact.effects import specify
+    if fidelity not in FIDELITIES:
+        near = get_close_matches(str(fidelity), FIDELITIES, 1)
+        hint = f"Did you mean {near[0]}?" if near else f"Use one of {', '.join(FIDELITIES)}."
+        raise SceneError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     from fem_impact.output import make_directory, write_text
-    from fem_impact.reduce import reduce, write_contacts
-    from fem_impact.solid.build import require_fine_zone
-    from fem_impact.solid.run import solve
 
-    require_fine_zone(scene, specify(scene))
+    require_runnable(scene, fidelity)
     if out is not None:
         make_directory(out)
         write_text(out / "scene.toml", scene.to_toml())
-    outcome = reduce(scene, solve(scene, out, progress))
+    outcome = _compute(scene, fidelity, out, progress)
     if out is not None:
-        write_contacts(outcome, out)
-        outcome.write(out / "outcome.json")
+        _write(outcome, out)
     return outcome
+
+
+def require_runnable(scene: Scene, fidelity: str) -> None:
+    """Refuse what the fidelity cannot compute (SceneError)."""
+    if fidelity == "solid":
+        from fem_impact.effects import specify
+        from fem_impact.solid.build import require_fine_zone
+
+        require_fine_zone(scene, specify(scene))
+
+
+def _compute(scene: Scene, fidelity: str, out: Path | None, progress: Report | None) -> Outcome:
+    """Import and run one model."""
+    if fidelity == "rigid":
+        from fem_impact.rigid_limit import rigid_outcome
+
+        return rigid_outcome(scene)
+    if fidelity == "modal":
+        from fem_impact import modal
+
+        return modal.reduce(scene, modal.solve(scene))
+    from fem_impact.reduce import reduce
+    from fem_impact.solid.run import solve
+
+    return reduce(scene, solve(scene, out, progress))
+
+
+def _write(outcome: Outcome, out: Path) -> None:
+    from fem_impact.output import CONTACTS, write_table
+
+    if outcome["contacts"] is not None:
+        write_table(out / "contacts.csv", CONTACTS, outcome["contacts"])
+    outcome.write(out / "outcome.json")

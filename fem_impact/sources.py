@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 __all__ = ["source_digest", "stamp"]
 
 # parts of fem_impact that make no numbers: they may change without a new run
-TELLING = frozenset({"figures", "paper", "render", "report", "scale", "stress", "study", "verify"})
+TELLING = frozenset({"cost", "figures", "paper", "render", "report", "scale", "stress", "study", "verify"})
 TELLING_FILES = ("cli", "progress", "__main__")
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")
 KINDS = {".py", ".toml", ".csv", ".json"}

@@ -68,6 +68,7 @@ PROVENANCE = (
     Key("finished", "flag", "", "True when the stop rule ended the run, false when a limit cut it off."),
     _text("stopped_because", "Why the run ended, as a sentence."),
     _text("effects", "Names of the effects that were in the model.", "texts"),
+    _text("assumptions", "Sentences on what the model leaves out or takes from elsewhere.", "texts"),
     _text("validity", "Sentences on where the scene leaves the measured range.", "texts"),
     _text("warnings", "Sentences on what the reader should distrust.", "texts"),
 )
@@ -130,6 +131,7 @@ ENERGY = (
 
 CONTACT = (
     Key("contacts", "contacts", "s, N s", "Each contact interval with its impulses on the rod.", True),
+    _number("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us."),
     _number("marker_V_n_m_per_s", "m/s", "V_n as the camera's two markers would give it."),
     _number("marker_V_t_m_per_s", "m/s", "V_t as the camera's two markers would give it."),
     _number("marker_Omega_rad_per_s", "rad/s", "Omega as the camera's two markers would give it."),

@@ -8,7 +8,18 @@ from typing import Any
 
 from fem_impact.scene.units import DIMENSIONS, format_quantity
 
-__all__ = ["ACCURACY", "DEFAULTS", "IMPACT", "MATERIAL", "PROJECTILE", "SAVE", "SURFACE", "Default", "Field"]
+__all__ = [
+    "ACCURACY",
+    "DEFAULTS",
+    "IMPACT",
+    "MATERIAL",
+    "PROJECTILE",
+    "SAVE",
+    "SURFACE",
+    "TOP",
+    "Default",
+    "Field",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +81,7 @@ SURFACE = (
     Field("friction_low", "lower end of the interval of f", "", 0.0, 10.0),
     Field("friction_high", "upper end of the interval of f", "", 0.0, 10.0),
 )
+TOP = (Field("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
 _INTO = "n points out of the barrier, so a rod that strikes it has v_n below 0."
 _DOWN = "t points up the slope, so a falling rod has v_t at or below 0."
 IMPACT = (

@@ -21,6 +21,7 @@ _TOP = (
     "id",
     "title",
     "measured",
+    "restitution",
     "effects",
     "projectile",
     "barrier",
@@ -48,7 +49,12 @@ def read_scene(data: Table) -> Scene:
         accuracy=_within(data, "accuracy", lambda t: Accuracy(**_numbers(t, fields.ACCURACY)), {}),
         save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
         measured=data.get("measured"),
+        restitution=_restitution(data),
     )
+
+
+def _restitution(data: Table) -> float | None:
+    return parse_number(data["restitution"], "restitution") if "restitution" in data else None
 
 
 def _touches(data: Table, effects: tuple[str, ...]) -> bool:

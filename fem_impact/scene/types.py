@@ -149,7 +149,11 @@ class Save:
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """One impact, completely stated; ``measured`` names the published set it repeats, if any."""
+    """One impact, completely stated.
+
+    ``measured`` names the published set it repeats, if any; ``restitution`` (energetic, 0 to 1) is what the
+    rigid fidelity takes instead of Thornton's law.
+    """
 
     id: str
     title: str
@@ -161,6 +165,7 @@ class Scene:
     accuracy: Accuracy = Accuracy()
     save: Save = Save()
     measured: str | None = None
+    restitution: float | None = None
 
     def __post_init__(self) -> None:
         check_id(self.id, "id")
@@ -168,6 +173,8 @@ class Scene:
         object.__setattr__(self, "effects", check_effects(self.effects))
         if self.measured is not None:
             check_choice(self.measured, MEASURED_SETS, "measured")
+        if self.restitution is not None:
+            check_numbers(self, fields.TOP)
         _check_tip_size(self)
 
     @classmethod

@@ -20,6 +20,8 @@ def to_dict(scene: Scene) -> dict[str, Any]:
     top: dict[str, Any] = {"id": scene.id, "title": scene.title, "effects": list(scene.effects)}
     if scene.measured is not None:
         top["measured"] = scene.measured
+    if scene.restitution is not None:
+        top["restitution"] = scene.restitution
     surface = {"state": scene.surface.state, "source": scene.surface.source}
     return top | {
         "projectile": {

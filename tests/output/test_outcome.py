@@ -23,7 +23,7 @@ def test_reads_back_what_was_written(tmp_path, record):
 def test_file_is_flat_but_for_named_structures(record):
     held = json.loads(Outcome(record).to_json())
     nested = {name for name, value in held.items() if isinstance(value, dict | list)}
-    assert nested == {"versions", "effects", "validity", "warnings", "contacts", "reasons"}
+    assert nested == {"versions", "effects", "assumptions", "validity", "warnings", "contacts", "reasons"}
 
 
 def test_numpy_values_become_plain(record):

@@ -1,0 +1,149 @@
+"""One impact by modes and a local contact law."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from math import cos, inf, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rigid
+from fem_impact.contact_law import ContactLaw, contact_law
+from fem_impact.estimates import contact_estimate
+from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
+from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.scene import Scene
+from fem_impact.solid.separation import HORIZON
+
+__all__ = ["ModalResult", "plastic_work", "reach", "solve"]
+
+Array = NDArray[np.float64]
+
+STEPS = 1000  # over the estimated contact
+FASTEST = 0.1  # of a step, rad of the highest mode
+
+
+@dataclass(frozen=True, slots=True)
+class ModalResult:
+    """The end of an impact.
+
+    Attributes
+    ----------
+    V_n, V_t, Omega : after the last separation, gravity removed, m/s, rad/s
+    E_0, kinetic, friction, plastic, residual : J, of the whole rod; kinetic is the rigid motion's
+    energies : (k,) vibration of each mode, J
+    contacts : (m, 4) start, end, s, impulses along n and t, N s
+    force : largest normal force, N
+    step, steps, wall, cpu : s, -, s, s
+    """
+
+    rod: ModalRod
+    V_n: float
+    V_t: float
+    Omega: float
+    E_0: float
+    kinetic: float
+    energies: Array
+    friction: float
+    plastic: float
+    residual: float
+    contacts: Array
+    force: float
+    finished: bool
+    step: float
+    steps: int
+    wall: float
+    cpu: float
+
+    @property
+    def vibration(self) -> float:
+        """Return the energy of all modes, J."""
+        return float(self.energies.sum())
+
+
+def solve(scene: Scene) -> ModalResult:
+    """Compute an impact; the modes of a new rod are computed first."""
+    rod, law = modal_rod(scene), contact_law(scene)
+    dt = contact_estimate(scene).duration / STEPS
+    dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt
+    contacts = np.zeros((MOST_CONTACTS, 4))
+    start = _start(scene, rod)
+    E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
+    bounds = Bounds(dt, HORIZON, scene.accuracy.max_time, reach(law, E_0))
+    wall, cpu = time.perf_counter(), time.process_time()
+    motion, q, rate, works, (peak, force), end, steps, count, over = drop(
+        start, law, rod.omega, rod.along_t, rod.along_n, bounds, contacts
+    )
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    energies = 0.5 * (rate**2 + (rod.omega * q) ** 2)
+    plastic, friction = plastic_work(law, peak), -works[1]
+    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic
+    V_n, V_t = motion[0] - start.g_n * end, motion[1] - start.g_t * end
+    residual = E_0 + works[2] - spent
+    return ModalResult(
+        rod=rod,
+        V_n=V_n,
+        V_t=V_t,
+        Omega=motion[2],
+        E_0=E_0,
+        kinetic=_kinetic(rod, V_n, V_t, motion[2]),
+        energies=energies,
+        friction=friction,
+        plastic=plastic,
+        residual=residual,
+        contacts=contacts[:count],
+        force=force,
+        finished=over,
+        step=dt,
+        steps=steps,
+        wall=wall,
+        cpu=cpu,
+    )
+
+
+def plastic_work(law: ContactLaw, peak: float) -> float:
+    """Return the work, J, that a largest approach ``peak``, m, has turned to plastic work.
+
+    It is the area under first loading less what Hertz' unloading with the flatter radius gives back.
+    """
+    if law.limit == inf or peak <= law.yield_depth:
+        return 0.0
+    beyond = peak - law.yield_depth
+    loading = 0.4 * law.yield_force * law.yield_depth + (law.yield_force + 0.5 * law.slope * beyond) * beyond
+    force = law.yield_force + law.slope * beyond
+    square = (2 * force + law.yield_force) / (2 * np.pi * law.limit)
+    elastic = 0.75 * force / (law.E_star * np.sqrt(square))  # peak - residual depth
+    return float(loading - 0.4 * force * elastic)
+
+
+def reach(law: ContactLaw, energy: float) -> float:
+    """Return the contact radius, m, of first loading that has taken up an energy, J."""
+    at_yield = 0.4 * law.yield_force * law.yield_depth
+    if energy <= at_yield:
+        return float(np.sqrt(law.R) * (2.5 * energy / law.stiffness) ** 0.2)
+    more = 2 * (energy - at_yield) / law.slope
+    start = law.yield_force / law.slope
+    return float(np.sqrt(law.R * (law.yield_depth - start + np.sqrt(start**2 + more))))
+
+
+def _start(scene: Scene, rod: ModalRod) -> Start:
+    g = rigid.GRAVITY if "gravity" in scene.effects else 0.0
+    impact = scene.impact
+    return Start(
+        rod.mass,
+        rod.k2,
+        rod.centre_t,
+        rod.centre_n,
+        rod.radius,
+        impact.v_t,
+        impact.v_n,
+        impact.omega,
+        -g * sin(impact.angle),
+        -g * cos(impact.angle),
+    )
+
+
+def _kinetic(rod: ModalRod, V_n: float, V_t: float, Omega: float) -> float:
+    return 0.5 * rod.mass * (V_n**2 + V_t**2 + rod.k2 * Omega**2)

@@ -1,0 +1,98 @@
+"""The rod as its contact sees it: rigid motion, elastic modes, and how each moves the contact point."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import cos, sin, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.effects import specify
+from fem_impact.estimates import principal_radii, projectile
+from fem_impact.scene import Accuracy, Barrier, Impact, Material, Projectile, Scene, Surface
+from fem_impact.solid.build import build
+from fem_impact.solid.rodview import RodView
+
+__all__ = ["ModalRod", "modal_rod"]
+
+Array = NDArray[np.float64]
+
+AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
+SECTION = 1.8412  # first zero of J1': where the round section begins to shear by itself
+
+
+@dataclass(frozen=True, slots=True)
+class ModalRod:
+    """A rod that touches at one point of its tip, at first contact.
+
+    Attributes
+    ----------
+    mass, k2 : kg, m2, of the whole rod
+    centre_t, centre_n : the tip's centre of curvature from the mass centre, m
+    radius : of the tip's meridian, m
+    omega : (k,) rad/s
+    along_t, along_n : (k,) kg^-1/2, displacement of the contact point by each mode of the whole rod
+    """
+
+    mass: float
+    k2: float
+    centre_t: float
+    centre_n: float
+    radius: float
+    omega: Array
+    along_t: Array
+    along_n: Array
+
+
+def modal_rod(scene: Scene) -> ModalRod:
+    """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
+    body, alpha = projectile(scene), scene.impact.angle
+    d_c, d_d = (float(d) for d in body.arms(alpha))
+    radius = principal_radii(scene)[0]
+    omega, x, z = _touch(scene) if "vibration" in scene.effects else np.zeros((3, 0))
+    along_t, along_n = cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
+    return ModalRod(body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t, along_n)
+
+
+def _touch(scene: Scene) -> tuple[Array, Array, Array]:
+    """Return omega and the displacements (x, z) of the contact point in the rod frame, kg^-1/2."""
+    points, shape, omega = _modes(scene.projectile, scene.accuracy.across)
+    rho, z = projectile(scene).contact_point(scene.impact.angle)
+    from_touch = points - np.array([float(rho), 0.0, float(z)])
+    near = np.linalg.norm(from_touch, axis=1) < AROUND * scene.projectile.diameter
+    affine = np.column_stack([np.ones(near.sum()), from_touch[near][:, [0, 2]]])
+    at_touch = np.linalg.pinv(affine)[0]
+    kept = omega < section_frequency(scene.projectile.material, scene.projectile.diameter)
+    x, _, z = np.einsum("n,ncm->cm", at_touch, shape[near][:, :, kept])
+    return omega[kept], x, z
+
+
+def section_frequency(material: Material, diameter: float) -> float:
+    """Return the circular frequency, rad/s, above which modes deform the section.
+
+    Such modes are local: what they yield to a point load is the business of the contact law.
+    """
+    shear_speed = sqrt(material.E / (2 * (1 + material.nu) * material.rho))
+    return SECTION * shear_speed / (diameter / 2)
+
+
+@lru_cache(maxsize=32)
+def _modes(rod: Projectile, across: int) -> tuple[Array, Array, Array]:
+    """Return nodes (n, 3) in the rod frame, mode shapes (n, 3, k) of the whole rod, and omega (k,)."""
+    scene = Scene(
+        id="modes",
+        title="modes of a rod on the coarse mesh",
+        projectile=rod,
+        barrier=Barrier(rod.material),
+        surface=Surface("custom", 0.0, 0.0, 0.0, "no friction"),
+        impact=Impact(0.0, -1.0, 0.0),
+        effects=("vibration", "barrier-rigid"),
+        accuracy=Accuracy(tip_size=rod.diameter / 4, across=across),
+    )
+    model = build(scene, specify(scene))
+    view, mesh = RodView.of(model), model.geometry.rod.mesh
+    # modes are normalised with the mass of the half rod
+    shape = view.modes.shape[view.places] / sqrt(2)
+    return mesh.points[~mesh.is_hanging], shape, view.modes.omega

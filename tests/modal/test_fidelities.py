@@ -1,0 +1,114 @@
+"""One call and one record for three fidelities; here the two that need no finite-element run."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from fem_impact.compare import compare, text_table
+from fem_impact.errors import SceneError
+from fem_impact.estimates import effective_mass, projectile
+from fem_impact.outcome import KEYS, Outcome
+from fem_impact.scene import MEASURED_SETS, Scene, load
+from fem_impact.simulate import simulate
+
+REDUCED = ("rigid", "modal")
+
+
+@pytest.mark.parametrize("fidelity", REDUCED)
+def test_a_record_is_whole_and_reads_back(fidelity, tmp_path):
+    scene = load("t6-60")
+    outcome = simulate(scene, fidelity, out=tmp_path)
+    assert outcome["fidelity"] == fidelity
+    assert list(Outcome.read(tmp_path / "outcome.json").items()) == list(outcome.items())
+    assert Scene.from_toml(tmp_path / "scene.toml") == scene
+    assert (tmp_path / "contacts.csv").exists() == (fidelity == "modal")
+    assert all(outcome["reasons"][key.name] for key in KEYS if outcome[key.name] is None)
+    assert outcome["assumptions"]
+
+
+@pytest.mark.parametrize("fidelity", REDUCED)
+@pytest.mark.parametrize("name", ["t2", "t5b", "t6-17"])
+def test_the_shares_of_the_energy_add_up(fidelity, name):
+    outcome = simulate(load(name), fidelity)
+    shares = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "residual")
+    total = sum(outcome[f"{share}_over_E_0"] or 0.0 for share in shares)
+    assert total == pytest.approx(1, abs=2e-3)  # gravity works a little while the rod touches
+    assert abs(outcome["residual_over_E_0"]) < 1e-5
+    lost = sum(outcome[f"E_{kind}_edge_over_E_0"] for kind in ("ln", "lt"))
+    spin = outcome["mass_kg"] * outcome["k_squared_m2"] * outcome["Omega_rad_per_s"] ** 2 / 2
+    closed = spin * (1 + 1 / outcome["e_m_edge"]) / outcome["E_0_J"]
+    assert lost + outcome["E_r_over_E_0"] - 1 == pytest.approx(closed, abs=1e-9)
+
+
+def test_compare_and_tables_take_what_is_not_known():
+    rows = compare(simulate(load("t5b"), "rigid"))
+    by_name = {row["quantity"]: row for row in rows}
+    assert by_name["vibration/E_0"]["model"] is None
+    assert "not known" in by_name["vibration/E_0"]["verdict"]
+    assert by_name["mu"]["verdict"] == "inside"
+    assert "not known: a rigid rod" in text_table(rows)
+
+
+def test_the_rigid_fidelity_names_the_source_of_its_restitution():
+    scene = load("t5b")
+    law, own = simulate(scene, "rigid"), simulate(replace(scene, restitution=0.5), "rigid")
+    elastic = simulate(replace(scene, effects=("vibration", "barrier-elastic")), "rigid")
+    assert law["e_edge"] == pytest.approx(0.306, abs=0.01)
+    assert "Thornton" in law["assumptions"][0]
+    assert (own["e_edge"], own["assumptions"][0]) == (
+        pytest.approx(0.5, abs=0.02),
+        "Restitution 0.5 (energetic) is the scene's own.",
+    )
+    assert elastic["e_edge"] == pytest.approx(1)
+    assert "no body of the scene may yield" in elastic["assumptions"][0]
+    assert elastic["mu"] == elastic["W_friction_over_E_0"] == 0.0
+
+
+def test_a_frictionless_elastic_rod_turns_as_momentum_says():
+    scene = replace(load("t5b"), effects=("vibration", "barrier-elastic"))
+    rod = projectile(scene)
+    d_c = float(rod.arms(scene.impact.angle)[0])
+    Omega = 2 * -scene.impact.v_n * d_c / (rod.k2 + d_c**2)
+    assert simulate(scene, "rigid")["Omega_rad_per_s"] == pytest.approx(Omega)
+    assert effective_mass(scene) == pytest.approx(rod.mass / (1 + d_c**2 / rod.k2))
+
+
+@pytest.mark.parametrize("name", [n for n in MEASURED_SETS if n.startswith(("t4", "t5"))])
+def test_a_short_rod_hardly_vibrates_so_both_agree(name):
+    rigid, modal = (simulate(load(name), fidelity) for fidelity in REDUCED)
+    assert modal["E_vib_over_E_0"] < 2e-3
+    for key, near in {
+        "e_edge": 0.01,
+        "mu": 0.002,
+        "Omega_rad_per_s": 0.3,
+        "W_friction_over_E_0": 0.005,
+    }.items():
+        assert modal[key] == pytest.approx(rigid[key], abs=near)
+
+
+def test_restitution_is_a_key_of_the_scene():
+    data = load("t5b").to_dict() | {"restitution": 0.4}
+    scene = Scene.from_dict(data)
+    assert scene.restitution == 0.4
+    assert Scene.from_dict(scene.to_dict()) == scene
+    assert scene.digest() != load("t5b").digest()
+    with pytest.raises(SceneError, match=r"restitution = 1.4"):
+        Scene.from_dict(data | {"restitution": 1.4})
+
+
+def test_an_unknown_fidelity_is_refused():
+    with pytest.raises(SceneError, match=r'fidelity = "modl": is not a fidelity. Did you mean modal\?'):
+        simulate(load("t5b"), "modl")
+
+
+def test_the_command_takes_a_fidelity(cli):
+    code, out, _ = cli("run", "t5b", "--fidelity", "rigid", "--json")
+    assert (code, json.loads(out)["fidelity"]) == (0, "rigid")
+    code, out, _ = cli("run", "t5b", "--fidelity", "modal")
+    assert code == 0
+    assert "results: results/t5b-modal" in out
+    assert "note: The indented surface keeps the barrier's direction" in out
+    code, _, err = cli("run", "t5b", "--fidelity", "none")
+    assert code == 2
+    assert "--fidelity" in err
