@@ -33,7 +33,7 @@ class Options(argparse.Namespace):
     quiet: bool = False
     scene: str = ""
     changes: Sequence[str] = ()
-    fidelity: str = "solid"
+    fidelity: str = ""
     ids: Sequence[str] = ()
     name: str = ""
     out: Path | None = None
@@ -43,7 +43,6 @@ class Options(argparse.Namespace):
     workers: int | None = None
     scheduler: str = ""
     estimate: bool = False
-    fidelity: str = ""
     result: Path
     set_id: str | None = None
     file: Path
