@@ -47,22 +47,17 @@ def _listed(scene: Scene) -> dict[str, Any]:
 
 
 def _statement(scene: Scene) -> dict[str, Any]:
-    from fem_impact.effects import describe
+    from fem_impact.effects import choices, neglected
 
     return {
         "scene": scene.to_dict(),
         "digest": scene.digest(),
         "sources": _sources(scene),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [_effect(*row) for row in describe(scene)],
+        "effects": [choice.told() for choice in choices(scene)],
         "validity": list(validity(scene)),
+        "warnings": list(neglected(scene)),
     }
-
-
-def _effect(name: str, on: bool, measure: str, number: float, sentence: str) -> dict[str, Any]:
-    """Return one effect of the statement; a number that is not finite (tan(alpha) = 0) becomes null."""
-    shown = number if math.isfinite(number) else None
-    return {"name": name, "on": on, "measure": measure, "number": shown, "sentence": sentence}
 
 
 def _sources(scene: Scene) -> dict[str, str]:
@@ -81,14 +76,20 @@ def _readable(scene: Scene, statement: dict[str, Any]) -> str:
     lines += ["", "Values used where a scene does not state them"]
     lines += [f"  {d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"]]
     lines += ["", "Effects"]
-    lines += [_effect_line(effect) for effect in statement["effects"]]
+    lines += [line for effect in statement["effects"] for line in _effect_lines(effect)]
+    lines += [f"  warning: {sentence}" for sentence in statement["warnings"]]
     lines += ["", "Validity"]
     inside = "  inside the measured range of speed, angle, rod, steels and surfaces"
     lines += [f"  {sentence}" for sentence in statement["validity"]] or [inside]
     return "\n".join([*lines, "", f"The scene is valid; digest {statement['digest']}."]) + "\n"
 
 
-def _effect_line(effect: dict[str, Any]) -> str:
-    number = "not finite" if effect["number"] is None else f"{effect['number']:.3g}"
-    mark = "on " if effect["on"] else "off"
-    return f"  {mark} {effect['name']}: {effect['sentence']} ({effect['measure']}: {number})"
+def _effect_lines(effect: dict[str, Any]) -> tuple[str, str]:
+    number = "not finite" if effect["number"] is None else f"{effect['number']:.2g}"
+    verdict = f"{'on ' if effect['on'] else 'off'} {effect['name']}{' (forced)' if effect['forced'] else ''}"
+    harm = (
+        f"e changes by about {effect['change_of_e']:.1g}, "
+        f"E_vib by {effect['change_of_E_vib_over_E_0']:.1g} of E_0"
+    )
+    decided = f"{effect['measure']}: {number}, needed above {effect['threshold']:g}"
+    return f"  {verdict}: {effect['sentence']}", f"        {decided}; without it {harm}"

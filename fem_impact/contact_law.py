@@ -56,14 +56,14 @@ def contact_law(scene: Scene) -> ContactLaw:
     stiffness = 4 / 3 * E_star * sqrt(R)
     depth = (pi * limit / (2 * E_star)) ** 2 * R
     force = stiffness * depth**1.5
-    f = scene.surface.friction if "friction" in scene.effects else 0.0
+    f = scene.surface.friction if "friction" in scene.active else 0.0
     return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, _shear(scene), f)
 
 
 def _shear(scene: Scene) -> float:
     """Return 8 G*, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)."""
     bodies = [scene.projectile.material]
-    if "barrier-rigid" not in scene.effects:
+    if "barrier-rigid" not in scene.active:
         bodies.append(scene.barrier.material)
     return 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies)
 

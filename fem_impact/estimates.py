@@ -37,7 +37,7 @@ class ContactEstimate:
 def yielding_materials(scene: Scene) -> list[Material]:
     """Return the materials that may yield in this scene."""
     named = {"rod-plasticity": scene.projectile.material, "barrier-elastoplastic": scene.barrier.material}
-    return [material for name, material in named.items() if name in scene.effects]
+    return [material for name, material in named.items() if name in scene.active]
 
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
@@ -58,9 +58,15 @@ def projectile(scene: Scene) -> Projectile:
     return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
 
 
+def arms(scene: Scene) -> tuple[float, float]:
+    """Return (d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
+    d_c, d_d = projectile(scene).arms(scene.impact.angle)
+    return float(d_c) if scene.impact.angle > 0 else 0.0, float(d_d)
+
+
 def effective_mass(scene: Scene) -> float:
     """Return m*, kg, at least that of a frictionless contact."""
-    rod, f = projectile(scene), scene.surface.friction if "friction" in scene.effects else 0.0
+    rod, f = projectile(scene), scene.surface.friction if "friction" in scene.active else 0.0
     d_c, d_d = rod.arms(scene.impact.angle)
     frictionless = 1 + float(d_c) ** 2 / rod.k2
     return float(
@@ -68,10 +74,21 @@ def effective_mass(scene: Scene) -> float:
     )
 
 
+def start_energy(scene: Scene) -> float:
+    """Return E_0, J."""
+    rod, impact = projectile(scene), scene.impact
+    return float(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2 + rod.k2 * impact.omega**2))
+
+
+def normal_share(scene: Scene) -> float:
+    """Return the share of E_0 that the normal impact can take, m* v_n^2 / 2 over E_0."""
+    return 0.5 * effective_mass(scene) * scene.impact.v_n**2 / start_energy(scene)
+
+
 def contact_modulus(scene: Scene) -> float:
     """Return E*, Pa; a rigid barrier has no share."""
     bodies = [scene.projectile.material]
-    if "barrier-rigid" not in scene.effects:
+    if "barrier-rigid" not in scene.active:
         bodies.append(scene.barrier.material)
     return 1 / sum((1 - m.nu**2) / m.E for m in bodies)
 

@@ -38,7 +38,7 @@ def provenance(
         "versions": installed_versions(),
         "finished": finished,
         "stopped_because": stopped_because,
-        "effects": list(scene.effects),
+        "effects": list(scene.active),
         "assumptions": list(assumptions),
         "validity": list(validity(scene)),
         "warnings": list(warnings),
@@ -59,7 +59,7 @@ def motion_keys(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float,
         "Omega_rad_per_s": float(Omega),
         "mu": float(rigid.impulse_ratio(impact.v_n, impact.v_t, V_n, V_t)),
         "mu_c": float(mu_c),
-        "friction_f": scene.surface.friction if "friction" in scene.effects else 0.0,
+        "friction_f": scene.surface.friction if "friction" in scene.active else 0.0,
         "alpha_rad": impact.angle,
         "mass_kg": mass,
         "k_squared_m2": k2,
@@ -83,7 +83,7 @@ def coefficient_keys(scene: Scene, motion: Values) -> tuple[Values, dict[str, st
 def plastic_keys(scene: Scene, share: float) -> Values:
     """Return the plastic work of both bodies: the law lets only the softer one yield."""
     soft = softer(scene)
-    in_rod = soft is not None and soft == scene.projectile.material and "rod-plasticity" in scene.effects
+    in_rod = soft is not None and soft == scene.projectile.material and "rod-plasticity" in scene.active
     return {
         "E_plastic_rod_over_E_0": share if in_rod else 0.0,
         "E_plastic_barrier_over_E_0": 0.0 if in_rod else share,

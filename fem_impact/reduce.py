@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rigid
+from fem_impact.effects import choices, neglected
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
 from fem_impact.outcome_keys import Values, coefficient_keys, motion_keys, provenance
@@ -22,7 +23,10 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     """Return the Outcome of a run; what cannot be known is null with its reason."""
     open_ledger = _open_ledger(result)
     finished = result.finished and not open_ledger
-    values = provenance(scene, "solid", finished, open_ledger or result.reason, warnings=result.warnings)
+    values = provenance(
+        scene, "solid", finished, open_ledger or result.reason, warnings=[*result.warnings, *neglected(scene)]
+    )
+    values["effect_choices"] = [c.told() | {"share": result.shares.get(c.name)} for c in choices(scene)]
     values |= _motion(scene, result)
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
@@ -47,7 +51,7 @@ def _open_ledger(result: SolidResult) -> str:
 def _motion(scene: Scene, result: SolidResult) -> Values:
     """Return velocities before and after; gravity's share of the fall since time 0 is taken out."""
     alpha, motion = scene.impact.angle, result.motion
-    fall = rigid.GRAVITY * result.time if "gravity" in scene.effects else 0.0
+    fall = rigid.GRAVITY * result.time if "gravity" in scene.active else 0.0
     V_n, V_t = motion.V_n + fall * np.cos(alpha), motion.V_t + fall * np.sin(alpha)
     return motion_keys(scene, V_n, V_t, motion.Omega, motion.mass, motion.inertia / motion.mass)
 

@@ -30,7 +30,7 @@ def rigid_outcome(scene: Scene) -> Outcome:
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = (float(d) for d in rod.arms(impact.angle))
     e, source = _restitution(scene, abs(impact.v_n + d_c * impact.omega))
-    f = scene.surface.friction if "friction" in scene.effects else 0.0
+    f = scene.surface.friction if "friction" in scene.active else 0.0
     path = rigid.sliding_path(
         impact.v_n, impact.v_t, e=e, f=f, d_c=d_c, d_d=d_d, k2=rod.k2, omega=impact.omega
     )

@@ -2,19 +2,35 @@
 
 from __future__ import annotations
 
-from math import inf, tan
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, ModelSpec
+from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.effects.vibration import vibration_share
+from fem_impact.estimates import arms, projectile
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
 
+def coupling(scene: Scene) -> float:
+    """Return by how much f changes 1/m*, f d_c d_d / (k^2 + d_c^2) (Stronge, Impact Mechanics, 3.4)."""
+    rod = projectile(scene)
+    d_c, d_d = arms(scene)
+    return scene.surface.friction * abs(d_c) * d_d / (rod.k2 + d_c**2)
+
+
 def number(scene: Scene) -> float:
-    """Return f over tan(alpha): above about 2/7 to 1 the contact sticks, below it slides."""
-    slope = tan(scene.impact.angle)
-    return scene.surface.friction / slope if slope > 0 else inf
+    """Return f times how much it can do: nothing in an axial strike without sliding."""
+    f, impact = scene.surface.friction, scene.impact
+    _, d_d = arms(scene)
+    sliding = abs(impact.v_t - impact.omega * d_d) / max(abs(impact.v_n), 1e-9)
+    return min(coupling(scene) + f * sliding, f)
+
+
+def harm(scene: Scene) -> Harm:
+    """Return the change of the effective mass as change of e, and its share of the vibration."""
+    change = min(coupling(scene), 1.0)
+    return Harm(change, change * vibration_share(scene))
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -26,7 +42,10 @@ EFFECT = Effect(
     "friction",
     "Coulomb friction acts at every contact node, with stick, slip and reversal.",
     "The contact is frictionless.",
-    "f/tan(alpha)",
+    "f where it can act: min(f, f d_c d_d/(k^2 + d_c^2) + f v_ct/v_n)",
+    0.005,
+    "Coulomb's law: the impulse ratio is at most f, so mu is off by no more than the threshold",
     number,
+    harm,
     fill,
 )

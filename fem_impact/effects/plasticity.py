@@ -2,25 +2,56 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from math import sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, ModelSpec
+from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.effects.vibration import vibration_share
+from fem_impact.estimates import LIMIT_PRESSURE, contact_estimate
 
 if TYPE_CHECKING:
     from fem_impact.scene import Material, Scene
     from fem_impact.solid.hardening import Hardening
 
+DEEP = 1.6  # peak pressure over yield stress at first yield, which is below the surface
+SOURCE = (
+    "first yield of a Hertzian contact below the surface (Johnson 1985, eq 6.9) or, with friction, on it "
+    "(sec 7.1); the other body's limit pressure 2.8 sigma_y caps the pressure"
+)
 
-def first_yield_ratio(scene: Scene, material: Material) -> float:
-    """Return the elastic peak pressure over that of first yield, 1.6 sigma_y (Johnson 1985, eq 6.9)."""
-    from dataclasses import replace
 
-    from fem_impact.estimates import contact_estimate
+def first_yield_ratio(scene: Scene, material: Material, other: Material) -> float:
+    """Return the peak pressure over that of first yield, min(1.6, 1/(sqrt(3) f)) sigma_y.
 
-    names = ("rod-plasticity", "barrier-elastoplastic")
-    elastic = tuple("barrier-elastic" if n == names[1] else n for n in scene.effects if n != names[0])
-    mean = contact_estimate(replace(scene, effects=elastic)).pressure
-    return 1.5 * mean / (1.6 * material.yield_stress)
+    The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
+    """
+    names = ("rod-plasticity", "barrier-elastoplastic", "rate-hardening")
+    kept = ["barrier-elastic" if n == names[1] else n for n in scene.active if n not in (names[0], names[2])]
+    peak = 1.5 * contact_estimate(replace(scene, effects=tuple(kept))).pressure
+    if "barrier-rigid" not in scene.active:
+        peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
+    f = scene.surface.friction if "friction" in scene.active else 0.0
+    first = min(DEEP, 1 / (sqrt(3) * f)) if f > 0 else DEEP
+    return peak / (first * material.yield_stress)
+
+
+def thornton(ratio: float) -> float:
+    """Return e of an elastic-perfectly-plastic sphere at a speed over the yield speed, ratio of (p/p_y)^2.5.
+
+    Thornton 1997, doi:10.1115/1.2787319, eq 41.
+    """
+    if ratio <= 1:
+        return 1.0
+    r = 1 / ratio
+    slope = sqrt(6 * sqrt(3) / 5 * (1 - r * r / 6))
+    return float(slope * (r / (r + 2 * sqrt(1.2 - 0.2 * r * r))) ** 0.25)
+
+
+def harm_of(ratio: float, scene: Scene) -> Harm:
+    """Return what a contact loses that stays elastic at a pressure ``ratio`` over that of first yield."""
+    change = 1 - thornton(ratio**2.5)
+    return Harm(change, change * vibration_share(scene))
 
 
 def hardening_of(material: Material) -> Hardening:
@@ -31,8 +62,13 @@ def hardening_of(material: Material) -> Hardening:
 
 
 def number(scene: Scene) -> float:
-    """Return the elastic peak pressure over that of first yield in the rod."""
-    return first_yield_ratio(scene, scene.projectile.material)
+    """Return the peak pressure over that of first yield in the rod."""
+    return first_yield_ratio(scene, scene.projectile.material, scene.barrier.material)
+
+
+def harm(scene: Scene) -> Harm:
+    """Return what is lost by a tip that stays elastic."""
+    return harm_of(number(scene), scene)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -44,7 +80,10 @@ EFFECT = Effect(
     "rod-plasticity",
     "The rod's tip yields (J2, hardening through yield and ultimate stress).",
     "The rod stays elastic.",
-    "elastic peak pressure over first yield of the rod",
+    "peak pressure over first yield of the rod, (v/v_yield)^0.4",
+    1.0,
+    SOURCE,
     number,
+    harm,
     fill,
 )

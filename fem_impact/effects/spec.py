@@ -20,6 +20,7 @@ class ModelSpec:
     friction : Coulomb coefficient f, or None for a frictionless contact
     rod_law, barrier_law : hardening of what may yield
     meshed_barrier : a block instead of the rigid plane
+    radiating : the block's outer boundary lets waves out
     gravity : acceleration, m/s2, or None
     turning_frame : the rod's linear part follows its rotation
     """
@@ -28,8 +29,17 @@ class ModelSpec:
     rod_law: Hardening | None = None
     barrier_law: Hardening | None = None
     meshed_barrier: bool = False
+    radiating: bool = False
     gravity: float | None = None
     turning_frame: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Harm:
+    """What leaving an effect out changes, about: e, and E_vib as a fraction of E_0."""
+
+    e: float
+    E_vib: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +52,10 @@ class Effect:
     sentence : what the user is told when it is on
     absence : what the user is told when it is off
     measure : name of the dimensionless number
+    threshold : number above which the effect is needed
+    source : where the number and its threshold come from
     number : computes it from a scene
+    harm : what a scene loses without the effect, computed from the scene
     fill : fills its slots
     """
 
@@ -50,5 +63,8 @@ class Effect:
     sentence: str
     absence: str
     measure: str
+    threshold: float
+    source: str
     number: Callable[[Scene], float]
+    harm: Callable[[Scene], Harm]
     fill: Callable[[Scene, ModelSpec], None]

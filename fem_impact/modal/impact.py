@@ -129,7 +129,7 @@ def reach(law: ContactLaw, energy: float) -> float:
 
 
 def _start(scene: Scene, rod: ModalRod) -> Start:
-    g = rigid.GRAVITY if "gravity" in scene.effects else 0.0
+    g = rigid.GRAVITY if "gravity" in scene.active else 0.0
     impact = scene.impact
     return Start(
         rod.mass,

@@ -17,6 +17,7 @@ REASONS = {
     "E_locked_barrier_over_E_0": "a local contact law knows no residual stress",
     "W_radiated_over_E_0": "a local contact law sends no waves into the barrier",
     "W_closing_over_E_0": "no contact nodes close",
+    "effect_choices": "effects are weighed for the finite elements; `fem-impact check` lists them",
     "W_damping_over_E_0": "no material damping is modelled",
     "E_hourglass_over_E_0": NOT_MESHED,
     **dict.fromkeys(

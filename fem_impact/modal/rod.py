@@ -51,7 +51,7 @@ def modal_rod(scene: Scene) -> ModalRod:
     body, alpha = projectile(scene), scene.impact.angle
     d_c, d_d = (float(d) for d in body.arms(alpha))
     radius = principal_radii(scene)[0]
-    omega, x, z = _touch(scene) if "vibration" in scene.effects else np.zeros((3, 0))
+    omega, x, z = _touch(scene) if "vibration" in scene.active else np.zeros((3, 0))
     along_t, along_n = cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
     return ModalRod(body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t, along_n)
 

@@ -13,7 +13,9 @@ SCHEMA_VERSION = 1
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
 
-Kind = Literal["number", "count", "flag", "text", "texts", "versions", "contacts", "bands", "reasons"]
+Kind = Literal[
+    "number", "count", "flag", "text", "texts", "versions", "contacts", "choices", "bands", "reasons"
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +71,7 @@ PROVENANCE = (
     _text("stopped_because", "Why the run ended, as a sentence."),
     _text("effects", "Names of the effects that were in the model.", "texts"),
     _text("assumptions", "Sentences on what the model leaves out or takes from elsewhere.", "texts"),
+    Key("effect_choices", "choices", "", "Each effect: number, threshold, verdict, harm, cost.", True),
     _text("validity", "Sentences on where the scene leaves the measured range.", "texts"),
     _text("warnings", "Sentences on what the reader should distrust.", "texts"),
 )

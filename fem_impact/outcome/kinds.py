@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from fem_impact.outcome.keys import Key, Kind
-from fem_impact.outcome.table import CONTACT_FIELDS, KEY_TABLE
+from fem_impact.outcome.table import CHOICE_FIELDS, CONTACT_FIELDS, KEY_TABLE
 
 __all__ = ["complaint"]
 
@@ -71,6 +71,13 @@ def _contact(value: Any) -> str | None:
     return None if value["start_s"] <= value["end_s"] else "has a contact that ends before it starts"
 
 
+def _choices(value: Any) -> str | None:
+    whole = isinstance(value, list) and all(
+        isinstance(item, dict) and set(item) == set(CHOICE_FIELDS) for item in value
+    )
+    return None if whole else f"must be a list of entries of exactly {', '.join(CHOICE_FIELDS)}"
+
+
 def _bands(value: Any) -> str | None:
     if not isinstance(value, dict):
         return "must map keys to half-widths"
@@ -100,6 +107,7 @@ _CHECKS: dict[Kind, Callable[[Any], str | None]] = {
     "texts": _texts,
     "versions": _versions,
     "contacts": _contacts,
+    "choices": _choices,
     "bands": _bands,
     "reasons": _reasons,
 }

@@ -10,6 +10,7 @@ from fem_impact.figures import partition_figure
 from fem_impact.figures.style import percent
 from fem_impact.outcome import ARMS, Outcome
 from fem_impact.output import make_directory, read_text
+from fem_impact.report.effects import effects_section
 from fem_impact.report.embed import picture
 from fem_impact.report.html import (
     Markup,
@@ -57,6 +58,7 @@ def run_page(folder: Path) -> str:
         _cards(outcome),
         notices([outcome]),
         section("Where the energy went", _partition(outcome, folder), key_table(outcome, ENERGY)),
+        effects_section(outcome),
         history_figures(outcome, folder),
         section("Contacts", contacts_table(outcome)),
         film_section(folder),

@@ -1,4 +1,8 @@
-"""The effects a scene can name, in the order in which they are written."""
+"""The effects a scene can name, in the order in which they are written and enter the model.
+
+A scene states either the list of its effects, or ``"auto"``: then each effect is chosen from the scene, but
+for those that a list with ``"auto"`` names (on) or names with a minus before it (off).
+"""
 
 from __future__ import annotations
 
@@ -7,63 +11,94 @@ from difflib import get_close_matches
 
 from fem_impact.errors import SceneError
 
-__all__ = ["BARRIERS", "NAMES", "check_effects"]
+__all__ = ["AUTO", "BARRIERS", "NAMES", "NEEDS", "check_effects"]
 
+AUTO = "auto"
 BARRIERS = ("barrier-rigid", "barrier-elastic", "barrier-elastoplastic")
-NAMES = ("vibration", "friction", "rod-plasticity", *BARRIERS, "gravity", "large-rotation")
-_REMEDY = f"Name the effects that the scene needs, out of: {', '.join(NAMES)}."
+NAMES = (
+    *("vibration", "friction", "rod-plasticity", *BARRIERS, "rate-hardening", "radiation"),
+    *("gravity", "large-rotation"),
+)
+# an effect that means nothing unless one of these is on
+NEEDS = {
+    "rate-hardening": ("rod-plasticity", "barrier-elastoplastic"),
+    "radiation": ("barrier-elastic", "barrier-elastoplastic"),
+}
+_REMEDY = (
+    f'Write "auto", ["auto", "NAME", "-NAME"], or the list of all effects wanted, out of: {", ".join(NAMES)}.'
+)
 
 
 def check_effects(effects: object) -> tuple[str, ...]:
-    """Return the named effects in their written order.
+    """Return the stated effects in their written order: forced ones behind ``"auto"``, off ones last.
 
     Raises
     ------
     SceneError
-        For ``"auto"``, an unknown or repeated name, no barrier or two, or no vibration.
+        For an unknown or repeated name, no barrier or two, no vibration, or an effect without what it needs.
     """
     names = _as_names(effects)
     for name in names:
-        _check_known(name)
-    if len(set(names)) < len(names):
+        _check_known(name, AUTO in names)
+    plain = [name.removeprefix("-") for name in names]
+    if len(set(plain)) < len(plain):
         raise SceneError("names an effect twice.", key="effects", value=list(names))
-    _check_barrier([name for name in names if name in BARRIERS])
-    if "vibration" not in names:
-        raise SceneError(
-            'leaves out "vibration": a rod that cannot vibrate (the rigid limit) is not available yet.',
-            key="effects",
-            value=list(names),
-            remedy='Add "vibration".',
-        )
-    return tuple(name for name in NAMES if name in names)
+    _check_barrier([name for name in names if name in BARRIERS], AUTO in names)
+    _check_vibration(names)
+    _check_needs(names)
+    order = (AUTO, *NAMES, *(f"-{name}" for name in NAMES))
+    return tuple(name for name in order if name in names)
 
 
 def _as_names(effects: object) -> tuple[str, ...]:
-    if effects == "auto":
-        raise SceneError(
-            "choosing the effects automatically is not available yet.",
-            key="effects",
-            value="auto",
-            remedy=_REMEDY,
-        )
+    if effects == AUTO:
+        return (AUTO,)
     if isinstance(effects, (str, bytes)) or not isinstance(effects, Iterable):
-        raise SceneError("must be a list of names.", key="effects", value=effects, remedy=_REMEDY)
+        raise SceneError('must be "auto" or a list of names.', key="effects", value=effects, remedy=_REMEDY)
     return tuple(effects)
 
 
-def _check_known(name: object) -> None:
-    if name in NAMES:
+def _check_known(name: object, auto: bool) -> None:
+    known = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
+    if name in known:
         return
-    near = get_close_matches(str(name), NAMES, 1)
+    near = get_close_matches(str(name), known, 1)
     hint = f'Did you mean "{near[0]}"?' if near else _REMEDY
+    if str(name).removeprefix("-") in BARRIERS:
+        hint = "There is always a barrier: name the one wanted."
     raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
 
 
-def _check_barrier(barriers: list[str]) -> None:
-    if len(barriers) != 1:
+def _check_barrier(barriers: list[str], auto: bool) -> None:
+    if len(barriers) > 1 or not (barriers or auto):
         raise SceneError(
             f"names {len(barriers)} barriers and needs exactly one.",
             key="effects",
             value=barriers,
             remedy=f"Choose one of {', '.join(BARRIERS)}.",
         )
+
+
+def _check_vibration(names: tuple[str, ...]) -> None:
+    if "-vibration" in names or not {AUTO, "vibration"} & set(names):
+        raise SceneError(
+            'leaves out "vibration": a rod that cannot vibrate (the rigid limit) is not available yet.',
+            key="effects",
+            value=list(names),
+            remedy='Add "vibration".',
+        )
+
+
+def _check_needs(names: tuple[str, ...]) -> None:
+    """Refuse a forced effect whose ground is named off, or not named in a list without auto."""
+    barrier = next((name for name in names if name in BARRIERS), None)
+    for name, needs in NEEDS.items():
+        gone = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
+        missing = gone if AUTO in names else [n for n in needs if n not in names]
+        if name in names and len(missing) == len(needs):
+            raise SceneError(
+                f'names "{name}", which means nothing without {" or ".join(needs)}.',
+                key="effects",
+                value=list(names),
+                remedy=f'Leave out "{name}", or add {" or ".join(needs)}.',
+            )

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
-from fem_impact.scene.effect_names import check_effects
+from fem_impact.scene.effect_names import AUTO, check_effects
 from fem_impact.scene.fields import Field
 from fem_impact.scene.types import Accuracy, Barrier, Impact, Material, Projectile, Save, Scene, Surface
 from fem_impact.scene.units import parse_number, parse_quantity
@@ -37,7 +37,7 @@ def read_scene(data: Table) -> Scene:
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
     _check_keys(data, _TOP)
-    effects = check_effects(_needed(data, "effects"))
+    effects = check_effects(data.get("effects", AUTO))
     return Scene(
         id=_needed(data, "id"),
         title=data.get("title", data["id"]),
@@ -58,7 +58,8 @@ def _restitution(data: Table) -> float | None:
 
 
 def _touches(data: Table, effects: tuple[str, ...]) -> bool:
-    return "surface" in data or "friction" in effects
+    named = "friction" in effects or (AUTO in effects and "-friction" not in effects)
+    return "surface" in data or named
 
 
 def _frictionless() -> Surface:

@@ -153,6 +153,7 @@ class Scene:
 
     ``measured`` names the published set it repeats, if any; ``restitution`` (energetic, 0 to 1) is what the
     rigid fidelity takes instead of Thornton's law.
+    ``effects`` is what was stated, with or without ``"auto"``; `active` is what the model has.
     """
 
     id: str
@@ -161,7 +162,7 @@ class Scene:
     barrier: Barrier
     surface: Surface
     impact: Impact
-    effects: tuple[str, ...]
+    effects: tuple[str, ...] = ("auto",)
     accuracy: Accuracy = Accuracy()
     save: Save = Save()
     measured: str | None = None
@@ -176,6 +177,13 @@ class Scene:
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
         _check_tip_size(self)
+
+    @property
+    def active(self) -> tuple[str, ...]:
+        """Names of the effects in the model: those that are listed, or those that ``auto`` chooses."""
+        from fem_impact.effects import active
+
+        return active(self)
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Scene:

@@ -72,7 +72,7 @@ def _steels(scene: Scene) -> str:
 
 def _surface(scene: Scene) -> str:
     known = library.surfaces().values()
-    if "friction" not in scene.effects or scene.surface in known:
+    if "friction" not in scene.active or scene.surface in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the committed value of a surface state ({source})"
@@ -80,5 +80,5 @@ def _surface(scene: Scene) -> str:
 
 def _idealised(scene: Scene) -> str:
     real = ("friction", "rod-plasticity", "barrier-elastoplastic")
-    missing = [name for name in real if name not in scene.effects]
+    missing = [name for name in real if name not in scene.active]
     return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""

@@ -246,7 +246,8 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])
         block, damping = _elastic_block(bodies[1], layout, x)
         forces.append(block)
-        impulses.append(_dashpots(damping, layout, inverse_mass))
+        if spec.radiating:
+            impulses.append(_dashpots(damping, layout, inverse_mass))
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])

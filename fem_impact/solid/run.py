@@ -6,7 +6,7 @@ import resource
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +26,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.observers import Frames, History, Meter, Watch
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.separation import Separation
+from fem_impact.solid.shares import run_time_shares
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 
@@ -56,6 +57,7 @@ class SolidResult:
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
     vibration_check : twice the mean vibrational kinetic energy over a half-period, J, or None
+    shares : share of the run time of the effects that have items of their own
     """
 
     scene: Scene
@@ -73,6 +75,7 @@ class SolidResult:
     reason: str
     cost: Cost
     warnings: tuple[str, ...]
+    shares: dict[str, float] = field(default_factory=dict)
 
 
 def solve(
@@ -118,7 +121,9 @@ def solve(
         cost=cost,
         warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model, skin),
     )
-    return replace(result, vibration_check=coast(model, view, state)) if stop.finished else result
+    if stop.finished:
+        result = replace(result, vibration_check=coast(model, view, state))
+    return replace(result, shares=run_time_shares(scene, model, state, cost.wall / max(state.step, 1)))
 
 
 def _warm_up(model: Model) -> None:

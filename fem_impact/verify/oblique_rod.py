@@ -78,8 +78,8 @@ def _checks(result: SolidResult, exact: ObliqueRebound) -> tuple[Check, ...]:
 
 def solve(p: Values) -> Solved:
     """Run the scene and the modal reference with the same barrier."""
-    barrier = "barrier-elastic" if p["elastic_barrier"] else "barrier-rigid"
-    effects = ("vibration", *(("friction",) if p["f"] else ()), barrier, "large-rotation")
+    barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
+    effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
     result = run_solid(scene)
     geometry = result.model.geometry

@@ -158,6 +158,7 @@ NUMBERS = {
 REASONS = {
     "W_damping_over_E_0": "no damping effect was in the model",
     "E_hourglass_over_E_0": "fully integrated elements have no hourglass motion",
+    "effect_choices": "made by hand",
     "bands": "one mesh only; a study at two tip sizes fills it",
 }
 

@@ -47,7 +47,14 @@ MISTAKES = [
     ("accuracy.tip_size", "-0.3 mm", ["at least 0.01 mm"]),
     ("accuracy.max_time", "2.5 mm", ["not a unit of time"]),
     ("save.frames", 10**30, ["save.frames", "at most 100000"]),
-    ("effects", "auto", ["effects", "not available yet", "vibration"]),
+    ("effects", ["auto", "auto"], ["twice"]),
+    ("effects", ["auto", "gravity", "-gravity"], ["twice"]),
+    ("effects", ["auto", "-gravty"], ["-gravty", 'Did you mean "-gravity"']),
+    ("effects", ["auto", "-barrier-rigid"], ["always a barrier"]),
+    ("effects", ["auto", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
+    ("effects", ["auto", "radiation", "barrier-rigid"], ["means nothing without", "barrier-elastic"]),
+    ("effects", ["vibration", "barrier-rigid", "rate-hardening"], ["means nothing", "rod-plasticity"]),
+    ("effects", ["vibration", "barrier-rigid", "-gravity"], ["-gravity", "is not an effect"]),
     ("effects", "vibration", ["list of names"]),
     ("effects", ["vibration", "frictoin", "barrier-rigid"], ["frictoin", 'Did you mean "friction"']),
     ("effects", ["vibration", "vibration", "barrier-rigid"], ["twice"]),
@@ -122,7 +129,7 @@ def test_a_name_with_a_zero_byte():
         Scene.from_toml("a\0b.toml")
 
 
-@pytest.mark.parametrize("key", ["id", "effects", "projectile", "barrier", "impact"])
+@pytest.mark.parametrize("key", ["id", "projectile", "barrier", "impact", "surface"])
 def test_a_missing_table_or_key_is_named(key):
     data = load("t5b").to_dict()
     del data[key]

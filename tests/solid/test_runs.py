@@ -32,7 +32,7 @@ from meshes import SKIN
 
 PLANE = ("vibration", "barrier-rigid")
 SLIDE = ("vibration", "friction", "barrier-elastic")
-YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation")
+YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "radiation", "large-rotation")
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,128 @@
+"""Which effects a scene calls for: each number against its threshold, and what the scene forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cache
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.effects.catalogue import EFFECTS
+from fem_impact.effects.spec import Harm
+from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, NEEDS
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+__all__ = ["Choice", "active", "choices", "neglected"]
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """What was decided about one effect.
+
+    Attributes
+    ----------
+    on : it is in the model; forced : because the scene says so, or out of it for that reason
+    needed : its number is above its threshold and what it needs is there
+    number : the dimensionless number; harm : what leaving it out changes
+    """
+
+    name: str
+    on: bool
+    forced: bool
+    needed: bool
+    number: float
+    harm: Harm
+
+    def told(self) -> dict[str, Any]:
+        """Return the choice as a flat record with its measure, threshold and sentence."""
+        effect = EFFECTS[self.name]
+        return {
+            "name": self.name,
+            "on": self.on,
+            "forced": self.forced,
+            "needed": self.needed,
+            "measure": effect.measure,
+            "number": self.number if isfinite(self.number) else None,
+            "threshold": effect.threshold,
+            "source": effect.source,
+            "change_of_e": self.harm.e,
+            "change_of_E_vib_over_E_0": self.harm.E_vib,
+            "sentence": effect.sentence if self.on else effect.absence,
+        }
+
+
+def active(scene: Scene) -> tuple[str, ...]:
+    """Return the effects in the model of a scene, in the order in which they enter it."""
+    if AUTO not in scene.effects:
+        return scene.effects
+    return tuple(choice.name for choice in choices(scene) if choice.on)
+
+
+@cache
+def choices(scene: Scene) -> tuple[Choice, ...]:
+    """Decide every effect of a scene."""
+    whole = everything(scene)
+    number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
+    needed = _grounded({name for name in NAMES if number[name] > EFFECTS[name].threshold})
+    on = _grounded(_chosen(scene, needed))
+    forced = {name for name in NAMES if _forced(name, scene)}
+    return tuple(
+        Choice(name, name in on, name in forced, name in needed, number[name], EFFECTS[name].harm(whole))
+        for name in NAMES
+    )
+
+
+def neglected(scene: Scene) -> tuple[str, ...]:
+    """Return a sentence for each effect that the scene forces off although it matters."""
+    barrier = next(BARRIERS.index(name) for name in scene.active if name in BARRIERS)
+    return tuple(
+        _warning(choice)
+        for choice in choices(scene)
+        if choice.needed and not choice.on and choice.name not in BARRIERS[: barrier + 1]
+    )
+
+
+def everything(scene: Scene) -> Scene:
+    """Return the scene with all effects on that it does not force off; one that lists them stays as it is."""
+    if AUTO not in scene.effects:
+        return scene
+    barrier = next((name for name in scene.effects if name in BARRIERS), BARRIERS[-1])
+    off = {name for name in NAMES if f"-{name}" in scene.effects}
+    wanted = set(NAMES) - set(BARRIERS) - off | {barrier}
+    return replace(scene, effects=tuple(_with_grounds(wanted)))
+
+
+def _chosen(scene: Scene, needed: set[str]) -> set[str]:
+    if AUTO not in scene.effects:
+        return set(scene.effects)
+    off = {name for name in NAMES if f"-{name}" in scene.effects}
+    wanted = (needed | set(scene.effects)) - off - {AUTO}
+    barrier = next((name for name in scene.effects if name in BARRIERS), None)
+    return wanted - set(BARRIERS) | {barrier or next(name for name in reversed(BARRIERS) if name in needed)}
+
+
+def _grounded(wanted: set[str]) -> set[str]:
+    """Keep the strongest barrier, a rigid one for want of others, and drop what has no ground."""
+    barrier = next((name for name in reversed(BARRIERS) if name in wanted), BARRIERS[0])
+    return set(_with_grounds(wanted - set(BARRIERS) | {barrier}))
+
+
+def _with_grounds(wanted: set[str]) -> list[str]:
+    return [n for n in NAMES if n in wanted and (n not in NEEDS or wanted & set(NEEDS[n]))]
+
+
+def _forced(name: str, scene: Scene) -> bool:
+    if AUTO not in scene.effects:
+        return True
+    barrier = name in BARRIERS and any(b in scene.effects for b in BARRIERS)
+    return barrier or name in scene.effects or f"-{name}" in scene.effects
+
+
+def _warning(choice: Choice) -> str:
+    effect, harm = EFFECTS[choice.name], choice.harm
+    return (
+        f"{choice.name} is left out by the scene although {effect.measure} is {choice.number:.2g}, above "
+        f"{effect.threshold:g}: e may be off by about {harm.e:.1g}, E_vib by {harm.E_vib:.1g} of E_0."
+    )

@@ -1,0 +1,39 @@
+"""Waves that leave through the outer boundary of a meshed barrier, by dashpots beside its springs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fem_impact.effects.spec import Effect, Harm, ModelSpec
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+
+def number(scene: Scene) -> float:
+    """Return the share of the normal energy that an elastic strike sends into a half-space."""
+    plate = scene.barrier.material
+    return float(1.127 * (abs(scene.impact.v_n) / (plate.E / plate.rho) ** 0.5) ** 0.6)
+
+
+def harm(scene: Scene) -> Harm:
+    """Return the radiated energy as lost restitution; the rod's vibration does not feel it."""
+    return Harm(number(scene), 0.0)
+
+
+def fill(scene: Scene, spec: ModelSpec) -> None:
+    """Let waves out."""
+    spec.radiating = True
+
+
+EFFECT = Effect(
+    "radiation",
+    "Waves leave the barrier block through its outer boundary.",
+    "Waves stay in the barrier block.",
+    "1.127 (v_n/c0)^0.6, radiated share of an elastic strike",
+    0.01,
+    "Hunter 1957, doi:10.1016/0022-5096(57)90002-9; a share w of the normal energy changes e by about w",
+    number,
+    harm,
+    fill,
+)

@@ -1,0 +1,63 @@
+"""What each effect costs: the items of a model timed by themselves after the run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.scene import BARRIERS
+from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
+from fem_impact.solid.frame import TurningFrame
+from fem_impact.solid.items import Account
+from fem_impact.solid.state import State
+from fem_impact.solid.yielding import YieldingZone
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+    from fem_impact.solid.model import Model
+
+REPEATS = 5
+SINGLE = {ElasticRod: "vibration", Weight: "gravity", Dashpots: "radiation"}
+
+
+def run_time_shares(scene: Scene, model: Model, state: State, step_time: float) -> dict[str, float]:
+    """Return the share of the mean step, ``step_time`` in s, that each effect's own items take.
+
+    Friction and rate hardening have no items of their own: they are in the contact's and the zones' time.
+    The state of the items is used up; call it last.
+    """
+    still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
+    shares: dict[str, float] = {}
+    barrier = next(name for name in scene.active if name in BARRIERS)
+    acts: list[tuple[Account, Callable[[State], None]]] = [(item, item.add_force) for item in model.forces]
+    acts += [(item, item.resolve) for item in model.impulses[:-1]]
+    for item, act in acts:
+        name = _effect(item, barrier)
+        shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / step_time
+    rod = model.forces[0]
+    if isinstance(rod, ElasticRod) and isinstance(rod.frame, TurningFrame):
+        n = len(rod.d)
+        turning = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
+        turning += _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
+        shares["large-rotation"] = turning / step_time
+        shares["vibration"] -= turning / step_time
+    return shares
+
+
+def _effect(item: Account, barrier: str) -> str:
+    if isinstance(item, YieldingZone):
+        return "rod-plasticity" if item.body == "rod" else barrier
+    return barrier if isinstance(item, ElasticBlock) else SINGLE[type(item)]
+
+
+def _shortest(act: Callable[[], object]) -> float:
+    times = []
+    for _ in range(REPEATS):
+        begun = perf_counter()
+        act()
+        times.append(perf_counter() - begun)
+    return float(np.min(times))
