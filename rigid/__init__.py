@@ -15,9 +15,10 @@ from .finite import FreeMotion, solve_free
 from .general import General
 from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
 from .massive import Motion, critical_ratio, phi, solve
+from .nose import SHAPES, Nose
 from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_path
 from .pinned import pinned_loss
-from .projectile import TIPS, Projectile
+from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
 from .uncertainty import Errors, Estimate, bootstrap, first_order
 from .worst import WorstCase, worst_case
@@ -26,7 +27,7 @@ __all__ = [
     "GRAVITY",
     "LIMIT",
     "LIMIT_MM",
-    "TIPS",
+    "SHAPES",
     "Arms",
     "Coefficients",
     "DataError",
@@ -38,6 +39,7 @@ __all__ = [
     "ImpactError",
     "Losses",
     "Motion",
+    "Nose",
     "PredictedLosses",
     "Projectile",
     "RigidError",

@@ -7,6 +7,7 @@ outward normal from the axis by `sweep`, then the tangent cone up to the rod's r
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,15 +102,16 @@ class Nose:
         return rho[()], z[()]
 
 
-def nose(tip: str, radius: float, r: float) -> Nose:
-    """Give the nose of a rod: tip "A" (spherical, then a cone), "B" (rounded edge) or "plain".
+SHAPES: dict[str, Callable[[float, float], Nose]] = {
+    # published only as a 7 mm hemispherical end on a 19 mm rod; that the sphere goes to 60 degrees and its
+    # tangent cone on to the rod's side is an assumption
+    "A": lambda radius, r: Nose(radius, 0.0, r, float(CONE)),
+    "B": lambda radius, r: Nose(radius, radius - r, r, np.pi / 2),
+    "plain": lambda radius, r: Nose(radius, radius, 0.0, np.pi / 2),
+}
+"""The tips by name: each makes a nose of the rod's radius and the tip's radius, m. Add yours here."""
 
-    Tip A is published only as a 7 mm hemispherical end on a 19 mm rod: the shoulder is not described.
-    Here the sphere goes to 60 degrees and its tangent cone on to the rod's side; this is an assumption.
-    """
-    shapes = {
-        "A": Nose(radius, 0.0, r, float(CONE)),
-        "B": Nose(radius, radius - r, r, np.pi / 2),
-        "plain": Nose(radius, radius, 0.0, np.pi / 2),
-    }
-    return shapes[tip]
+
+def nose(tip: str, radius: float, r: float) -> Nose:
+    """Give the nose of a rod of ``radius`` with the named tip of radius ``r``, m."""
+    return SHAPES[tip](radius, r)

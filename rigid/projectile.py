@@ -14,10 +14,8 @@ from numpy.typing import ArrayLike
 from .arms import Arms, corner_arms
 from .arrays import Floats, floats
 from .errors import ShapeError, refuse
-from .nose import Nose, nose
+from .nose import SHAPES, Nose, nose
 from .slenderness import slenderness
-
-TIPS = ("A", "B", "plain")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +26,7 @@ class Projectile:
     ----------
     length, diameter : float
         Overall, m.
-    tip : "A", "B" or "plain"
+    tip : "A", "B", "plain" or another name in `rigid.nose.SHAPES`
         A: spherical nose of `tip_radius` to 60 degrees from the pole, then its tangent cone (an
         assumption: the published profile stops at the sphere); B: flat face with a rounded edge of
         `tip_radius`; plain: flat face, sharp edge.
@@ -125,8 +123,8 @@ def _check(rod: Projectile) -> None:
         value = getattr(rod, name)
         if not (math.isfinite(value) and value > 0):
             raise ShapeError(f"{name} must be positive and finite, got {value}")
-    if rod.tip not in TIPS:
-        raise ShapeError(f"tip must be one of {', '.join(TIPS)}, got {rod.tip!r}")
+    if rod.tip not in SHAPES:
+        raise ShapeError(f"tip must be one of {', '.join(SHAPES)}, got {rod.tip!r}")
     if rod.tip == "plain" and rod.tip_radius != 0:
         raise ShapeError(f"a plain tip has a sharp edge: tip_radius must be 0, got {rod.tip_radius}")
     if rod.tip != "plain" and not 0 < rod.tip_radius <= rod.diameter / 2:

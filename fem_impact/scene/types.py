@@ -59,17 +59,17 @@ class Material:
 
 @dataclass(frozen=True, slots=True)
 class Projectile:
-    """The rod: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain."""
+    """The rod: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge), plain or added."""
 
     length: float
     diameter: float
-    tip: Literal["A", "B", "plain"]
+    tip: str
     tip_radius: float
     material: Material
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.PROJECTILE)
-        check_choice(self.tip, ("A", "B", "plain"), "tip")
+        _check_tip_name(self.tip)
         _check_tip(self)
         if self.length < self.diameter:
             raise SceneError(
@@ -224,6 +224,14 @@ class Scene:
         return replace(self, key, value)
 
 
+def _check_tip_name(tip: str) -> None:
+    if tip in ("A", "B", "plain"):
+        return  # the published ones need no import of the rigid package, which would slow every command
+    from rigid import SHAPES
+
+    check_choice(tip, tuple(SHAPES), "tip")
+
+
 def _check_tip(rod: Projectile) -> None:
     if rod.tip_radius > rod.diameter / 2:
         raise SceneError(
@@ -234,7 +242,7 @@ def _check_tip(rod: Projectile) -> None:
         )
     if (rod.tip == "plain") != (rod.tip_radius == 0.0):
         raise SceneError(
-            f'does not fit tip "{rod.tip}": a plain tip has radius 0, tips A and B have a radius above 0.',
+            f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
             key="tip_radius",
             value=f"{rod.tip_radius * 1e3:g} mm",
             remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Literal
 
 from fem_impact.scene import Material, Scene, load
 from fem_impact.verify.problem import Values
@@ -11,7 +10,7 @@ from fem_impact.verify.problem import Values
 __all__ = ["rod_scene"]
 
 
-def rod_scene(p: Values, effects: tuple[str, ...], tip: Literal["A", "B", "plain"] = "B") -> Scene:
+def rod_scene(p: Values, effects: tuple[str, ...], tip: str = "B") -> Scene:
     """Return a scene from parameters; absent ones take the values of a frictionless drop.
 
     Used are length, diameter, tip_radius, E, nu, rho, barrier_E, angle, v_n, v_t (approach speeds above 0),
