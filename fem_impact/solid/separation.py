@@ -17,15 +17,16 @@ Array = NDArray[np.float64]
 
 HORIZON = 4e-3  # s, the camera's window: 40 frames at 10 kHz
 SAMPLES = 2000
-QUIET = 3e-6  # s without touch before it is worth asking
+QUIET = 20e-6  # s without touch before it is worth asking: waves cross the block a few times
 
 
 @dataclass(slots=True)
 class Separation:
     """Stops the run at the last separation.
 
-    The rod must have left the crater (its lowest node is above the barrier's highest) and its free
-    flight, rigid drift plus all modes, must keep it there for the horizon.
+    The free flight, rigid drift plus all modes, must keep every node of the tip above the barrier for the
+    horizon. As long as some are lower than the barrier's highest node, the flown tip is held against the
+    barrier's surface, crater and all, node by node.
     """
 
     model: Model
@@ -45,23 +46,37 @@ class Separation:
         book = self.model.book
         if not book.intervals or book.touching or state.time - book.last_touch < QUIET:
             return False
-        top = self._top(state)
-        if state.x[self.view.tip[:, 2]].min() <= top or not self._stays_away(state, top):
+        if not self._stays_away(state):
             return False
         self.finished = True
         self.reason = f"The free flight of the next {HORIZON * 1e3:g} ms has no further contact."
         return True
 
-    def _top(self, state: State) -> float:
-        contact = self.model.impulses[-1]
-        if isinstance(contact, SurfaceContact):
-            return max(0.0, float(state.x[contact.barrier.places[:, 2]].max()))
-        return 0.0
-
-    def _stays_away(self, state: State, top: float) -> bool:
+    def _stays_away(self, state: State) -> bool:
         motion, ahead = self.view.rigid(state), self.view.flight(state, self.model)
-        t = np.linspace(0.0, HORIZON, SAMPLES)
-        return bool(flight_heights(state.x[self.view.tip], self.view.tip[:, 2], motion, ahead, t).min() > top)
+        contact, t = self.model.impulses[-1], np.linspace(0.0, HORIZON, SAMPLES)
+        lowest = flight_heights(state.x[self.view.tip], self.view.tip[:, 2], motion, ahead, t).min(axis=0)
+        if not isinstance(contact, SurfaceContact):
+            return bool(lowest.min() > 0.0)
+        surface = contact.barrier.places[:, 2]
+        # the barrier may go on for a while at its present speed
+        margin = QUIET * float(np.abs(state.v[surface]).max())
+        deep = t[lowest <= max(0.0, float(state.x[surface].max())) + margin]
+        return all(
+            contact.clearance(flown(state.x, contact.rod.places, motion, ahead, s)) > margin for s in deep
+        )
+
+
+def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: Flight, t: float) -> Array:
+    """Return a copy of positions ``x`` in which nodes ``places`` (k, 3) flew on freely for a time, s."""
+    moved, now = x.copy(), np.zeros(1)
+    c, s, drift = np.cos(motion.Omega * t), np.sin(motion.Omega * t), (motion.V_t * t, 0.0, motion.V_n * t)
+    arm = x[places] - motion.centre
+    turned = np.stack([c * arm[:, 0] + s * arm[:, 2], arm[:, 1], c * arm[:, 2] - s * arm[:, 0]], axis=1)
+    rows = places.ravel()
+    shake = ahead.displacement(rows, now + t) - ahead.displacement(rows, now)
+    moved[places] = motion.centre + drift + turned + shake.reshape(-1, 3)
+    return moved
 
 
 def flight_heights(x: Array, rows: NDArray[np.int64], motion: RigidMotion, ahead: Flight, t: Array) -> Array:

@@ -13,8 +13,9 @@ from fem_impact.errors import RunError
 from fem_impact.markers import WINDOW, lever_of, replay
 from fem_impact.modes import RigidMotion
 from fem_impact.reduce import reduce
+from fem_impact.solid.build import START_GAP
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.solid.separation import Separation, flight_heights
+from fem_impact.solid.separation import Separation, flight_heights, flown
 from fem_impact.solid.stable import gradient_squares
 from fem_impact.solid.stepguard import StepGuard
 
@@ -144,6 +145,63 @@ def test_gradients_of_a_cube():
     exact = 3 * sum((1 + s * g) ** 2 * (1 + t * g) ** 2 / 16 for s in (-1, 1) for t in (-1, 1)) * 2
     assert one == pytest.approx(exact)
     assert np.isnan(gradient_squares(corners.ravel(), places[:, [1, 0, 3, 2, 5, 4, 7, 6]]))[0]
+
+
+# ---------------------------------------------------------------- leaving a crater
+
+
+def _in_crater(V_n, V_t, swing=0.0):
+    """Rod 40 um deep in a dent of the barrier, 50 um deep and steep-walled, with a made-up flight."""
+    model = scenes.model("vibration", "friction", "barrier-elastic", length=0.08)
+    state, contact = model.initial_state(), model.impulses[-1]
+    heights = contact.barrier.places[:, 2]
+    radius = np.hypot(state.x[contact.barrier.places[:, 0]], state.x[contact.barrier.places[:, 1]])
+    state.x[heights[radius < 2.2e-3]] -= 50e-6
+    state.x[model.layout.rod[:, 2]] -= 40e-6 + START_GAP
+    state.time = 1.5e-4
+    model.book.step[:] = 1.0
+    model.book.close_step(1e-4)
+    model.book.step[:] = 0.0
+    motion = RigidMotion(1.0, 1.0, np.array([0.0, 0.0, 0.04]), V_n, V_t, 0.0)
+
+    def displacement(rows, t):
+        up = (rows % 3 == contact.rod.places[0, 2] % 3)[:, None]
+        return np.where(up, swing * (np.cos(2 * pi * 1e4 * t) - 1), 0.0)
+
+    ahead = SimpleNamespace(displacement=displacement)
+    tip = contact.rod.places[np.argsort(state.x[contact.rod.places[:, 2]])[:20]]
+    view = SimpleNamespace(tip=tip, rigid=lambda s: motion, flight=lambda s, m: ahead)
+    return model, state, Separation(model, view, limit=1e-3)
+
+
+def test_clearance_is_the_height_between_the_surfaces():
+    model, state, _ = _in_crater(0.5, 0.0)
+    assert model.impulses[-1].clearance(state.x) == pytest.approx(10e-6, abs=1e-9)
+    assert model.impulses[-1].clearance(model.start[0]) == pytest.approx(START_GAP, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("V_n", "V_t", "swing", "over"),
+    [(0.5, 0.0, 0.0, True), (0.5, -60.0, 0.0, False), (0.5, 0.0, 50e-6, False), (-0.1, 0.0, 0.0, False)],
+    ids=["rises", "runs into the rim", "swings down", "sinks"],
+)
+def test_a_rod_may_leave_its_crater_in_flight(V_n, V_t, swing, over):
+    _, state, rule = _in_crater(V_n, V_t, swing)
+    assert rule.observe(state) is over
+
+
+def test_flown_nodes_are_at_the_heights_of_the_flight():
+    _, state, rule = _in_crater(0.5, -2.0)
+    motion = replace(rule.view.rigid(state), Omega=30.0)
+    still = SimpleNamespace(displacement=lambda rows, t: np.full((len(rows), len(t)), 3e-6 * t[0]))
+    x, tip, t = state.x, rule.view.tip, 1e-3
+    moved = flown(x, tip, motion, still, t)
+    heights = flight_heights(x[tip], tip[:, 2], motion, still, np.array([t]))[:, 0]
+    assert moved[tip][:, 2] == pytest.approx(heights, abs=1e-8)
+    arm = x[tip] - motion.centre
+    assert moved[tip][:, 0] == pytest.approx(-2e-3 + cos(0.03) * arm[:, 0] + sin(0.03) * arm[:, 2], abs=1e-8)
+    others = np.setdiff1d(np.arange(len(x)), tip)
+    assert np.array_equal(moved[others], x[others])
 
 
 # ---------------------------------------------------------------- markers

@@ -25,18 +25,19 @@ def test_step_is_that_of_the_largest_frequency():
     assert stable_step(csr_matrix(K), inverse) == found
 
 
-@pytest.mark.parametrize("squeeze", [0.8, 0.5])
+@pytest.mark.parametrize("squeeze", [0.5, 0.3])
 def test_guard_stays_below_the_limit_of_a_squeezed_tip(squeeze):
     """Part of the zone is flattened: the guard must shorten the step at least as much as the truth."""
     model = scenes.model("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
     state, guard = model.initial_state(), StepGuard(model)
     mesh, layout = model.geometry.rod.mesh, model.layout
     x = state.x[layout.rod]
-    low = x[:, 2] < 0.8e-3
+    low = x[:, 2] < 2.4e-3
     x[low, 2] *= squeeze
     state.x[layout.rod] = x
     guard.observe(state)
     T = tie_operator(mesh.tie, layout.rod, layout.rod_size)
     K = assemble(element_stiffness(x, mesh.cells, C, "bbar"), mesh.cells, T)
     true = stable_step(K, model.inverse_mass[: layout.rod_size])
-    assert squeeze * 0.6 * model.step < state.dt_next < true * 1.002
+    assert true < 0.9 * model.step
+    assert squeeze * 0.5 * model.step < state.dt_next < true * 1.002

@@ -104,3 +104,19 @@ def vertex_normals(x, places, quads, mirrored, normals):  # type: ignore[no-unty
             normals[i, 1] = 0.0
         length = np.sqrt(normals[i, 0] ** 2 + normals[i, 1] ** 2 + normals[i, 2] ** 2)
         normals[i] /= length
+
+
+@kernel
+def lowest_gap(x, nodes, surface, last, sign):  # type: ignore[no-untyped-def]
+    """Return the smallest height of nodes (k, 3) over a surface (``sign`` 1) or under it (-1); else inf."""
+    gap = np.inf
+    for i in range(len(nodes)):
+        t, b, n = x[nodes[i, 0]], x[nodes[i, 1]], x[nodes[i, 2]]
+        q, xi, eta = locate(x, surface.places, surface.quads, surface.neighbours, max(last[i], 0), t, b)
+        if q < 0:
+            continue
+        w, height = bilinear(xi, eta), 0.0
+        for a in range(4):
+            height += w[a] * x[surface.places[surface.quads[q, a], 2]]
+        gap = min(gap, sign * (n - height))
+    return gap

@@ -23,7 +23,7 @@ from fem_impact.solid.contact.points import (
     make_points,
     rod_over_barrier,
 )
-from fem_impact.solid.contact.search import vertex_normals
+from fem_impact.solid.contact.search import lowest_gap, vertex_normals
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 
@@ -83,6 +83,12 @@ class SurfaceContact:
             )
         book_work(count, motion, c, record)
         self.book.close_step(state.time)
+
+    def clearance(self, x: Array) -> float:
+        """Return the smallest height, m, of one patch over the other at positions ``x`` (inf: none is)."""
+        rod, barrier, first = self.rod, self.barrier, len(self.rod.places)
+        over = lowest_gap(x, rod.places, barrier, self.last[:first].copy(), 1.0)
+        return float(min(over, lowest_gap(x, barrier.places, rod, self.last[first:].copy(), -1.0)))
 
     def accounts(self, state: State) -> Accounts:
         """Return friction heat and closing loss."""
