@@ -24,6 +24,7 @@ from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, evaluate, march
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import Frames, History, Meter, Watch
+from fem_impact.solid.peak import PeakForce
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.separation import Separation
 from fem_impact.solid.shares import run_time_shares
@@ -56,6 +57,7 @@ class SolidResult:
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
+    peak_force : largest normal force on the whole rod, N, mean over 2 us
     vibration_check : twice the mean vibrational kinetic energy over a half-period, J, or None
     shares : share of the run time of the effects that have items of their own
     """
@@ -70,6 +72,7 @@ class SolidResult:
     worst: float
     motion: RigidMotion
     flight: Flight
+    peak_force: float
     vibration_check: float | None
     finished: bool
     reason: str
@@ -88,8 +91,8 @@ def solve(
     guard, stop = StepGuard(model), Separation(model, view, scene.accuracy.max_time)
     frames = _frames(scene, model, view, out)
     history = _history(scene, model, view, watch, out)
-    skin = SkinWatch(model)
-    observers: list[Observer] = [guard, watch, *history, *frames, skin, stop]
+    skin, peak = SkinWatch(model), PeakForce(model.book)
+    observers: list[Observer] = [guard, watch, *history, *frames, skin, peak, stop]
     if progress is not None:
         observers.append(Meter(progress, watch, model, scene.accuracy.max_time, scene.id))
     if progress is not None and not compiled_before():
@@ -115,6 +118,7 @@ def solve(
         worst=watch.ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
+        peak_force=peak.largest,
         vibration_check=None,
         finished=stop.finished,
         reason=stop.reason,
