@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from fem_impact.scene import Scene
     from fem_impact.solid.run import SolidResult
 
+VIBRATING = ("E_vib_over_E_0", "E_vib_floor_over_E_0", "E_vib_below_floor", "E_vib_check_over_E_0")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 
 
@@ -37,6 +38,8 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     }
     if result.vibration_check is None:
         reasons["E_vib_check_over_E_0"] = "the run ended before the last separation was certain"
+    if "vibration" not in scene.active:
+        reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
     return Outcome(values, {k: v for k, v in reasons.items() if values.get(k) is None})
 
 
@@ -73,10 +76,14 @@ def _energies(result: SolidResult, values: Values) -> Values:
         "W_closing": a["closing"],
         "residual": a["residual"],
     }
+    if result.model.rod_stiffness is None:
+        shares["E_locked_rod"] += a["kinetic_rod"] - result.motion.kinetic  # the nose rings a little
+        del shares["E_vib"], shares["E_vib_floor"]
     found: Values = {f"{name}_over_E_0": float(value / E_0) for name, value in shares.items()}
     check = result.vibration_check
     found["E_vib_check_over_E_0"] = None if check is None else check / E_0
-    return found | {"E_0_J": E_0, "E_vib_below_floor": bool(vibration < floor)}
+    below = None if result.model.rod_stiffness is None else bool(vibration < floor)
+    return found | {"E_0_J": E_0, "E_vib_below_floor": below}
 
 
 def _markers(result: SolidResult, values: Values) -> Values:

@@ -1,6 +1,7 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
 
 from meshes.block import block
+from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
@@ -31,5 +32,6 @@ __all__ = [
     "step_bound",
     "step_limit",
     "volume",
+    "without_slices",
     "write",
 ]

@@ -13,10 +13,11 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class ModelSpec:
-    """What the model is made of, beyond an elastic rod on a rigid frictionless plane.
+    """What the model is made of, beyond a rod with an elastic nose on a rigid frictionless plane.
 
     Attributes
     ----------
+    vibrating : the body behind the nose is elastic
     friction : Coulomb coefficient f, or None for a frictionless contact
     rod_law, barrier_law : hardening of what may yield
     meshed_barrier : a block instead of the rigid plane
@@ -25,6 +26,7 @@ class ModelSpec:
     turning_frame : the rod's linear part follows its rotation
     """
 
+    vibrating: bool = False
     friction: float | None = None
     rod_law: Hardening | None = None
     barrier_law: Hardening | None = None

@@ -1,4 +1,8 @@
-"""Elastic vibration of the rod: waves and bending."""
+"""Elastic vibration of the rod: waves and bending.
+
+Off is the limit of a rod that is rigid but for its contact: the nose, about the first half diameter with the
+whole contact in it, deforms (and yields) as before, and the slices behind it become one rigid body.
+"""
 
 from __future__ import annotations
 
@@ -72,13 +76,14 @@ def harm(scene: Scene) -> Harm:
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Need no slot: the elastic rod is the model's base."""
+    """Let the body behind the nose deform."""
+    spec.vibrating = True
 
 
 EFFECT = Effect(
     "vibration",
     "The rod is elastic: longitudinal and bending waves take energy that rigid theory cannot see.",
-    "The rod is rigid but for its contact.",
+    "The rod is rigid behind its nose, which alone deforms.",
     "T1/tau, longest period of the rod over contact time",
     0.2,
     "a half-sine pulse leaves ((2 tau/T1)^2 - 1)^-2 = 1e-4 of the energy that a blow gives",

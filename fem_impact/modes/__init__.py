@@ -1,6 +1,6 @@
 """Free-free modes of the meshed rod: eigenproblem, projection of a motion, exact free flight."""
 
-from fem_impact.modes.eigen import RodModes, rod_modes
+from fem_impact.modes.eigen import RodModes, no_modes, rod_modes
 from fem_impact.modes.motion import Flight, RigidMotion, flight, rigid_motion
 
-__all__ = ["Flight", "RigidMotion", "RodModes", "flight", "rigid_motion", "rod_modes"]
+__all__ = ["Flight", "RigidMotion", "RodModes", "flight", "no_modes", "rigid_motion", "rod_modes"]

@@ -36,6 +36,11 @@ class RodModes:
         return self.omega / (2 * np.pi)
 
 
+def no_modes(mass: Array) -> RodModes:
+    """Return the modes of a body that cannot vibrate: none."""
+    return RodModes(np.zeros(0), np.zeros((len(mass), 0)), mass)
+
+
 def rod_modes(
     stiffness: sp.csr_matrix, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
 ) -> RodModes:

@@ -35,7 +35,7 @@ def check_effects(effects: object) -> tuple[str, ...]:
     Raises
     ------
     SceneError
-        For an unknown or repeated name, no barrier or two, no vibration, or an effect without what it needs.
+        For an unknown or repeated name, no barrier or two, or an effect without what it needs.
     """
     names = _as_names(effects)
     for name in names:
@@ -44,7 +44,6 @@ def check_effects(effects: object) -> tuple[str, ...]:
     if len(set(plain)) < len(plain):
         raise SceneError("names an effect twice.", key="effects", value=list(names))
     _check_barrier([name for name in names if name in BARRIERS], AUTO in names)
-    _check_vibration(names)
     _check_needs(names)
     order = (AUTO, *NAMES, *(f"-{name}" for name in NAMES))
     return tuple(name for name in order if name in names)
@@ -76,16 +75,6 @@ def _check_barrier(barriers: list[str], auto: bool) -> None:
             key="effects",
             value=barriers,
             remedy=f"Choose one of {', '.join(BARRIERS)}.",
-        )
-
-
-def _check_vibration(names: tuple[str, ...]) -> None:
-    if "-vibration" in names or not {AUTO, "vibration"} & set(names):
-        raise SceneError(
-            'leaves out "vibration": a rod that cannot vibrate (the rigid limit) is not available yet.',
-            key="effects",
-            value=list(names),
-            remedy='Add "vibration".',
         )
 
 

@@ -22,6 +22,7 @@ from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.model import Model
+from fem_impact.solid.rigid_rest import POINTS, ElasticNose, RigidRest, rest_mass
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.solid.stable import stable_step
@@ -74,7 +75,7 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     fine = geometry.levels > 0
     yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
     found = [_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
-    _complete_mass(found[0], geometry, scene)
+    _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
     if barrier is not None:
         yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
         found.append(
@@ -83,12 +84,17 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     return found
 
 
-def _complete_mass(rod: Body, geometry: Geometry, scene: Scene) -> None:
+def _complete_mass(rod: Body, geometry: Geometry, scene: Scene, rest: float) -> None:
     """Give the nose's cells what their flat faces cut off the round skin: the true mass of the rod."""
     nose = np.ones(len(rod.mass), dtype=bool)
     nose[geometry.rod.body_cells] = False
-    missing = projectile(scene).mass / 2 - rod.mass.sum()
+    missing = projectile(scene).mass / 2 - rod.mass.sum() - rest
     rod.mass[nose] *= 1 + missing / rod.mass[nose].sum()
+
+
+def _rest_mass(scene: Scene, geometry: Geometry) -> float:
+    rod = scene.projectile
+    return rest_mass(geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
 
 
 def _masses(bodies: list[Body], layout: Layout) -> Array:
@@ -124,17 +130,25 @@ def _start(bodies: list[Body], layout: Layout, scene: Scene, mass: Array) -> tup
 
 
 def _elastic_rod(
-    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, turning: bool
-) -> ElasticRod:
+    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, spec: ModelSpec
+) -> ElasticRod | ElasticNose:
     rod, n = geometry.rod, layout.rod_size
-    slices = SliceOperator.of_rod(rod, body.stiffness)
     linear = ~body.yields
     linear[rod.body_cells] = False
     T = tie_operator(body.mesh.tie, body.places, n)
     free = body.places[~body.mesh.is_hanging]
     nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), free)
-    frame = TurningFrame.at(x[:n], mass[:n], free) if turning else FixedFrame(x[:n].copy())
+    frame = TurningFrame.at(x[:n], mass[:n], free) if spec.turning_frame else FixedFrame(x[:n].copy())
+    if not spec.vibrating:
+        return ElasticNose(nose, frame, np.zeros(n), np.zeros(n))
+    slices = SliceOperator.of_rod(rod, body.stiffness)
     return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
+
+
+def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
+    """Return the rigid body behind the nose: the nose's last section and the points behind it."""
+    places = np.concatenate([layout.rod[geometry.rod.body_nodes[:, 0]], layout.rod[-POINTS:]])
+    return RigidRest(places, mass[places[:, 0]])
 
 
 def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, Array]:
@@ -182,7 +196,10 @@ def _contact(
 ) -> PlaneContact | SurfaceContact:
     f = spec.friction or 0.0
     if len(bodies) == 1:
-        return PlaneContact(bodies[0].places[bodies[0].mesh.free_skin], inverse_mass, f)
+        skin = geometry.rod.mesh.free_skin
+        if not spec.vibrating:  # the rigid section takes no contact
+            skin = np.setdiff1d(skin, geometry.rod.body_nodes)
+        return PlaneContact(bodies[0].places[skin], inverse_mass, f)
     rod, barrier = (make_patch(_skin(body, geometry), body.places, body.points) for body in bodies)
     return SurfaceContact.of(rod, barrier, inverse_mass, f, BAND * geometry.tip_size, x)
 
@@ -223,15 +240,17 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
     require_fine_zone(scene, spec)
-    geometry = build_geometry(scene, START_GAP, spec.meshed_barrier)
+    geometry = build_geometry(scene, START_GAP, spec.meshed_barrier, spec.vibrating)
     layout = number(geometry.rod, geometry.barrier)
     bodies = _bodies(scene, spec, geometry, layout)
     mass = _masses(bodies, layout)
+    if not spec.vibrating:
+        mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
     inverse_mass = _inverse(mass, bodies)
     x, v = _start(bodies, layout, scene, mass)
     rod = bodies[0]
-    forces: list[Force] = [_elastic_rod(rod, geometry, layout, mass, x, spec.turning_frame)]
-    impulses: list[Impulse] = []
+    forces: list[Force] = [_elastic_rod(rod, geometry, layout, mass, x, spec)]
+    impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
     zones = [
         _zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law
     ]
@@ -261,7 +280,7 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         hanging=hanging,
         zones=zones,
         book=contact.book,
-        rod_stiffness=rod_stiffness,
+        rod_stiffness=rod_stiffness if spec.vibrating else None,
         steps=steps,
         start=(x, v),
     )

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.estimates import ContactEstimate, contact_estimate, projectile
+from fem_impact.solid.rigid_rest import rest_points
 from meshes import HexMesh, RodMesh, Zone
 
 if TYPE_CHECKING:
@@ -60,8 +61,8 @@ def half_widths(size: ContactEstimate, h: float) -> tuple[float, float, float]:
     return max(ALONG * size.a_t, FEWEST * h), max(AROUND * size.a_b, FEWEST * h), max(depth, FEWEST * h)
 
 
-def build_geometry(scene: Scene, gap: float, meshed_barrier: bool) -> Geometry:
-    """Mesh the rod and, if wanted, the barrier block under it."""
+def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bool = True) -> Geometry:
+    """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
     body, alpha = projectile(scene), scene.impact.angle
     levels = levels_of(scene)
     h = body.diameter / scene.accuracy.across / 2**levels
@@ -71,6 +72,8 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool) -> Geometry:
     lowest = np.array([float(rho), 0.0, float(z)])
     zone = Zone(lowest, turn, np.array([-t, 0.0, -h]), np.array([t, b, n]))
     rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+    if not vibrating:
+        rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap - points[:, 2].min()
     barrier = _block(scene, h * 2**levels, levels, (t, b, n)) if meshed_barrier else None

@@ -34,7 +34,8 @@ class Model:
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
-    rod_stiffness : (n, n) elastic stiffness of the whole half rod over its free unknowns, N/m
+    rod_stiffness : (n, n) elastic stiffness of the whole half rod over its free unknowns, N/m; None for a
+        rod that cannot vibrate
     steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
     """
@@ -48,7 +49,7 @@ class Model:
     hanging: Hanging
     zones: Sequence[YieldingZone]
     book: ContactBook
-    rod_stiffness: sp.csr_matrix
+    rod_stiffness: sp.csr_matrix | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
 

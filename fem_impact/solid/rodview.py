@@ -8,7 +8,7 @@ from math import cos, sin
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.modes import Flight, RigidMotion, RodModes, flight, rigid_motion, rod_modes
+from fem_impact.modes import Flight, RigidMotion, RodModes, flight, no_modes, rigid_motion, rod_modes
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
@@ -27,7 +27,7 @@ class RodView:
     places : (n, 3) unknowns of the rod's free nodes; mass : (n,) kg of the half rod
     size : length of the rod's part of the flat vectors
     tip : (k, 3) unknowns of the skin nodes that may touch
-    modes : free-free modes of the undeformed rod
+    modes : free-free modes of the undeformed rod, none of one that cannot vibrate
     """
 
     places: Ints
@@ -41,7 +41,8 @@ class RodView:
         """Compute the modes and pick the tip nodes."""
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
-        modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0)
+        K, mass = model.rod_stiffness, model.mass[:n]
+        modes = no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0)
         skin = mesh.free_skin
         low = skin[np.argsort(model.geometry.rod_points[skin, 2])[:TIP_NODES]]
         return cls(places, model.mass[places[:, 0]], n, model.layout.rod[low], modes)

@@ -125,7 +125,7 @@ def solve(
         cost=cost,
         warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model, skin),
     )
-    if stop.finished:
+    if stop.finished and model.rod_stiffness is not None:
         result = replace(result, vibration_check=coast(model, view, state))
     return replace(result, shares=run_time_shares(scene, model, state, cost.wall / max(state.step, 1)))
 

@@ -13,6 +13,7 @@ from fem_impact.scene import BARRIERS
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import TurningFrame
 from fem_impact.solid.items import Account
+from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
 
@@ -21,7 +22,13 @@ if TYPE_CHECKING:
     from fem_impact.solid.model import Model
 
 REPEATS = 5
-SINGLE = {ElasticRod: "vibration", Weight: "gravity", Dashpots: "radiation"}
+SINGLE = {
+    ElasticRod: "vibration",
+    ElasticNose: "nose",
+    RigidRest: "nose",
+    Weight: "gravity",
+    Dashpots: "radiation",
+}
 
 
 def run_time_shares(scene: Scene, model: Model, state: State, step_time: float) -> dict[str, float]:
@@ -39,12 +46,12 @@ def run_time_shares(scene: Scene, model: Model, state: State, step_time: float) 
         name = _effect(item, barrier)
         shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / step_time
     rod = model.forces[0]
-    if isinstance(rod, ElasticRod) and isinstance(rod.frame, TurningFrame):
+    if isinstance(rod, ElasticRod | ElasticNose) and isinstance(rod.frame, TurningFrame):
         n = len(rod.d)
         turning = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
         turning += _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
         shares["large-rotation"] = turning / step_time
-        shares["vibration"] -= turning / step_time
+        shares[SINGLE[type(rod)]] -= turning / step_time
     return shares
 
 

@@ -60,7 +60,6 @@ MISTAKES = [
     ("effects", ["vibration", "vibration", "barrier-rigid"], ["twice"]),
     ("effects", ["vibration"], ["0 barriers", "barrier-elastic"]),
     ("effects", ["vibration", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
-    ("effects", ["friction", "barrier-rigid"], ["vibrate", 'Add "vibration"']),
     ("effects", [["vibration"]], ["is not an effect"]),
     ("measured", "t7", ["measured", '"t2"']),
     ("id", "../../etc", ["id", "directory"]),

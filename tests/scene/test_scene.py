@@ -26,7 +26,7 @@ from fem_impact.scene import (
 )
 
 STEELS = st.sampled_from(list(materials().values()))
-OPTIONAL = ("friction", "rod-plasticity", "gravity", "large-rotation")
+OPTIONAL = ("vibration", "friction", "rod-plasticity", "gravity", "large-rotation")
 
 
 @st.composite
@@ -37,7 +37,7 @@ def scenes(draw):
     rod = Projectile(diameter * draw(st.floats(1.0, 20.0)), diameter, tip, radius, draw(STEELS))
     angle = draw(st.floats(0.0, math.pi / 2, exclude_max=True))
     speed = st.floats(-300.0, -1e-6)
-    listed = ("vibration", draw(st.sampled_from(BARRIERS)), *draw(st.sets(st.sampled_from(OPTIONAL))))
+    listed = (draw(st.sampled_from(BARRIERS)), *draw(st.sets(st.sampled_from(OPTIONAL))))
     effects = draw(st.sampled_from([listed, ("auto",), ("auto", "barrier-elastic", "-gravity")]))
     custom = st.floats(0.0, 3.0).map(lambda f: Surface("custom", f, f / 2, 2 * f, 'a \\ "guess" in é'))
     return Scene(

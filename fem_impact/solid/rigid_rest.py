@@ -1,0 +1,110 @@
+"""A rod that cannot vibrate: its nose deforms, all that is behind the nose moves as one rigid body.
+
+The rigid rest is the nose's last section and two points on the axis, which have the mass, mass centre and
+moment of inertia of the cylinder behind it. After every kick their velocities are replaced by the rigid
+motion of equal momentum and angular momentum; then positions keep their distances to the fourth order of
+the angle turned in a step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.kernels import kernel
+from fem_impact.solid.sparse import NodeProduct
+from fem_impact.solid.state import State
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+POINTS = 2  # that stand for the cylinder behind the nose
+
+
+def rest_points(start: float, length: float, diameter: float) -> Array:
+    """Return the points (2, 3), m, at the radius of inertia on both sides of the cylinder's centre."""
+    behind = length - start
+    radius = sqrt(behind**2 / 12 + diameter**2 / 16)
+    centre = start + behind / 2
+    return np.array([[0.0, 0.0, centre - radius], [0.0, 0.0, centre + radius]])
+
+
+def rest_mass(start: float, length: float, diameter: float, rho: float) -> float:
+    """Return the mass, kg, of half the cylinder behind the nose."""
+    return rho * pi * diameter**2 / 8 * (length - start)
+
+
+@dataclass(slots=True)
+class ElasticNose:
+    """The linear part of a nose that ends in a rigid rest."""
+
+    body: ClassVar[str] = "rod"
+    nose: NodeProduct
+    frame: FixedFrame | TurningFrame
+    d: Array
+    y: Array
+
+    def add_force(self, state: State) -> None:
+        """Add the elastic forces."""
+        n = len(self.d)
+        self.frame.localise(state.x[:n], self.d)
+        self.y[:] = 0.0
+        self.nose.add_to(self.d, self.y)
+        self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def accounts(self, state: State) -> Accounts:
+        """Return the strain energy at the last force evaluation."""
+        return {"strain_rod": 0.5 * float(self.d @ self.y)}
+
+
+@dataclass(slots=True)
+class RigidRest:
+    """Holds nodes together as one rigid body.
+
+    Attributes
+    ----------
+    places : (k, 3) int64, unknowns of the nodes; mass : (k,) kg
+    """
+
+    places: Ints
+    mass: Array
+
+    def resolve(self, state: State) -> None:
+        """Replace the kicked velocities by the rigid motion of equal momentum."""
+        hold(self.places, self.mass, state.x, state.v, state.dt_next)
+
+    def accounts(self, state: State) -> Accounts:
+        """Return nothing: the constraint does no work."""
+        return {}
+
+
+@kernel
+def hold(places, mass, x, v, dt):  # type: ignore[no-untyped-def]
+    """Project the velocities on rigid motions in the t-n plane; a step along chords keeps the radii."""
+    total, c_t, c_n, V_t, V_n = 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(len(places)):
+        m, t, n = mass[i], places[i, 0], places[i, 2]
+        total += m
+        c_t += m * x[t]
+        c_n += m * x[n]
+        V_t += m * v[t]
+        V_n += m * v[n]
+    c_t, c_n, V_t, V_n = c_t / total, c_n / total, V_t / total, V_n / total
+    inertia, spin = 0.0, 0.0
+    for i in range(len(places)):
+        r_t, r_n = x[places[i, 0]] - c_t, x[places[i, 2]] - c_n
+        inertia += mass[i] * (r_t * r_t + r_n * r_n)
+        spin += mass[i] * (r_n * (v[places[i, 0]] - V_t) - r_t * (v[places[i, 2]] - V_n))
+    Omega = spin / inertia
+    inwards = 0.5 * dt * Omega * Omega
+    for i in range(len(places)):
+        r_t, r_n = x[places[i, 0]] - c_t, x[places[i, 2]] - c_n
+        v[places[i, 0]] = V_t + Omega * r_n - inwards * r_t
+        v[places[i, 1]] = 0.0
+        v[places[i, 2]] = V_n - Omega * r_t - inwards * r_n

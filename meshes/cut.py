@@ -1,0 +1,42 @@
+"""A rod's nose by itself, with loose points in place of the slices."""
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse as sp
+
+from meshes.rod import RodMesh
+
+__all__ = ["without_slices"]
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:
+    """Return the rod without its slices; the interface stays as the only layer of ``body_nodes``.
+
+    Parameters
+    ----------
+    rod : RodMesh
+        With a nose.
+    points : (k, 3) float64, m
+        Appended as nodes that belong to no cell.
+    """
+    mesh = rod.mesh
+    nose = np.ones(len(mesh.cells), dtype=bool)
+    nose[rod.body_cells] = False
+    kept = np.unique(mesh.cells[nose])
+    new = np.full(len(mesh.points), -1, dtype=np.int64)
+    new[kept] = np.arange(len(kept))
+    outer = (new[mesh.faces] >= 0).all(axis=1)
+    cut = replace(
+        mesh,
+        points=np.concatenate([mesh.points[kept], points]),
+        cells=new[mesh.cells[nose]],
+        level=mesh.level[nose],
+        tie=sp.csr_matrix(sp.block_diag([mesh.tie[kept][:, kept], sp.identity(len(points))])),
+        faces=new[mesh.faces[outer]],
+        face_tag=mesh.face_tag[outer],
+    )
+    return replace(rod, mesh=cut, body_nodes=new[rod.body_nodes[:, :1]], body_cells=rod.body_cells[:, :0])

@@ -1,0 +1,132 @@
+"""A rod that cannot vibrate: what is built, what is conserved, and both limits."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import solid_scenes
+
+from fem_impact.effects import specify
+from fem_impact.estimates import arms, projectile
+from fem_impact.reduce import reduce
+from fem_impact.solid.build import build
+from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold
+from fem_impact.solid.run import solve
+
+YIELDING = ("friction", "rod-plasticity", "barrier-rigid", "large-rotation")
+ELASTIC = ("barrier-rigid", "large-rotation")
+
+
+def outcome(*effects, **changes):
+    return reduce(solid_scenes.scene(*effects, **changes), solid_scenes.run(*effects, **changes))
+
+
+@pytest.fixture(scope="module")
+def sliding():
+    return solid_scenes.run("friction", *ELASTIC, length=0.08, f=0.3)
+
+
+def test_slices_and_modes_are_not_built():
+    made = solid_scenes.model(*YIELDING, length=0.24)
+    full = solid_scenes.model("vibration", *YIELDING, length=0.24)
+    assert type(made.forces[0]) is ElasticNose
+    assert type(made.impulses[0]) is RigidRest
+    assert made.rod_stiffness is None
+    assert made.geometry.rod.body_cells.size == 0
+    cells = len(full.geometry.rod.mesh.cells) - full.geometry.rod.body_cells.size
+    assert len(made.geometry.rod.mesh.cells) == cells
+    assert made.layout.size < 0.8 * full.layout.size
+    assert made.step == pytest.approx(full.step, rel=1e-3)
+
+
+def test_mass_and_inertia_are_those_of_the_rod(sliding):
+    rod = projectile(sliding.scene)
+    assert sliding.motion.mass == pytest.approx(rod.mass, rel=1e-9)
+    assert sliding.motion.inertia / sliding.motion.mass == pytest.approx(rod.k2, rel=0.01)
+
+
+def test_momentum_angular_momentum_and_energy_balance(sliding):
+    m, book, impact = sliding.motion, sliding.model.book, sliding.scene.impact
+    assert m.mass * (m.V_n - impact.v_n) == pytest.approx(2 * book.impulse[1], rel=1e-9)
+    assert m.mass * (m.V_t - impact.v_t) == pytest.approx(2 * book.impulse[0], rel=1e-9)
+    start = sliding.model.start[0][sliding.view.places]
+    centre = sliding.view.mass @ start / sliding.view.mass.sum()
+    before = m.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
+    after = m.inertia * m.Omega + m.mass * (m.centre[2] * m.V_t - m.centre[0] * m.V_n)
+    assert after - before == pytest.approx(-2 * book.impulse[2], rel=2e-3)
+    assert sliding.worst < 1e-6 * sliding.E_0
+
+
+def test_a_stiff_oblique_strike_is_that_of_rigid_theory():
+    """Elastic, frictionless: e = 1 and Omega = (1 + e) |v_n| d_c / (k^2 + d_c^2)."""
+    found = outcome(*ELASTIC, length=0.08)
+    assert found["e_edge"] == pytest.approx(1.0, abs=0.005)
+    stated = solid_scenes.scene(*ELASTIC, length=0.08)
+    d_c, k2 = arms(stated)[0], found["k_squared_m2"]
+    assert found["Omega_rad_per_s"] == pytest.approx(
+        (1 + found["e_edge"]) * 1.5 * d_c / (k2 + d_c**2), rel=5e-3
+    )
+
+
+def test_a_stiff_axial_strike_loses_nothing():
+    base = solid_scenes.scene(*ELASTIC, length=0.06, angle=0.0, v_t=0.0)
+    stated = replace(base, projectile=replace(base.projectile, tip="A", tip_radius=7e-3))
+    result = solve(stated)
+    assert result.motion.V_n / -stated.impact.v_n == pytest.approx(1.0, abs=0.005)
+    assert abs(result.motion.Omega) < 0.02
+    assert result.finished
+
+
+def test_the_full_rod_comes_near_where_its_periods_are_short():
+    """T1/tau = 0.3: half a millesimal of E_0 is left as vibration."""
+    full = outcome("vibration", *YIELDING, length=0.04)
+    rigid = outcome(*YIELDING, length=0.04)
+    assert full["E_vib_over_E_0"] < 1e-3
+    assert rigid["e_edge"] == pytest.approx(full["e_edge"], abs=0.005)
+    assert rigid["mu"] == pytest.approx(full["mu"], abs=0.005)
+    assert rigid["Omega_rad_per_s"] == pytest.approx(full["Omega_rad_per_s"], rel=0.02)
+    assert rigid["E_plastic_rod_over_E_0"] == pytest.approx(full["E_plastic_rod_over_E_0"], rel=0.02)
+
+
+def test_vibration_is_null_with_its_reason(sliding):
+    found = reduce(sliding.scene, sliding)
+    assert found["E_vib_over_E_0"] is None
+    assert "vibration effect is off" in found.reason("E_vib_over_E_0")
+    shares = ("E_r", "W_friction", "E_locked_rod", "W_closing", "residual")
+    assert sum(found[f"{name}_over_E_0"] for name in shares) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_held_points_turn_as_one_body():
+    """1000 rad/s for two turns in steps of 20 ns: distances, momentum and spin stay."""
+    rng = np.random.default_rng(3)
+    places = np.arange(15).reshape(5, 3)
+    x, mass = rng.normal(size=15), rng.uniform(1, 2, 5)
+    points = x.reshape(5, 3)
+    v = np.zeros((5, 3))
+    v[:, 0], v[:, 2] = 2.0 + 1000 * points[:, 2], 1.0 - 1000 * points[:, 0]
+    v = v.ravel()
+    start, momentum = points.copy(), mass @ v.reshape(5, 3)
+    dt, steps = 2e-8, 5000
+    for _ in range(steps):
+        hold(places, mass, x, v, dt)
+        x += dt * v
+    ends = x.reshape(5, 3)
+    flat = [0, 2]
+    before = np.linalg.norm(start[:, None, flat] - start[None, :, flat], axis=2)
+    assert np.linalg.norm(ends[:, None, flat] - ends[None, :, flat], axis=2) == pytest.approx(
+        before, rel=1e-9
+    )
+    assert mass @ v.reshape(5, 3) == pytest.approx(momentum, abs=1e-6)
+    turned = np.arctan2(*(ends[1] - ends[0])[flat]) - np.arctan2(*(start[1] - start[0])[flat])
+    assert (turned - 1000 * dt * steps) % (2 * np.pi) == pytest.approx(0.0, abs=1e-6)
+
+
+def test_the_block_barrier_takes_it_too():
+    stated = solid_scenes.scene(
+        "friction", "barrier-elastoplastic", "radiation", "large-rotation", length=0.06, max_time=3e-5
+    )
+    model = build(stated, specify(stated))
+    assert type(model.impulses[0]) is RigidRest
+    result = solve(stated)
+    assert result.accounts["plastic_barrier"] > 0
+    assert result.worst < 1e-4 * result.E_0
