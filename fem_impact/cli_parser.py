@@ -20,6 +20,7 @@ _SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repea
 STUDIES = {
     "sets": "the published series of tests beside the model",
     "convergence": "their limits for vanishing elements",
+    "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
 }
 _RESULT = "directory that a run or a study wrote"
 
@@ -117,6 +118,9 @@ def _add_study(commands: Commands) -> None:
     listed = "; ".join(f"{name}: {words}" for name, words in STUDIES.items())
     parser.add_argument("name", choices=STUDIES, metavar="NAME", help=listed)
     parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
+    parser.add_argument(
+        "--fidelity", choices=["modal", "solid"], default="", help="of scatter (default: modal)"
+    )
     parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
     parser.add_argument(

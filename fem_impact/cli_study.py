@@ -77,7 +77,7 @@ def _estimate_text(found: Estimate) -> str:
 def _kind_line(kind: dict[str, object]) -> str:
     size = kind["tip_size_m"]
     name = f"{kind['fidelity']}" + (f", tip {float(str(size)) * 1e3:.2g} mm" if size else "")
-    basis = f"mean of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
+    basis = f"median of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
     return f"  {kind['jobs']} jobs {name}: {kind['cost_s']:.3g} s each ({basis})"
 
 

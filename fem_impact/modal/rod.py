@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import cos, sin, sqrt
 
@@ -58,7 +58,7 @@ def modal_rod(scene: Scene) -> ModalRod:
 
 def _touch(scene: Scene) -> tuple[Array, Array, Array]:
     """Return omega and the displacements (x, z) of the contact point in the rod frame, kg^-1/2."""
-    points, shape, omega = _modes(scene.projectile, scene.accuracy.across)
+    points, shape, omega = _modes(_elastic(scene.projectile), scene.accuracy.across)
     rho, z = projectile(scene).contact_point(scene.impact.angle)
     from_touch = points - np.array([float(rho), 0.0, float(z)])
     near = np.linalg.norm(from_touch, axis=1) < AROUND * scene.projectile.diameter
@@ -76,6 +76,12 @@ def section_frequency(material: Material, diameter: float) -> float:
     """
     shear_speed = sqrt(material.E / (2 * (1 + material.nu) * material.rho))
     return SECTION * shear_speed / (diameter / 2)
+
+
+def _elastic(rod: Projectile) -> Projectile:
+    """Return the rod without what its modes do not depend on, so that they are found again."""
+    steel = replace(rod.material, name="elastic", yield_stress=1e9, ultimate_stress=1e9)
+    return replace(rod, material=steel)
 
 
 @lru_cache(maxsize=32)

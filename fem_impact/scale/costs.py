@@ -6,7 +6,7 @@ import heapq
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from statistics import mean
+from statistics import median
 from typing import TYPE_CHECKING
 
 from fem_impact.progress import CaseProgress
@@ -34,13 +34,13 @@ def expected_costs(jobs: Iterable[Job], measured: Mapping[Kind, list[float]]) ->
 
 def _expected(kind: Kind, measured: Mapping[Kind, list[float]]) -> float:
     if kind in measured:
-        return mean(measured[kind])
+        return median(measured[kind])
     fidelity, size = kind
     sizes = [other for name, other in measured if name == fidelity and other > 0]
     if not sizes:
         return GUESS[fidelity]
     near = min(sizes, key=lambda other: max(other / size, size / other))
-    return mean(measured[fidelity, near]) * float((near / size) ** STEEPNESS)
+    return median(measured[fidelity, near]) * float((near / size) ** STEEPNESS)
 
 
 def makespan(costs: Iterable[float], workers: int) -> float:

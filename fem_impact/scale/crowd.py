@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["Estimate", "estimate"]
 
 CROWDS = (1, 2, 10, 100, 1000)
-SAMPLE = 4
+SAMPLE = 8
 """Jobs of a fidelity that are computed, and kept, when none was measured yet."""
 
 
@@ -27,7 +27,7 @@ SAMPLE = 4
 class Estimate:
     """Jobs in all and already stored; of the others the work, s, the longest, s, and the time by workers, s.
 
-    ``kinds`` has one row a kind of job: fidelity, tip size, jobs to do, mean cost, measured jobs behind it.
+    ``kinds`` has one row a kind of job: fidelity, tip size, jobs to do, median cost, measured jobs behind it.
     """
 
     jobs: int

@@ -60,7 +60,7 @@ def jobs_of(name: str, quick: bool) -> list[Job]:
     return [Job(f"{name}-{scene.accuracy.across}", scene) for scene in scenes]
 
 
-def plan(request: Request) -> list[Job]:
+def plan(request: Request, results: Results) -> list[Job]:
     """Return the jobs of the sets that are asked for, or of `SETS`."""
     return [job for name in request.ids or SETS for job in jobs_of(name, request.quick)]
 

@@ -31,13 +31,19 @@ class Request:
     quick : bool
         A small version for a first look.
     fidelity : str
-        Of the studies that leave the choice; each names its default.
+        Of the studies that leave the choice; each has its default.
     """
 
     out: Path
     ids: tuple[str, ...] = ()
     quick: bool = False
     fidelity: str = ""
+
+    def command(self, study: str) -> str:
+        """Return the command that asks for this."""
+        options = [*self.ids, *(["--quick"] if self.quick else [])]
+        options += ["--fidelity", self.fidelity] if self.fidelity else []
+        return " ".join(["fem-impact study", study, *options])
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +55,7 @@ class StudyResult:
     notes: list[str] = field(default_factory=list)
 
 
-Plan = Callable[[Request], list[Job]]
+Plan = Callable[[Request, Results], list[Job]]
 Conclude = Callable[[Request, Results, "Meter"], StudyResult]
 
 
@@ -58,21 +64,24 @@ def run_study(name: str, request: Request, progress: Meter, executor: Executor |
 
     Parameters
     ----------
-    name : module of ``fem_impact.study`` with ``plan`` (request to jobs) and ``conclude`` (what follows)
+    name : module of ``fem_impact.study`` with ``plan`` and ``conclude``: the first is asked
+        for jobs, with the results so far, until it names no new one; the second says what follows
     progress : told after every job
     executor : any; local processes when None
     """
     plan, conclude = _study(name)
     make_directory(request.out)
-    results = run_jobs(plan(request), request.out / STORE, progress, executor)
+    results: Results = {}
+    while new := [job for job in plan(request, results) if job.name not in results]:
+        results |= run_jobs(new, request.out / STORE, progress, executor)
     return conclude(request, results, progress)
 
 
 def estimate_study(
     name: str, request: Request, progress: Meter, executor: Executor | None = None
 ) -> Estimate:
-    """Return what the study would take; nothing but a few samples is computed."""
-    return estimate(_study(name)[0](request), request.out / STORE, progress, executor)
+    """Return what the study would take, later rounds of its plan apart; a few samples are computed."""
+    return estimate(_study(name)[0](request, {}), request.out / STORE, progress, executor)
 
 
 def failures_of(results: Results) -> list[dict[str, str]]:

@@ -46,7 +46,7 @@ def chosen(request: Request) -> tuple[str, ...]:
     return request.ids or (QUICK_SETS if request.quick else MEASURED_SETS)
 
 
-def plan(request: Request) -> list[Job]:
+def plan(request: Request, results: Results) -> list[Job]:
     """Return the jobs of the measured sets."""
     groups = (jobs_of(name, request.quick, request.out) for name in chosen(request))
     return [job for group in groups for job in group.values()]

@@ -44,13 +44,13 @@ def test_an_estimate_measures_a_few_jobs_and_keeps_them(tmp_path):
     store, engine = tmp_path / "store.sqlite", Here()
     jobs = [job(f"j{i}", "sleep 0.02") for i in range(40)]
     found = estimate(jobs, store, NullMeter(), Acting(engine))
-    assert len(engine.names) == 4
-    assert (found.jobs, found.stored) == (40, 4)
-    assert found.work_s == pytest.approx(36 * 0.02, rel=0.5)
+    assert len(engine.names) == 8
+    assert (found.jobs, found.stored) == (40, 8)
+    assert found.work_s == pytest.approx(32 * 0.02, rel=0.5)
     assert found.wall_s[1] == pytest.approx(found.work_s)
     assert found.wall_s[10] == pytest.approx(4 * found.longest_s)
     assert found.wall_s[1000] == pytest.approx(found.longest_s)
-    assert found.kinds[0]["measured"] == 4
+    assert found.kinds[0]["measured"] == 8
     run_jobs(jobs, store, NullMeter(), Acting(engine))
-    assert len(engine.names) == 40
+    assert len(engine.names) == 80
     assert estimate(jobs, store, NullMeter(), Acting(engine)).work_s == 0.0

@@ -27,7 +27,7 @@ def study(out, broken=()):
         job.name: Failure(job.name, "An element folded.")
         if job.scene.accuracy.across in broken
         else run(job.scene.accuracy.tip_size)
-        for job in plan(request)
+        for job in plan(request, {})
     }
     return conclude(request, results, NullMeter())
 
@@ -69,6 +69,6 @@ def test_two_meshes_have_no_limit(tmp_path):
 
 
 def test_a_quick_study_has_three_coarser_meshes(tmp_path):
-    full, quick = (plan(Request(tmp_path, ("t5b",), quick=q)) for q in (False, True))
+    full, quick = (plan(Request(tmp_path, ("t5b",), quick=q), {}) for q in (False, True))
     assert len(quick) == 3
     assert quick[0].scene.accuracy.tip_size > full[0].scene.accuracy.tip_size

@@ -32,7 +32,7 @@ def fake(job):
 
 def study(out, *ids, broken=(), quick=True):
     request = Request(out, ids, quick)
-    return conclude(request, computed(plan(request), broken), NullMeter())
+    return conclude(request, computed(plan(request, {}), broken), NullMeter())
 
 
 def test_a_set_is_two_meshes_and_a_table(tmp_path):
@@ -73,7 +73,7 @@ def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(tmp_path):
 
 
 def test_a_first_look_is_one_set_a_rod(tmp_path):
-    assert [job.name for job in plan(Request(tmp_path, quick=True))][::2] == list(QUICK_SETS)
+    assert [job.name for job in plan(Request(tmp_path, quick=True), {})][::2] == list(QUICK_SETS)
 
 
 def test_changed_inputs_are_run_unless_quick(tmp_path):
