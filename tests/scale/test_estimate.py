@@ -28,7 +28,8 @@ def test_costs_come_from_the_same_kind_or_scale_with_the_tip():
 @given(st.lists(st.floats(0.1, 100.0), min_size=1, max_size=30), st.integers(1, 40))
 def test_a_makespan_lies_between_its_bounds(costs, workers):
     ideal = max(max(costs), sum(costs) / workers)
-    assert ideal * (1 - 1e-12) <= makespan(costs, workers) <= ideal * (4 / 3) + 1e-9
+    most = sum(costs) / workers + (1 - 1 / workers) * max(costs)  # Graham 1966, for any list
+    assert ideal * (1 - 1e-12) <= makespan(costs, workers) <= most * (1 + 1e-12)
 
 
 def test_the_eta_follows_the_work_not_the_number_of_jobs(monkeypatch):
@@ -52,5 +53,5 @@ def test_an_estimate_measures_a_few_jobs_and_keeps_them(tmp_path):
     assert found.wall_s[1000] == pytest.approx(found.longest_s)
     assert found.kinds[0]["measured"] == 8
     run_jobs(jobs, store, NullMeter(), Acting(engine))
-    assert len(engine.names) == 80
+    assert len(engine.names) == 40
     assert estimate(jobs, store, NullMeter(), Acting(engine)).work_s == 0.0
