@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
+from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
@@ -19,6 +20,20 @@ class Observer(Protocol):
         ...
 
 
+@kernel
+def add_product(y, a, b, c):  # type: ignore[no-untyped-def]
+    """Add a b c to y in one pass, without temporaries."""
+    for i in range(len(y)):
+        y[i] += a * b[i] * c[i]
+
+
+@kernel
+def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
+    """Add a b to y in one pass."""
+    for i in range(len(y)):
+        y[i] += a * b[i]
+
+
 def evaluate(model: Model, state: State) -> None:
     """Set the forces of the present positions."""
     state.force[:] = 0.0
@@ -30,11 +45,11 @@ def evaluate(model: Model, state: State) -> None:
 def advance(model: Model, state: State) -> None:
     """Kick, resolve impulses, drift; forces must be up to date."""
     state.kick = 0.5 * (state.dt + state.dt_next)
-    state.v += state.kick * model.inverse_mass * state.force
+    add_product(state.v, state.kick, model.inverse_mass, state.force)
     for item in model.impulses:
         item.resolve(state)
     model.hanging.expand(state.v)
-    state.x += state.dt_next * state.v
+    add_multiple(state.x, state.dt_next, state.v)
     state.dt = state.dt_next
     state.time += state.dt
     state.step += 1

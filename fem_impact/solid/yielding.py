@@ -12,7 +12,7 @@ from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import LANES, SIGNS, reference_gradients
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import CORNERS, FULL_ELASTIC, FULL_PLASTIC, ROWS, Blocks, update
+from fem_impact.solid.yielding_kernel import CORNERS, ROWS, Blocks, elastic_energy, update
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,7 +41,6 @@ class YieldingZone:
     K: float
     law: Array
     rate: Array | None
-    work: Array
 
     @classmethod
     def of(
@@ -61,26 +60,26 @@ class YieldingZone:
             weight=np.ascontiguousarray(weight.reshape(blocks, LANES, 8).transpose(0, 2, 1)),
             pressure=np.zeros((blocks, LANES)),
             volume=weight.sum(axis=1).reshape(blocks, LANES),
+            work=np.zeros(blocks),
             scratch=np.zeros(ROWS * LANES),
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
-        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, rate, np.zeros(2))
+        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, rate)
 
     def add_force(self, state: State) -> None:
         """Advance stresses to the present positions and subtract the nodal forces."""
-        z, law = self.blocks, self.law
-        update(state.x, state.v, state.dt, state.force, z, self.G, self.K, law, self.rate, self.work)
+        update(state.x, state.v, state.dt, state.force, self.blocks, self.G, self.K, self.law, self.rate)
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""
         return np.asarray(self.blocks.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: self.count])
 
     def accounts(self, state: State) -> Accounts:
-        """Return elastic energy and plastic work."""
+        """Return elastic energy and plastic work at the last force evaluation."""
         return {
-            f"strain_{self.body}": float(self.work[FULL_ELASTIC]),
-            f"plastic_{self.body}": float(self.work[FULL_PLASTIC]),
+            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K)),
+            f"plastic_{self.body}": float(self.blocks.work.sum()),
         }
 
     def plastic_strain(self) -> Array:

@@ -32,9 +32,8 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
-POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, ENERGY, ROWS = 0, 21, 42, 63, 72, 78, 79, 80, 81
+POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, ROWS = 0, 21, 42, 63, 72, 78, 79, 80
 CORNERS = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / np.sqrt(3.0)
-FULL_PLASTIC, FULL_ELASTIC = 0, 1
 
 
 @inlined
@@ -124,18 +123,28 @@ def _trial(w, stress, G2, X, Y, Z):  # type: ignore[no-untyped-def]
 
 
 @inlined
+def _power(d, n):  # type: ignore[no-untyped-def]
+    """Return (1 + d)^n; the plastic growth of one step is small, so that a few terms are exact."""
+    if abs(d) > 0.01:
+        return (1.0 + d) ** n
+    tail = 1.0 + (n - 4.0) / 5.0 * d * (1.0 + (n - 5.0) / 6.0 * d)
+    return 1.0 + n * d * (
+        1.0 + (n - 1.0) / 2.0 * d * (1.0 + (n - 2.0) / 3.0 * d * (1.0 + (n - 3.0) / 4.0 * d * tail))
+    )
+
+
+@inlined
 def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def]
     """Solve q - 3 G dp = sigma(strain + dp) by Newton's method from the safe (left) side."""
-    base = 1.0 + law[1] * strain
-    dp = (q - flow) / (G3 + law[2] * law[1] * flow / base)
+    growth, n = law[1] / (1.0 + law[1] * strain), law[2]
+    dp = (q - flow) / (G3 + n * growth * flow)
     new = flow
     for _ in range(20):
-        base = 1.0 + law[1] * (strain + dp)
-        new = law[0] * base ** law[2]
+        new = flow * _power(growth * dp, n)
         miss = q - G3 * dp - new
         if abs(miss) < 1e-12 * q:
             break
-        dp += miss / (G3 + law[2] * law[1] * new / base)
+        dp += miss / (G3 + n * growth * new / (1.0 + growth * dp))
     return dp, new
 
 
@@ -161,6 +170,15 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
         steep = law[2] * law[1] * new / base * factor + (new * rate[0] / dp if dp > slow else 0.0)
         dp = max(dp + miss / (G3 + steep), 0.1 * dp)
     return dp, new * factor, new
+
+
+@inlined
+def _yielding_lanes(w, flow):  # type: ignore[no-untyped-def]
+    """Return how many lanes are beyond their flow stress; counting has no branch, so lanes go together."""
+    count = 0
+    for l in range(LANES):
+        count += w[TRIAL2 * LANES + l] > flow[l] * flow[l]
+    return count
 
 
 @kernel
@@ -191,15 +209,6 @@ def _return_map(w, stress, weight, flow, strain, G3, law, rate, dt):  # type: ig
 
 
 @kernel
-def _add_energy(w, stress, weight, G4):  # type: ignore[no-untyped-def]
-    """Add one Gauss point's shear energy to each lane's sum, J."""
-    for l in range(LANES):
-        square = stress[l] ** 2 + stress[l + LANES] ** 2 + stress[l + 2 * LANES] ** 2
-        shear = stress[l + 3 * LANES] ** 2 + stress[l + 4 * LANES] ** 2 + stress[l + 5 * LANES] ** 2
-        w[ENERGY * LANES + l] += (square + 2.0 * shear) * weight[l] / G4
-
-
-@kernel
 def _add_force(w, stress, weight, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
     """Add one Gauss point's stress times cofactors to the force modes."""
     for l in range(LANES):
@@ -225,12 +234,10 @@ def _add_force(w, stress, weight, pressure, X, Y, Z):  # type: ignore[no-untyped
 
 @kernel
 def _update_pressure(w, volume, pressure, K):  # type: ignore[no-untyped-def]
-    """Set the element pressures from the volume ratio; start each lane's elastic energy, J."""
+    """Set the element pressures from the volume ratio."""
     for l in range(LANES):
         J = hex_volume(w, POSITION, l) / volume[l]
-        swelling = np.log(J)
-        pressure[l] = K * swelling / J
-        w[ENERGY * LANES + l] = 0.5 * K * swelling * swelling * volume[l]
+        pressure[l] = K * np.log(J) / J
 
 
 class Blocks(NamedTuple):
@@ -243,6 +250,7 @@ class Blocks(NamedTuple):
     strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress at vanishing rate in Pa
     weight : (blocks, 8, LANES) reference volume of each Gauss point, m3
     pressure, volume : (blocks, LANES), Pa (tension positive), reference m3
+    work : (blocks,) plastic work so far, J
     scratch : (ROWS * LANES,)
     """
 
@@ -253,16 +261,14 @@ class Blocks(NamedTuple):
     weight: Array
     pressure: Array
     volume: Array
+    work: Array
     scratch: Array
 
 
 @kernel
-def update(x, v, dt, force, z, G, K, law, rate, work):  # type: ignore[no-untyped-def]
-    """Advance all blocks ``z`` by the increment ``dt v`` to ``x`` and subtract their nodal forces.
-
-    ``work[0]`` gains the plastic work, ``work[1]`` is set to the elastic energy, J.
-    """
-    elastic, w = 0.0, z.scratch
+def update(x, v, dt, force, z, G, K, law, rate):  # type: ignore[no-untyped-def]
+    """Advance all blocks ``z`` by the increment ``dt v`` to ``x`` and subtract their nodal forces."""
+    w = z.scratch
     for b in range(z.dof.shape[0]):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
@@ -270,14 +276,33 @@ def update(x, v, dt, force, z, G, K, law, rate, work):  # type: ignore[no-untype
         _update_pressure(w, z.volume[b], z.pressure[b], K)
         for g in range(8):
             X, Y, Z = CORNERS[g, 0], CORNERS[g, 1], CORNERS[g, 2]
-            stress, weight = z.stress[b, g], z.weight[b, g]
+            stress, weight, flow = z.stress[b, g], z.weight[b, g], z.flow[b, g]
             _trial(w, stress, 2.0 * G, X, Y, Z)
-            work[FULL_PLASTIC] += _return_map(
-                w, stress, weight, z.flow[b, g], z.strain[b, g], 3.0 * G, law, rate, dt
-            )
-            _add_energy(w, stress, weight, 4.0 * G)
+            if _yielding_lanes(w, flow):
+                z.work[b] += _return_map(w, stress, weight, flow, z.strain[b, g], 3.0 * G, law, rate, dt)
             _add_force(w, stress, weight, z.pressure[b], X, Y, Z)
         scatter_modes(w[FORCE * LANES :], z.dof[b], force)
+
+
+@kernel
+def _add_energy(sums, stress, weight, G4):  # type: ignore[no-untyped-def]
+    """Add one Gauss point's shear energy to each lane's sum, J."""
+    for l in range(LANES):
+        square = stress[l] ** 2 + stress[l + LANES] ** 2 + stress[l + 2 * LANES] ** 2
+        shear = stress[l + 3 * LANES] ** 2 + stress[l + 4 * LANES] ** 2 + stress[l + 5 * LANES] ** 2
+        sums[l] += (square + 2.0 * shear) * weight[l] / G4
+
+
+@kernel
+def elastic_energy(x, z, G, K):  # type: ignore[no-untyped-def]
+    """Return the elastic energy, J, of all blocks ``z`` at the positions ``x`` of the last update."""
+    w, sums = z.scratch, z.scratch[FORCE * LANES : (FORCE + 1) * LANES]
+    sums[:] = 0.0
+    for b in range(z.dof.shape[0]):
+        gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         for l in range(LANES):
-            elastic += w[ENERGY * LANES + l]
-    work[FULL_ELASTIC] = elastic
+            swelling = np.log(hex_volume(w, POSITION, l) / z.volume[b, l])
+            sums[l] += 0.5 * K * swelling * swelling * z.volume[b, l]
+        for g in range(8):
+            _add_energy(sums, z.stress[b, g], z.weight[b, g], 4.0 * G)
+    return sums.sum()

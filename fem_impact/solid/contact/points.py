@@ -18,7 +18,7 @@ from fem_impact.solid.contact.book import (
 )
 from fem_impact.solid.contact.impulses import relative
 from fem_impact.solid.contact.search import bilinear, locate
-from fem_impact.solid.kernels import kernel
+from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -123,12 +123,33 @@ def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # t
     return count
 
 
+@inlined
+def _reach(rod, x, height):  # type: ignore[no-untyped-def]
+    """Return the box (t, t, b, b) around all rod quads that come down to ``height``."""
+    low_t, high_t, low_b, high_b = np.inf, -np.inf, np.inf, -np.inf
+    for q in range(len(rod.quads)):
+        lowest = np.inf
+        for a in range(4):
+            lowest = min(lowest, x[rod.places[rod.quads[q, a], 2]])
+        if lowest > height:
+            continue
+        for a in range(4):
+            t, b = x[rod.places[rod.quads[q, a], 0]], x[rod.places[rod.quads[q, a], 1]]
+            low_t, high_t, low_b, high_b = min(low_t, t), max(high_t, t), min(low_b, b), max(high_b, b)
+    return low_t, high_t, low_b, high_b
+
+
 @kernel
 def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
     """Append contacts of barrier nodes with rod quads; returns the new number."""
-    x, first = motion.x, len(rod.places)
+    x, first, top = motion.x, len(rod.places), 0.0
+    for i in range(len(barrier.places)):
+        top = max(top, x[barrier.places[i, 2]])
+    low_t, high_t, low_b, high_b = _reach(rod, x, top + band)
     for i in range(len(barrier.places)):
         t, b, n = x[barrier.places[i, 0]], x[barrier.places[i, 1]], x[barrier.places[i, 2]]
+        if t < low_t or t > high_t or b < low_b - band or b > high_b:
+            continue
         q, xi, eta = locate(x, rod.places, rod.quads, rod.neighbours, max(last[first + i], 0), t, b)
         if q < 0:
             continue
