@@ -32,7 +32,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
     reasons |= {
-        "W_damping_over_E_0": "no material damping is modelled",
+        "W_damping_over_E_0": "the material-damping effect is off",
         "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
         "bands": "one mesh alone has no band: run the study, or a second tip size",
     }
@@ -76,6 +76,8 @@ def _energies(result: SolidResult, values: Values) -> Values:
         "W_closing": a["closing"],
         "residual": a["residual"],
     }
+    if "material-damping" in result.scene.active:
+        shares["W_damping"] = a["damping"]
     if result.model.rod_stiffness is None:
         shares["E_locked_rod"] += a["kinetic_rod"] - result.motion.kinetic  # the nose rings a little
         del shares["E_vib"], shares["E_vib_floor"]

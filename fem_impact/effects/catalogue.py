@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from fem_impact.effects import barrier, friction, gravity, plasticity, radiation, rate, rotation, vibration
+from fem_impact.effects import (
+    barrier,
+    damping,
+    friction,
+    gravity,
+    plasticity,
+    radiation,
+    rate,
+    rotation,
+    vibration,
+)
 from fem_impact.effects.spec import Effect
 
 __all__ = ["EFFECTS"]
@@ -20,5 +30,6 @@ EFFECTS: dict[str, Effect] = {
         radiation.EFFECT,
         gravity.EFFECT,
         rotation.EFFECT,
+        damping.EFFECT,
     )
 }

@@ -23,6 +23,7 @@ class ModelSpec:
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
     gravity : acceleration, m/s2, or None
+    loss_factor : of the rod's vibration, or None
     turning_frame : the rod's linear part follows its rotation
     """
 
@@ -33,6 +34,7 @@ class ModelSpec:
     meshed_barrier: bool = False
     radiating: bool = False
     gravity: float | None = None
+    loss_factor: float | None = None
     turning_frame: bool = False
 
 

@@ -18,6 +18,7 @@ HISTORY = (
     "W_friction_J",
     "W_closing_J",
     "W_radiated_J",
+    "W_damping_J",
     "E_gravity_J",
     "residual_J",
     "V_n_m_per_s",

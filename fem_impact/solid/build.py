@@ -12,8 +12,10 @@ from numpy.typing import NDArray
 from fem_impact.effects.spec import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
+from fem_impact.modes import rod_modes
 from fem_impact.solid.boundary import spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
+from fem_impact.solid.damping import ModalDamping
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
@@ -249,7 +251,8 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     inverse_mass = _inverse(mass, bodies)
     x, v = _start(bodies, layout, scene, mass)
     rod = bodies[0]
-    forces: list[Force] = [_elastic_rod(rod, geometry, layout, mass, x, spec)]
+    linear = _elastic_rod(rod, geometry, layout, mass, x, spec)
+    forces: list[Force] = [linear]
     impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
     zones = [
         _zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law
@@ -260,6 +263,12 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     n, place = layout.rod_size, layout.barrier_slice
     rod_stiffness = _assembled(rod, n)
     steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
+    if spec.loss_factor is not None:
+        modes = rod_modes(rod_stiffness, mass[:n], inverse_mass[:n] == 0)
+        free = rod.places[~rod.mesh.is_hanging]
+        impulses.append(
+            ModalDamping.of(modes, linear.frame, inverse_mass[:n], free, spec.loss_factor, steps["rod"])
+        )
     if len(bodies) == 2:
         block_stiffness = _assembled(bodies[1], place.stop - n, n)
         steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])

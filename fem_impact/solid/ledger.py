@@ -28,6 +28,7 @@ ACCOUNTS = (
     "friction",
     "closing",
     "radiated",
+    "damping",
     "gravity",
 )
 HALVES = 2.0  # the mesh is half of a symmetric whole

@@ -20,7 +20,7 @@ from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 
-TAKEN = {"friction", "closing", "radiated"}
+TAKEN = {"friction", "closing", "radiated", "damping"}
 COLUMNS = {name: f"{'W' if name in TAKEN else 'E'}_{name}_J" for name in ACCOUNTS} | {
     "residual": "residual_J"
 }

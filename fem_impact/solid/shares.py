@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.scene import BARRIERS
+from fem_impact.solid.damping import ModalDamping
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import TurningFrame
 from fem_impact.solid.items import Account
@@ -22,12 +23,14 @@ if TYPE_CHECKING:
     from fem_impact.solid.model import Model
 
 REPEATS = 5
+# classes of items and the effect that they are; the nose is there without any effect
 SINGLE = {
     ElasticRod: "vibration",
     ElasticNose: "nose",
     RigidRest: "nose",
     Weight: "gravity",
     Dashpots: "radiation",
+    ModalDamping: "material-damping",
 }
 
 

@@ -1,0 +1,45 @@
+"""Material damping of the rod's vibration, mode by mode."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import TYPE_CHECKING
+
+from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.effects.vibration import bending_period, vibration_share
+from fem_impact.estimates import contact_estimate, normal_share
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+LOSS_FACTOR = 6e-4  # upper end for iron and steel, Cremer, Heckl & Petersson 2005, doi:10.1007/b137728
+
+
+def number(scene: Scene) -> float:
+    """Return the share of the vibration that is damped while the impact lasts, eta omega_1 (tau + T1)."""
+    period = bending_period(scene)
+    return 2 * pi * LOSS_FACTOR * (contact_estimate(scene).duration + period) / period
+
+
+def harm(scene: Scene) -> Harm:
+    """Return the energy that should have been damped."""
+    damped = min(number(scene), 1.0) * vibration_share(scene)
+    return Harm(min(damped / normal_share(scene), 1.0), damped)
+
+
+def fill(scene: Scene, spec: ModelSpec) -> None:
+    """Set the loss factor."""
+    spec.loss_factor = LOSS_FACTOR
+
+
+EFFECT = Effect(
+    "material-damping",
+    f"The rod's modes are damped (loss factor {LOSS_FACTOR:g}).",
+    "The rod's material does not damp.",
+    "eta omega_1 (tau + T1), damped share of the vibration",
+    0.05,
+    "a mode's energy decays like exp(-eta omega t); half of the 10 % that E_vib may be off",
+    number,
+    harm,
+    fill,
+)
