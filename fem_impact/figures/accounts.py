@@ -27,6 +27,7 @@ RUNNING = (
     Account("E_strain_barrier_J", "strain, barrier", PALETTE["orange"]),
     Account("E_kinetic_barrier_J", "kinetic, barrier", PALETTE["sand"]),
     Account("W_radiated_J", "radiated", PALETTE["yellow"]),
+    Account("W_damping_J", "damping", PALETTE["night"]),
     Account("W_closing_J", "contact closing", PALETTE["grey"]),
 )
 """Accounts of history.csv, bottom to top; gravity and the residual are not areas."""
@@ -40,6 +41,7 @@ FINAL = (
     Account("E_plastic_barrier_over_E_0", "plastic, barrier", PALETTE["vermilion"]),
     Account("E_locked_barrier_over_E_0", "locked in, barrier", PALETTE["orange"]),
     Account("W_radiated_over_E_0", "radiated", PALETTE["yellow"]),
+    Account("W_damping_over_E_0", "damping", PALETTE["sand"]),
     Account("W_closing_over_E_0", "contact closing", PALETTE["grey"]),
 )
 """Accounts of an outcome: where E_0 is after the last separation."""
