@@ -20,6 +20,7 @@ _SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repea
 STUDIES = {
     "sets": "the published series of tests beside the model",
     "convergence": "their limits for vanishing elements",
+    "gamma": "vibration against slenderness",
     "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
 }
 _RESULT = "directory that a run or a study wrote"

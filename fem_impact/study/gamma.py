@@ -1,0 +1,93 @@
+"""Vibration against slenderness: maps by the reduced model with finite-element anchors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.outcome import Outcome
+from fem_impact.scale import Failure, Job, Results
+from fem_impact.study.document import publish
+from fem_impact.study.gamma_tell import Maps, first_only, paper
+from fem_impact.study.request import Request, StudyResult
+from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Meter
+
+__all__ = ["conclude", "plan"]
+
+FINE, QUICK_FINE = np.arange(10.0, 120.5, 2.0), np.arange(10.0, 121.0, 22.0)
+COARSE, QUICK_COARSE = np.arange(10.0, 121.0, 10.0), np.array([20.0, 60.0])
+DIAMETERS, SPEEDS = (0.010, 0.019, 0.030), (1.3, 2.1, 4.2)
+ANGLES, QUICK_ANGLES = (5.0, 12.0, 20.0, 28.0, 36.0, 45.0, 54.0, 63.0, 72.0), (20.0, 45.0)
+ANCHOR_TIP, QUICK_TIP = 0.6e-3, 0.8e-3  # m
+LONG = 0.4  # m: an anchor beyond the paper's rods
+SLACK = 1e-6  # s after the first contact
+
+
+def line(quick: bool) -> list[Drop]:
+    """Return the fine line: 19 mm, 2.1 m/s, 45 degrees, every surface state, elastic and yielding."""
+    return [
+        Drop(length_of(g), friction=f, yields=yields)
+        for g in (QUICK_FINE if quick else FINE)
+        for yields in (False, True)
+        for f in STATES.values()
+    ]
+
+
+def grid(quick: bool) -> list[Drop]:
+    """Return the map: diameters, speeds, surface states, angles, elastic and yielding; rod by rod."""
+    gammas, angles = (QUICK_COARSE, QUICK_ANGLES) if quick else (COARSE, ANGLES)
+    return [
+        Drop(length_of(g, d), angle, f, yields, d, speed=speed)
+        for d in ((BODY,) if quick else DIAMETERS)
+        for g in gammas
+        for speed in ((2.1,) if quick else SPEEDS)
+        for yields in (False, True)
+        for f in STATES.values()
+        for angle in angles
+    ]
+
+
+def anchors(quick: bool) -> list[Drop]:
+    """Return the drops that are computed with finite elements too."""
+    if quick:
+        return [Drop(PAPER_RODS["0.08 m"], friction=STATES["machined"], yields=True)]
+    lengths = (*PAPER_RODS.values(), LONG)
+    elastic = [Drop(length) for length in lengths]
+    machined = [Drop(length, friction=STATES["machined"], yields=True) for length in lengths]
+    some = [machined[0], machined[2]]
+    contaminated = [replace(drop, friction=STATES["contaminated"]) for drop in some]
+    steep = [replace(drop, angle=20.0) for drop in some]
+    return [*elastic, *machined, *contaminated, *steep, replace(elastic[0], friction=STATES["machined"])]
+
+
+def plan(request: Request, results: Results) -> list[Job]:
+    """Return maps and anchors; then the drops that touch twice again, cut off at their second contact."""
+    tip = QUICK_TIP if request.quick else ANCHOR_TIP
+    chosen = anchors(request.quick)
+    drops = {drop.name: drop for drop in (*line(request.quick), *grid(request.quick), *chosen)}
+    jobs = {name: Job(name, drop.scene(), "modal") for name, drop in drops.items()}
+    solid = [Job(f"solid-{drop.name}", drop.scene(tip), "solid") for drop in chosen]
+    again = [drop.name for drop in line(request.quick) if _touches_again(results.get(drop.name))]
+    return [*jobs.values(), *solid, *(_cut(jobs[name], results[name]) for name in again)]
+
+
+def _touches_again(run: Outcome | Failure | None) -> bool:
+    return isinstance(run, Outcome) and len(run["contacts"]) > 1
+
+
+def _cut(job: Job, run: Outcome | Failure) -> Job:
+    assert isinstance(run, Outcome)
+    accuracy = replace(job.scene.accuracy, max_time=run["contacts"][0]["end_s"] + SLACK)
+    return Job(first_only(job.name), replace(job.scene, accuracy=accuracy), "modal")
+
+
+def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+    """Draw the maps, state the difference from finite elements, resolve what second contacts give back."""
+    quick = request.quick
+    maps = Maps(line(quick), grid(quick), anchors(quick), results)
+    return publish(paper(maps, QUICK_TIP if quick else ANCHOR_TIP), request, results)

@@ -1,0 +1,269 @@
+"""What the gamma study says: sentences, pictures and tables of its maps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_impact.figures.lines import Mark, Panel, Series
+from fem_impact.outcome import Outcome
+from fem_impact.output.tables import Cell
+from fem_impact.scale import Results
+from fem_impact.study.document import Paper, Picture, Sheet
+from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, STATES, Drop
+from rigid import LIMIT, slenderness
+
+__all__ = ["Maps", "first_only", "paper"]
+
+X = "gamma, m^-0.3815"
+MARKS = (
+    *(Mark(float(slenderness(l, BODY)), w) for w, l in PAPER_RODS.items()),
+    Mark(LIMIT, "limit of Eq 29"),
+)
+QUANTITIES = {
+    "vibration, % of E_0": "E_vib_over_E_0",
+    "e": "e_edge",
+    "contacts": "contacts",
+    "friction, % of E_0": "W_friction_over_E_0",
+    "plastic work, % of E_0": "plastic",
+}
+COMPARED = {
+    "e": "e_edge",
+    "mu": "mu",
+    "vibration/E_0": "E_vib_over_E_0",
+    "friction/E_0": "W_friction_over_E_0",
+}
+Curve = tuple[list[float], list[float]]
+KINDS = {False: "elastic", True: "yielding"}
+
+
+@dataclass(frozen=True, slots=True)
+class Maps:
+    """The drops of the fine line, of the map, of the anchors, and the results of all jobs."""
+
+    line: Sequence[Drop]
+    grid: Sequence[Drop]
+    anchors: Sequence[Drop]
+    results: Results
+
+    def value(self, drop: Drop, quantity: str, prefix: str = "") -> float | None:
+        """Return a quantity of a drop, None where its run failed."""
+        run = self.results.get(f"{prefix}{drop.name}")
+        return _value(run, quantity) if isinstance(run, Outcome) else None
+
+    def worst(self) -> list[Drop]:
+        """Return, for each rod, speed, surface and kind of the map, the angle that vibrates most."""
+        groups: dict[tuple[float | bool, ...], list[Drop]] = {}
+        for drop in self.grid:
+            key = (drop.length, drop.diameter, drop.speed, drop.friction, drop.yields)
+            groups.setdefault(key, []).append(drop)
+        return [max(group, key=lambda d: self.value(d, "E_vib_over_E_0") or 0.0) for group in groups.values()]
+
+
+def first_only(name: str) -> str:
+    """Return the name of the job that stops at a drop's second contact."""
+    return f"first-{name}"
+
+
+def _value(run: Outcome, quantity: str) -> float | None:
+    if quantity == "contacts":
+        return float(len(run["contacts"]))
+    if quantity == "plastic":
+        return float((run["E_plastic_rod_over_E_0"] or 0.0) + (run["E_plastic_barrier_over_E_0"] or 0.0))
+    found: float | None = run[quantity]
+    return found
+
+
+def paper(maps: Maps, tip: float) -> Paper:
+    """Return the study."""
+    pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *_other_pictures(maps)]
+    sheets = [_anchor_sheet(maps), _rod_sheet(maps), _worst_sheet(maps), _map_sheet(maps)]
+    anchored = f"Anchors: finite elements of {tip * 1e3:g} mm at the tip, one mesh, so without a mesh band."
+    return Paper(
+        "gamma",
+        "Vibration against slenderness",
+        [*_peaks(maps), *_given_back(maps), *_differences(maps)],
+        pictures,
+        sheets,
+        [*MAP_NOTES, anchored],
+        ["modal", "thornton", "slenderness"],
+    )
+
+
+def _curve(
+    maps: Maps, drops: Iterable[Drop], quantity: str, prefix: str = ""
+) -> tuple[list[float], list[float]]:
+    """Return gamma and a quantity, fractions of E_0 in per cent, of the drops that have it."""
+    found = [(drop.gamma, maps.value(drop, quantity, prefix)) for drop in drops]
+    factor = 100.0 if "E_0" in quantity or quantity == "plastic" else 1.0
+    known = [(gamma, factor * value) for gamma, value in found if value is not None]
+    return [gamma for gamma, _ in known], [value for _, value in known]
+
+
+def _line_pictures(maps: Maps) -> list[Picture]:
+    made = []
+    for yields, kind in KINDS.items():
+        shown = {w: q for w, q in QUANTITIES.items() if yields or q != "plastic"}
+        panels = tuple(_line_panel(maps, yields, words, key) for words, key in shown.items())
+        caption = (
+            f"{kind.capitalize()} contact, 19 mm rods at 45 degrees and 2.1 m/s: modes (lines) and finite "
+            "elements (rings); the paper's rods are marked."
+        )
+        made.append(Picture(f"line-{kind}", caption, panels))
+    return made
+
+
+def _line_panel(maps: Maps, yields: bool, words: str, quantity: str) -> Panel:
+    series = []
+    for at, (state, f) in enumerate(STATES.items()):
+        same = [d for d in maps.line if d.friction == f and d.yields == yields]
+        series.append(Series(f"{state}, f = {f:g}", *_curve(maps, same, quantity), "line", at))
+        anchored = [d for d in maps.anchors if (d.friction, d.yields, d.angle) == (f, yields, 45.0)]
+        gamma, value = _curve(maps, anchored, quantity, "solid-")
+        if gamma:
+            series.append(Series(f"{state}, finite elements", gamma, value, "rings", at))
+    return Panel(words.split(",")[0], X, words, tuple(series), MARKS)
+
+
+def _second_picture(maps: Maps) -> Picture:
+    panels = []
+    for yields, kind in KINDS.items():
+        same = [d for d in maps.line if d.friction == 0.0 and d.yields == yields]
+        end = Series("after the last contact", *_curve(maps, same, "E_vib_over_E_0"))
+        first = [(d.gamma, 100 * _after_first(maps, d)) for d in same]
+        before = Series("after the first contact", [g for g, _ in first], [v for _, v in first], "dashed")
+        panels.append(Panel(f"{kind}, frictionless", X, "vibration, % of E_0", (before, end), MARKS))
+    return Picture("second-contacts", "What later contacts give back to the rigid motion.", tuple(panels))
+
+
+def _after_first(maps: Maps, drop: Drop) -> float:
+    """Return the vibration after the first contact; a rod that touches once has no other."""
+    cut = maps.value(drop, "E_vib_over_E_0", "first-")
+    end = maps.value(drop, "E_vib_over_E_0")
+    return cut if cut is not None else end if end is not None else float("nan")
+
+
+def _worst_picture(maps: Maps) -> Picture:
+    panels = []
+    for yields, kind in KINDS.items():
+        series = []
+        for at, (state, f) in enumerate(STATES.items()):
+            chosen = [d for d in maps.worst() if _main(d) and (d.friction, d.yields) == (f, yields)]
+            series.append(Series(state, *_curve(maps, chosen, "E_vib_over_E_0"), "line", at))
+        panels.append(Panel(f"{kind}, worst angle", X, "vibration, % of E_0", tuple(series), MARKS))
+    return Picture(
+        "worst-angle", "At the angle of the map that vibrates most, 19 mm, 2.1 m/s.", tuple(panels)
+    )
+
+
+def _main(drop: Drop) -> bool:
+    return (drop.diameter, drop.speed) == (BODY, 2.1)
+
+
+def _other_pictures(maps: Maps) -> list[Picture]:
+    """Return vibration at 45 degrees by diameter and by speed, frictionless elastic and machined yielding."""
+    return [_by(maps, "diameter", 1e3, "mm"), _by(maps, "speed", 1.0, "m/s")]
+
+
+def _by(maps: Maps, name: str, scale: float, unit: str) -> Picture:
+    other = "speed" if name == "diameter" else "diameter"
+    panels = []
+    for yields, state in ((False, "frictionless"), (True, "machined")):
+        same = [d for d in maps.grid if (d.angle, d.friction, d.yields) == (45.0, STATES[state], yields)]
+        same = [d for d in same if getattr(d, other) == (BODY if other == "diameter" else 2.1)]
+        series = [
+            Series(f"{value * scale:g} {unit}", *_curve(maps, drops, "E_vib_over_E_0"))
+            for value, drops in _grouped(same, name).items()
+        ]
+        title = f"{KINDS[yields]}, {state}"
+        panels.append(Panel(title, X, "vibration, % of E_0", tuple(series), MARKS))
+    return Picture(f"by-{name}", f"Vibration at 45 degrees by {name}.", tuple(panels))
+
+
+def _grouped(drops: Iterable[Drop], name: str) -> dict[float, list[Drop]]:
+    groups: dict[float, list[Drop]] = {}
+    for drop in drops:
+        groups.setdefault(getattr(drop, name), []).append(drop)
+    return dict(sorted(groups.items()))
+
+
+def _peaks(maps: Maps) -> list[str]:
+    told = []
+    for yields, kind in KINDS.items():
+        for state, f in STATES.items():
+            same = [d for d in maps.line if d.friction == f and d.yields == yields]
+            gamma, share = _curve(maps, same, "E_vib_over_E_0")
+            if gamma:
+                top = int(np.argmax(share))
+                told.append(
+                    f"{kind}, {state}, 45 degrees: vibration is largest at gamma {gamma[top]:.0f} with "
+                    f"{share[top]:.2g} % of E_0 and {share[-1]:.2g} % at gamma {gamma[-1]:.0f}."
+                )
+    return told
+
+
+def _given_back(maps: Maps) -> list[str]:
+    twice = [d for d in maps.line if maps.value(d, "E_vib_over_E_0", "first-") is not None]
+    if not twice:
+        return []
+    back = [(_after_first(maps, d) - (maps.value(d, "E_vib_over_E_0") or 0.0), d) for d in twice]
+    most, drop = max(back, key=lambda pair: pair[0])
+    giving = sum(value > 0 for value, _ in back)
+    return [
+        f"Of {len(maps.line)} drops at 45 degrees {len(twice)} touch again; in {giving} of these the later "
+        f"contacts give vibration back, at most {100 * most:.2g} % of E_0 (gamma {drop.gamma:.0f}, "
+        f"{KINDS[drop.yields]}, f = {drop.friction:g})."
+    ]
+
+
+def _differences(maps: Maps) -> list[str]:
+    told = []
+    for words, key in COMPARED.items():
+        pairs = [(maps.value(d, key), maps.value(d, key, "solid-")) for d in maps.anchors]
+        away = [m - s for m, s in pairs if m is not None and s is not None]
+        if away:
+            told.append(
+                f"{words}: modes less finite elements over {len(away)} anchors: mean {np.mean(away):+.3f}, "
+                f"root mean square {np.linalg.norm(away) / len(away) ** 0.5:.3f}, largest "
+                f"{max(away, key=abs):+.3f}."
+            )
+    return told
+
+
+def _anchor_sheet(maps: Maps) -> Sheet:
+    rows: list[list[Cell]] = []
+    for drop in maps.anchors:
+        pairs = [maps.value(drop, key, p) for key in COMPARED.values() for p in ("", "solid-")]
+        counts = [maps.value(drop, "contacts", p) for p in ("", "solid-")]
+        rows.append([drop.gamma, KINDS[drop.yields], drop.friction, drop.angle, *pairs, *counts])
+    pairs_head = [f"{w}_{p}" for w in COMPARED for p in ("modal", "solid")]
+    head = ("gamma", "contact", "f", "angle_deg", *pairs_head, "contacts_modal", "contacts_solid")
+    return Sheet("anchors", "Modes beside finite elements", head, rows)
+
+
+def _rod_sheet(maps: Maps) -> Sheet:
+    """Return the paper's rods, elastic and yielding, from the anchors' modal twins."""
+    rods = [d for d in maps.anchors if d.length in PAPER_RODS.values() and d.angle == 45.0]
+    return Sheet("rods", "The paper's rods (modes)", *_rows(maps, rods))
+
+
+def _worst_sheet(maps: Maps) -> Sheet:
+    return Sheet("worst", "The angle that vibrates most", *_rows(maps, maps.worst()), shown=False)
+
+
+def _map_sheet(maps: Maps) -> Sheet:
+    return Sheet(
+        "map", "Every point of the maps (modes)", *_rows(maps, [*maps.line, *maps.grid]), shown=False
+    )
+
+
+def _rows(maps: Maps, drops: Iterable[Drop]) -> tuple[tuple[str, ...], list[list[Cell]]]:
+    keys = ("E_vib_over_E_0", "e_edge", "mu", "contacts", "W_friction_over_E_0", "plastic")
+    head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact", *keys)
+    return head, [_row(d, [maps.value(d, key) for key in keys]) for d in drops]
+
+
+def _row(d: Drop, values: list[float | None]) -> list[Cell]:
+    return [d.gamma, d.diameter, d.length, d.speed, d.angle, d.friction, KINDS[d.yields], *values]

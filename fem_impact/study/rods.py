@@ -1,0 +1,87 @@
+"""Scenes of the maps: dropped rods of any slenderness, diameter, tip, speed, angle, friction and yield."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, radians, sin
+
+from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Save, Scene, Surface, materials
+from rigid.slenderness import EXPONENT
+
+__all__ = ["MAP_NOTES", "PAPER_RODS", "STATES", "Drop", "length_of"]
+
+PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
+"""Lengths, m, of the three rods of 19 mm."""
+
+STATES = {"frictionless": 0.0, "contaminated": 0.16, "cleaned": 0.42, "machined": 0.57}
+"""f of the surface states at which maps are drawn; all but 0 are those of `fem_impact.scene.surfaces`."""
+
+BODY, TIP = 0.019, 0.003  # m
+LATEST = 8e-3  # s: the second contact of a slender rod comes after some periods of its bending
+MAP_NOTES = (
+    "Dropped without spin: v_n = -v cos(alpha), v_t = -v sin(alpha); no gravity during the impact.",
+    "Edge radius 3 mm on 19 mm and in proportion to other diameters; steels of the paper.",
+    "Modal: a round contact of the same sqrt(R1 R2), no ploughing, no shear flow under a sticking tip.",
+)
+
+
+def length_of(gamma: float, diameter: float = BODY) -> float:
+    """Return the length, m, of a rod of slenderness gamma, m^-0.3815 (Eq 29)."""
+    return float(gamma * diameter**EXPONENT)
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """A rod that falls on the plate: lengths in m, angle in degrees, speed in m/s.
+
+    ``yields`` lets both bodies yield; ``vibrates`` is off for the rigid rod on the same contact.
+    """
+
+    length: float
+    angle: float = 45.0
+    friction: float = 0.0
+    yields: bool = False
+    diameter: float = BODY
+    tip_radius: float | None = None
+    speed: float = 2.1
+    vibrates: bool = True
+
+    @property
+    def gamma(self) -> float:
+        """Slenderness, m^-0.3815."""
+        return float(self.length / self.diameter**EXPONENT)
+
+    @property
+    def name(self) -> str:
+        """An identifier that holds every number: um, 0.01 degrees, 0.001, mm/s."""
+        numbers = (self.length * 1e6, self.diameter * 1e6, self.radius * 1e6, self.angle * 1e2)
+        more = (self.friction * 1e3, self.speed * 1e3)
+        words = [("y" if self.yields else "e") + ("v" if self.vibrates else "r")]
+        return "-".join([*words, *(str(round(n)) for n in (*numbers, *more))])
+
+    @property
+    def radius(self) -> float:
+        """Edge radius of the tip, m."""
+        return TIP * self.diameter / BODY if self.tip_radius is None else self.tip_radius
+
+    def scene(self, tip_size: float | None = None) -> Scene:
+        """Return the scene; ``tip_size``, m, is for the solid fidelity."""
+        steels, turn = materials(), radians(self.angle)
+        f = self.friction
+        accuracy = Accuracy(max_time=LATEST)
+        return Scene(
+            id=self.name,
+            title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {f:g}",
+            projectile=Projectile(self.length, self.diameter, "B", self.radius, steels["rod-steel"]),
+            barrier=Barrier(steels["plate-steel"]),
+            surface=Surface("custom", f, f, f, "point of a map"),
+            impact=Impact(turn, -self.speed * cos(turn), -self.speed * sin(turn)),
+            effects=self._effects(),
+            accuracy=replace(accuracy, tip_size=tip_size) if tip_size else accuracy,
+            save=Save(frames=0),
+        )
+
+    def _effects(self) -> tuple[str, ...]:
+        barrier = ("rod-plasticity", "barrier-elastoplastic") if self.yields else ("barrier-elastic",)
+        rubs = ("friction",) if self.friction else ()
+        return (*(("vibration",) if self.vibrates else ()), *rubs, *barrier, "large-rotation")
