@@ -23,6 +23,7 @@ from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
+from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
 from fem_impact.solid.rigid_rest import POINTS, ElasticNose, RigidRest, rest_mass
 from fem_impact.solid.slices import SliceOperator
@@ -115,16 +116,18 @@ def _inverse(mass: Array, bodies: list[Body]) -> Array:
     return inverse
 
 
-def _start(bodies: list[Body], layout: Layout, scene: Scene, mass: Array) -> tuple[Array, Array]:
-    """Return positions and velocities at time 0; omega turns n towards t."""
+def _start(
+    bodies: list[Body], layout: Layout, scene: Scene, mass: Array, drawn: MassPoints
+) -> tuple[Array, Array]:
+    """Return positions and velocities of the masses at time 0; omega turns n towards t."""
     x, v = np.zeros(layout.size), np.zeros(layout.size)
     x[layout.dummy] = dummy_element()
     for body in bodies:
         x[body.places] = body.points
+    drawn.draw_in(layout.slices_of(x))
     rod, impact = bodies[0], scene.impact
-    centre = mass_centre(mass, x, rod.places)
-    arm = rod.points - centre
-    speed = np.zeros_like(rod.points)
+    arm = x[rod.places] - mass_centre(mass, x, rod.places)
+    speed = np.zeros_like(arm)
     speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
     speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
     v[rod.places] = speed
@@ -132,7 +135,7 @@ def _start(bodies: list[Body], layout: Layout, scene: Scene, mass: Array) -> tup
 
 
 def _elastic_rod(
-    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, spec: ModelSpec
+    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, drawn: MassPoints, spec: ModelSpec
 ) -> ElasticRod | ElasticNose:
     rod, n = geometry.rod, layout.rod_size
     linear = ~body.yields
@@ -144,7 +147,7 @@ def _elastic_rod(
     if not spec.vibrating:
         return ElasticNose(nose, frame, np.zeros(n), np.zeros(n))
     slices = SliceOperator.of_rod(rod, body.stiffness)
-    return ElasticRod(slices, nose, frame, layout.body_shape, np.zeros(n), np.zeros(n))
+    return ElasticRod(slices, drawn, nose, frame, layout, np.zeros(n), np.zeros(n))
 
 
 def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
@@ -249,9 +252,10 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     if not spec.vibrating:
         mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
     inverse_mass = _inverse(mass, bodies)
-    x, v = _start(bodies, layout, scene, mass)
     rod = bodies[0]
-    linear = _elastic_rod(rod, geometry, layout, mass, x, spec)
+    drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
+    x, v = _start(bodies, layout, scene, mass, drawn)
+    linear = _elastic_rod(rod, geometry, layout, mass, x, drawn, spec)
     forces: list[Force] = [linear]
     impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
     zones = [
@@ -261,7 +265,8 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
     n, place = layout.rod_size, layout.barrier_slice
-    rod_stiffness = _assembled(rod, n)
+    P = drawn.matrix(layout.body_shape[1], n)
+    rod_stiffness = sp.csr_matrix(P.T @ _assembled(rod, n) @ P)
     steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
     if spec.loss_factor is not None:
         modes = rod_modes(rod_stiffness, mass[:n], inverse_mass[:n] == 0)
@@ -284,6 +289,7 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         layout=layout,
         mass=mass,
         inverse_mass=inverse_mass,
+        drawn=drawn,
         forces=forces,
         impulses=impulses,
         hanging=hanging,

@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.items import Accounts
+from fem_impact.solid.layout import Layout
+from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
@@ -23,20 +25,24 @@ class ElasticRod:
 
     body: ClassVar[str] = "rod"
     slices: SliceOperator
+    drawn: MassPoints
     nose: NodeProduct
     frame: FixedFrame | TurningFrame
-    body_shape: tuple[int, int]
+    layout: Layout
     d: Array
     y: Array
 
     def add_force(self, state: State) -> None:
         """Add the elastic forces of the rod's linear part."""
         n = len(self.d)
-        body = self.body_shape[0] * self.body_shape[1]
         self.frame.localise(state.x[:n], self.d)
-        self.y[body:] = 0.0
-        self.slices.apply(self.d[:body].reshape(self.body_shape), self.y[:body].reshape(self.body_shape))
+        self.y[:] = 0.0
+        d, y = self.layout.slices_of(self.d), self.layout.slices_of(self.y)
+        self.drawn.spread(d)
+        self.slices.apply(d, y)
         self.nose.add_to(self.d, self.y)
+        self.drawn.draw_in(d)
+        self.drawn.gather(y)
         self.frame.add_force(self.d, self.y, state.force[:n])
 
     def accounts(self, state: State) -> Accounts:

@@ -65,13 +65,14 @@ class Fields:
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return point data and cell data of the present state."""
-        u = state.x[self.places] - self.points
-        return {"displacement": u, "velocity": state.v[self.places]}, self._cells(state, u)
+        u = self.model.nodes(state.x - self.model.start[0])[self.places]
+        v = self.model.nodes(state.v)[self.places]
+        return {"displacement": u, "velocity": v}, self._cells(state, self.points + u)
 
-    def _cells(self, state: State, u: Array) -> dict[str, Array]:
+    def _cells(self, state: State, x: Array) -> dict[str, Array]:
         n = len(self.model.geometry.rod_points)
-        local = u.copy()
-        local[:n] = self._turned_back(state, n)
+        local = x - self.points
+        local[:n] = self._turned_back(state, x[:n]) - self.points[:n]
         stress, strain = np.zeros(len(self.cells)), np.zeros(len(self.cells))
         for number, (E, nu) in enumerate(self.elastic):
             rows = self.body == number
@@ -81,12 +82,10 @@ class Fields:
             stress[rows], strain[rows] = zone.mises(), zone.plastic_strain()
         return {"mises": stress, "plastic_strain": strain}
 
-    def _turned_back(self, state: State, n: int) -> Array:
+    def _turned_back(self, state: State, x: Array) -> Array:
         angle = self.view.angle(state, self.model)
-        x = state.x[self.places[:n]]
         c, s = np.cos(angle), np.sin(angle)
-        back = np.stack([c * x[:, 0] + s * x[:, 2], x[:, 1], c * x[:, 2] - s * x[:, 0]], axis=1)
-        return np.asarray(back - self.points[:n])
+        return np.stack([c * x[:, 0] + s * x[:, 2], x[:, 1], c * x[:, 2] - s * x[:, 0]], axis=1)
 
     def _yielding(self, body: str) -> Ints:
         g = self.model.geometry

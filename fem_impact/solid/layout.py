@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from meshes import HexMesh, RodMesh
 
+Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
@@ -40,6 +41,11 @@ class Layout:
     def barrier_slice(self) -> slice:
         """Return the barrier's free part."""
         return slice(self.rod_size, self.free_size)
+
+    def slices_of(self, vector: Array) -> Array:
+        """Return the slices' part of a vector, a view of shape ``body_shape``."""
+        rows, layers = self.body_shape
+        return vector[: rows * layers].reshape(rows, layers)
 
 
 def _triples(start: int, count: int) -> Ints:

@@ -14,6 +14,7 @@ from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.items import Account, Force, Impulse
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.sparse import Hanging
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
@@ -30,6 +31,7 @@ class Model:
     geometry : meshes
     layout : places of the unknowns
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
+    drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
@@ -44,6 +46,7 @@ class Model:
     layout: Layout
     mass: Array
     inverse_mass: Array
+    drawn: MassPoints
     forces: Sequence[Force]
     impulses: Sequence[Impulse]
     hanging: Hanging
@@ -57,6 +60,12 @@ class Model:
     def step(self) -> float:
         """Return the step, s, that no body forbids."""
         return min(self.steps.values())
+
+    def nodes(self, vector: Array) -> Array:
+        """Return displacements or velocities of the nodes from those of the masses, a flat vector."""
+        spread = vector.copy()
+        self.drawn.spread(self.layout.slices_of(spread))
+        return spread
 
     def initial_state(self) -> State:
         """Return the state just before the first contact."""

@@ -25,6 +25,7 @@ from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
+from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
@@ -97,18 +98,21 @@ def body_model(body: Body) -> Model:
     T = tie_operator(mesh.tie, layout.rod, layout.size)
     mass = assemble_mass(nodal, mesh.cells, T)
     inverse = _inverse(body, mass, layout)
-    x, v = _start(body, layout)
-    forces: list[Force] = [_linear(body, K, ~yields, layout, mass, x)]
+    drawn = MassPoints.of_rod(body.mesh, nodal, body.rho)
+    x, v = _start(body, layout, drawn)
+    forces: list[Force] = [_linear(body, K, ~yields, layout, mass, x, drawn)]
     zones = _zones(body, yields, layout)
     contact = _contact(body, layout, inverse)
     impulses: list[Impulse] = [contact] if contact else []
     own = tie_operator(mesh.tie, layout.rod, layout.rod_size)
+    own = own @ drawn.matrix(layout.body_shape[1], layout.rod_size)
     stiffness = assemble(K, mesh.cells, own)
     return Model(
         geometry=Geometry(body.mesh, body.points, None, 0.0, int(mesh.level.max())),
         layout=layout,
         mass=mass,
         inverse_mass=inverse,
+        drawn=drawn,
         forces=[*forces, *zones],
         impulses=impulses,
         hanging=Hanging.of([(mesh.tie, layout.rod)]),
@@ -128,17 +132,21 @@ def _inverse(body: Body, mass: Array, layout: Layout) -> Array:
     return inverse
 
 
-def _start(body: Body, layout: Layout) -> tuple[Array, Array]:
+def _start(body: Body, layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
     x, v = np.zeros(layout.size), np.zeros(layout.size)
     x[layout.dummy] = dummy_element()
     x[layout.rod] = body.points
     v[layout.rod] = body.velocity
+    for vector in (x, v):
+        drawn.draw_in(layout.slices_of(vector))
     if body.held is not None:
         v[layout.rod[body.held]] = 0.0
     return x, v
 
 
-def _linear(body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x: Array) -> ElasticRod:
+def _linear(
+    body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x: Array, drawn: MassPoints
+) -> ElasticRod:
     """Return the linear part: slices by stencil where the mesh has them, the rest by rows."""
     mesh, n = body.mesh.mesh, layout.rod_size
     rest = linear.copy()
@@ -147,7 +155,7 @@ def _linear(body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x:
     free = layout.rod[~mesh.is_hanging]
     product = NodeProduct.of(assemble(K[rest], mesh.cells[rest], T), free) if rest.any() else _nothing()
     frame = TurningFrame.at(x[:n], mass[:n], free) if body.turning else FixedFrame(x[:n].copy())
-    return ElasticRod(_slices(body, K), product, frame, layout.body_shape, np.zeros(n), np.zeros(n))
+    return ElasticRod(_slices(body, K), drawn, product, frame, layout, np.zeros(n), np.zeros(n))
 
 
 def _nothing() -> NodeProduct:

@@ -9,8 +9,11 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.modes import rod_modes
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.march import march
+from fem_impact.solid.masspoints import TWISTING, MassPoints
 from fem_impact.solid.model import Model
+from fem_impact.solid.sparse import assemble, tie_operator
 from fem_impact.solid.state import State
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Body, body_model
@@ -48,6 +51,24 @@ def _classes(model: Model) -> dict[str, Array]:
         "bending": found.frequency[across > 10 * along],
         "longitudinal": found.frequency[along > 10 * across],
     }
+
+
+def _torsion(model: Model, p: Values) -> float:
+    """Return the first frequency, Hz, of the motions that the solver's mirrored half leaves out."""
+    rod, layout = model.geometry.rod, model.layout
+    K = element_stiffness(
+        rod.mesh.points, rod.mesh.cells, isotropic_stiffness(p["E"], p["nu"]), "incompatible"
+    )
+    masses = lumped_mass(rod.mesh.points, rod.mesh.cells, p["rho"])
+    n = layout.rod_size
+    drawn = MassPoints.of_rod(rod, masses, p["rho"], TWISTING).matrix(layout.body_shape[1], n)
+    K = assemble(K, rod.mesh.cells, tie_operator(rod.mesh.tie, layout.rod, n) @ drawn)
+    fixed = np.zeros(n, dtype=bool)
+    fixed[layout.rod[np.abs(rod.mesh.points[:, 1]) < 1e-12][:, [0, 2]]] = True
+    found = rod_modes(K, model.mass[:n], fixed, COUNT)
+    axis = layout.rod[np.hypot(rod.mesh.points[:, 0], rod.mesh.points[:, 1]) < 1e-9, 1]
+    turns = abs(found.shape[axis]).max(axis=0) < 0.1 * abs(found.shape).max(axis=0)
+    return float(found.frequency[turns][0])
 
 
 def _ring(p: Values) -> tuple[float, float, int]:
@@ -110,6 +131,7 @@ def solve(p: Values) -> Solved:
     checks = _eigen_checks(_classes(model), exact)
     bend, stretch, steps = _ring(p)
     checks += [
+        Check("torsion 1", "Hz", _torsion(model, p), float(exact.torsion[0]), TOLERANCE),
         Check("bending 1, ringing", "Hz", bend, float(exact.bending[0]), TOLERANCE),
         Check("longitudinal 1, ringing", "Hz", stretch, float(exact.longitudinal[0]), TOLERANCE),
     ]
