@@ -25,7 +25,7 @@ __all__ = ["PROBLEM"]
 
 Array = NDArray[np.float64]
 
-PLATEAU, DURATION, GROWTH = 0.005, 0.01, 1e-3
+PLATEAU, DURATION, GROWTH, CLOSING = 0.005, 0.01, 1e-3, 1e-6
 WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
 AFTER = 1.3  # durations that are followed
 FLIGHT = 0.3  # time between two walls over the duration of a strike
@@ -81,11 +81,13 @@ class Ceiling:
 
 
 def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
-    model = _model(p, int(p["slices"]), 0.0, int(p["across"]))
+    slices = int(p["slices"])
+    model = _model(p, slices, 0.0, int(p["across"]))
     state, force = model.initial_state(), Force(model)
     energy = Until(model.ledger(), AFTER * exact.duration)
     march(model, state, [force, energy])
     plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration)
+    closing = energy.ledger.sample(state)["closing"] / energy.ledger.start
     spans = model.book.intervals
     checks = [
         Check("plateau of the wall force", "N", plateau, exact.force, PLATEAU),
@@ -93,6 +95,8 @@ def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
         Check("contacts", "1", force.touches, 1, 0.0, "absolute"),
         Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], 1.0, 0.02, "absolute"),
         Check("largest energy / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
+        # half a slice of mass stops dead at the wall
+        Check("closing loss / E_0", "1", closing, 0.5 / slices, CLOSING),
     ]
     return checks, state.step, len(model.geometry.rod.mesh.cells)
 
