@@ -265,8 +265,7 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
     n, place = layout.rod_size, layout.barrier_slice
-    P = drawn.matrix(layout.body_shape[1], n)
-    rod_stiffness = sp.csr_matrix(P.T @ _assembled(rod, n) @ P)
+    rod_stiffness = drawn.reduced(_assembled(rod, n), layout.body_shape[1])
     steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
     if spec.loss_factor is not None:
         modes = rod_modes(rod_stiffness, mass[:n], inverse_mass[:n] == 0)

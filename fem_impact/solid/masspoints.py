@@ -88,6 +88,11 @@ class MassPoints:
         rest = size - slices.shape[0]
         return sp.csr_matrix(sp.block_diag([slices, sp.csr_matrix((rest, rest))]) + sp.identity(size))
 
+    def reduced(self, K: sp.csr_matrix, layers: int) -> sp.csr_matrix:
+        """Return P^T K P over the masses of a stiffness (size, size) over the nodes, N/m."""
+        P = self.matrix(layers, K.shape[0])
+        return sp.csr_matrix(P.T @ K @ P)
+
 
 @kernel
 def add_linear(out, into, amount, rows):  # type: ignore[no-untyped-def]

@@ -105,8 +105,7 @@ def body_model(body: Body) -> Model:
     contact = _contact(body, layout, inverse)
     impulses: list[Impulse] = [contact] if contact else []
     own = tie_operator(mesh.tie, layout.rod, layout.rod_size)
-    own = own @ drawn.matrix(layout.body_shape[1], layout.rod_size)
-    stiffness = assemble(K, mesh.cells, own)
+    stiffness = drawn.reduced(assemble(K, mesh.cells, own), layout.body_shape[1])
     return Model(
         geometry=Geometry(body.mesh, body.points, None, 0.0, int(mesh.level.max())),
         layout=layout,

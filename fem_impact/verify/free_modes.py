@@ -61,7 +61,7 @@ def _torsion(model: Model, p: Values) -> float:
     )
     masses = lumped_mass(rod.mesh.points, rod.mesh.cells, p["rho"])
     n = layout.rod_size
-    drawn = MassPoints.of_rod(rod, masses, p["rho"], TWISTING).matrix(layout.body_shape[1], n)
+    drawn = MassPoints.of_rod(rod, masses, p["rho"], TWISTING)
     K = assemble(K, rod.mesh.cells, tie_operator(rod.mesh.tie, layout.rod, n) @ drawn)
     fixed = np.zeros(n, dtype=bool)
     fixed[layout.rod[np.abs(rod.mesh.points[:, 1]) < 1e-12][:, [0, 2]]] = True

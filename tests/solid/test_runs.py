@@ -284,7 +284,7 @@ def _between(share):
     """Make meshes whose node nearest to the lowest point stands a share of a cell beside it."""
     real = built.build_geometry
 
-    def made(scene, gap, meshed):
+    def made(scene, gap, meshed, vibrating):
         base = scene.projectile.diameter / scene.accuracy.across
         h = base / 2 ** round(np.log2(base / scene.accuracy.tip_size))
         turn = share * h / scene.projectile.tip_radius
