@@ -56,17 +56,14 @@ def _classes(model: Model) -> dict[str, Array]:
 def _torsion(model: Model, p: Values) -> float:
     """Return the first frequency, Hz, of the motions that the solver's mirrored half leaves out."""
     rod, layout = model.geometry.rod, model.layout
-    K = element_stiffness(
-        rod.mesh.points, rod.mesh.cells, isotropic_stiffness(p["E"], p["nu"]), "incompatible"
-    )
-    masses = lumped_mass(rod.mesh.points, rod.mesh.cells, p["rho"])
-    n = layout.rod_size
-    drawn = MassPoints.of_rod(rod, masses, p["rho"], TWISTING)
-    K = assemble(K, rod.mesh.cells, tie_operator(rod.mesh.tie, layout.rod, n) @ drawn)
+    points, cells, n = rod.mesh.points, rod.mesh.cells, layout.rod_size
+    K = element_stiffness(points, cells, isotropic_stiffness(p["E"], p["nu"]), "incompatible")
+    drawn = MassPoints.of_rod(rod, lumped_mass(points, cells, p["rho"]), p["rho"], TWISTING)
+    plain = assemble(K, cells, tie_operator(rod.mesh.tie, layout.rod, n))
     fixed = np.zeros(n, dtype=bool)
-    fixed[layout.rod[np.abs(rod.mesh.points[:, 1]) < 1e-12][:, [0, 2]]] = True
-    found = rod_modes(K, model.mass[:n], fixed, COUNT)
-    axis = layout.rod[np.hypot(rod.mesh.points[:, 0], rod.mesh.points[:, 1]) < 1e-9, 1]
+    fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
+    found = rod_modes(drawn.reduced(plain, layout.body_shape[1]), model.mass[:n], fixed, COUNT)
+    axis = layout.rod[np.hypot(points[:, 0], points[:, 1]) < 1e-9, 1]
     turns = abs(found.shape[axis]).max(axis=0) < 0.1 * abs(found.shape).max(axis=0)
     return float(found.frequency[turns][0])
 
