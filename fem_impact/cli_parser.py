@@ -44,6 +44,10 @@ class Options(argparse.Namespace):
     quick: bool = False
     workers: int | None = None
     scheduler: str = ""
+    target: str = ""
+    budget: str = ""
+    of: str = ""
+    across: str = ""
     estimate: bool = False
     result: Path
     set_id: str | None = None
@@ -71,7 +75,16 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for add in (_add_run, _add_study, _add_render, _add_report, _add_scenes, _add_check, _add_verify):
+    for add in (
+        _add_run,
+        _add_study,
+        _add_render,
+        _add_report,
+        _add_scenes,
+        _add_check,
+        _add_cost,
+        _add_verify,
+    ):
         add(commands)
     add_rigid_commands(commands, _command)
     return parser
@@ -105,7 +118,7 @@ def _add_run(commands: Commands) -> None:
     parser.add_argument(
         "--fidelity",
         choices=["rigid", "modal", "solid"],
-        default="solid",
+        default="",
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
@@ -152,6 +165,24 @@ def _add_scenes(commands: Commands) -> None:
 def _add_check(commands: Commands) -> None:
     words = "check a scene and print it with units, sources and effects, without computing"
     _add_scene_words(_command(commands, "check", words, "fem_impact.cli_scene:check"))
+
+
+def _add_cost(commands: Commands) -> None:
+    words = "show what accuracy costs in time: errors of all settings against the limit"
+    parser = _command(commands, "cost", words, "fem_impact.cli_cost:cost")
+    _add_scene_words(parser)
+    parser.add_argument(
+        "--target", default="", metavar="SHARE", help="name the cheapest setting, such as '2 %%'"
+    )
+    parser.add_argument("--budget", default="", metavar="TIME", help="name the best setting, such as '30 s'")
+    parser.add_argument(
+        "--of", default="", metavar="NAMES", help="quantities that are meant (default: e,E_vib)"
+    )
+    parser.add_argument("--across", default="", metavar="CELLS", help="meshes of the family, such as 6,8,10")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="where to write (default: results/cost/SCENE)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_verify(commands: Commands) -> None:

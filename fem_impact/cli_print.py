@@ -43,8 +43,24 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
+    lines += _accuracy(record)
     lines += ["", *(f"note: {sentence}" for sentence in _sentences(record))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
+
+
+def _accuracy(record: Mapping[str, Any]) -> list[str]:
+    """Return expected and achieved error and time of a run that a target chose."""
+    if record["accuracy_target"] is None:
+        return []
+    lines = ["", f"asked for {_percent(record, 'accuracy_target')}: {record['accuracy_setting']}"]
+    for word in ("expected", "achieved"):
+        error, wall = _percent(record, f"{word}_error"), _value(record, f"{word}_wall_s")
+        lines += [f"  {word} error of e and E_vib {error}, time {wall} s"]
+    return lines
+
+
+def _percent(record: Mapping[str, Any], key: str) -> str:
+    return f"{100 * record[key]:.2g} %" if record[key] is not None else f"not known: {_reason(record, key)}"
 
 
 def _sentences(record: Mapping[str, Any]) -> list[str]:

@@ -22,12 +22,13 @@ __all__ = ["run"]
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
+    _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.simulate import simulate
 
     meter = chosen_meter(options)
     try:
-        outcome = simulate(scene, fidelity=options.fidelity, out=out, progress=meter)
+        outcome = simulate(scene, fidelity=options.fidelity or None, out=out, progress=meter)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}") from None
     finally:
@@ -39,10 +40,21 @@ def run(options: Options) -> int:
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
+def _say_plan(scene: Scene, options: Options) -> None:
+    """Before the work: what the measured costs chose for the error that the scene allows."""
+    if scene.accuracy.target is None:
+        return
+    from fem_impact.cost import plan
+
+    sentence = plan(scene, options.fidelity or None).sentence
+    if not options.quiet:
+        sys.stderr.write(f"{sentence}\n")
+
+
 def _default_out(scene: Scene, options: Options) -> Path:
     """Return results/ID, with the digest's start when the scene was changed, and the fidelity if reduced."""
     name = f"{scene.id}-{scene.digest()[:8]}" if options.changes else scene.id
-    return Path("results") / (name if options.fidelity == "solid" else f"{name}-{options.fidelity}")
+    return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
 
 
 def _stopped(cause: str, out: Path) -> int:

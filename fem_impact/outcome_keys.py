@@ -15,9 +15,18 @@ from rigid.experiments import measured_set
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
-__all__ = ["Values", "coefficient_keys", "motion_keys", "plastic_keys", "provenance"]
+__all__ = ["NO_TARGET", "Values", "coefficient_keys", "motion_keys", "plastic_keys", "provenance"]
 
 Values = dict[str, Any]
+
+NO_TARGET = dict.fromkeys(
+    (
+        *("accuracy_target", "accuracy_setting", "expected_error", "expected_wall_s"),
+        *("achieved_error", "achieved_wall_s", "extrapolated"),
+    ),
+    "the scene gives a mesh, not the error it allows",
+)
+"""Reasons of a run that no target chose."""
 
 
 def provenance(

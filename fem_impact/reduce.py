@@ -10,7 +10,7 @@ import rigid
 from fem_impact.effects import choices, neglected
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
-from fem_impact.outcome_keys import Values, coefficient_keys, motion_keys, provenance
+from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, provenance
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -31,7 +31,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     values |= _motion(scene, result)
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
-    reasons |= {
+    reasons |= NO_TARGET | {
         "W_damping_over_E_0": "the material-damping effect is off",
         "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
         "bands": "one mesh alone has no band: run the study, or a second tip size",

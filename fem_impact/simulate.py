@@ -22,7 +22,7 @@ FIDELITIES = ("rigid", "modal", "solid")
 
 
 def simulate(
-    scene: Scene, fidelity: str = "solid", out: Path | None = None, progress: Report | None = None
+    scene: Scene, fidelity: str | None = None, out: Path | None = None, progress: Report | None = None
 ) -> Outcome:
     """Compute an impact.
 
@@ -31,7 +31,8 @@ def simulate(
     scene : Scene
     fidelity : ``rigid``, impulses of a rigid rod, under a millisecond; ``modal``, free modes and a local
         contact law, some ten milliseconds once the modes of the rod are known; ``solid``, the explicit
-        finite-element model, seconds to minutes
+        finite-element model, seconds to minutes; without one it is ``solid``, or what the measured
+        costs choose for a scene that states the error it allows
     out : directory for outcome.json and scene.toml, contacts.csv where contacts have a duration, and
         history.csv and fields.vtkhdf of the solid fidelity; none of them is written without it
     progress : called every few hundred steps of the solid fidelity
@@ -39,14 +40,24 @@ def simulate(
     Raises
     ------
     SceneError
-        If the fidelity is unknown, or the tip has no fine zone where the solid fidelity needs one.
+        If the fidelity is unknown, the tip has no fine zone where the solid fidelity needs one, or no
+        measured cost tells how to keep to the error that the scene allows.
     RunError
         If the run cannot go on; what was computed stays in ``out``.
     """
-    if fidelity not in FIDELITIES:
+    if fidelity not in (None, *FIDELITIES):
         near = get_close_matches(str(fidelity), FIDELITIES, 1)
         hint = f"Did you mean {near[0]}?" if near else f"Use one of {', '.join(FIDELITIES)}."
         raise SceneError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+    if scene.accuracy.target is not None:
+        from fem_impact.cost import simulate_to_target
+
+        return simulate_to_target(scene, fidelity, out, progress)
+    return _run(scene, fidelity or "solid", out, progress)
+
+
+def _run(scene: Scene, fidelity: str, out: Path | None, progress: Report | None) -> Outcome:
+    """Compute one impact on the mesh that the scene gives, and write its files."""
     from fem_impact.output import make_directory, write_text
 
     require_runnable(scene, fidelity)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from fem_impact.modal.assumptions import ASSUMPTIONS
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome import KEYS, Outcome
-from fem_impact.outcome_keys import Values, coefficient_keys, motion_keys, plastic_keys, provenance
+from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
 from fem_impact.scene import Scene
 
 __all__ = ["reduce"]
@@ -46,7 +46,7 @@ def reduce(scene: Scene, result: ModalResult) -> Outcome:
         "cpu_s": result.cpu,
         "min_step_s": result.step,
     }
-    return Outcome(values, REASONS | reasons)
+    return Outcome(values, NO_TARGET | REASONS | reasons)
 
 
 def _end(result: ModalResult) -> str:

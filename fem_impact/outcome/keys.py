@@ -14,7 +14,17 @@ ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
 
 Kind = Literal[
-    "number", "count", "flag", "text", "texts", "versions", "contacts", "choices", "bands", "reasons"
+    "number",
+    "count",
+    "flag",
+    "text",
+    "texts",
+    "versions",
+    "contacts",
+    "choices",
+    "bands",
+    "values",
+    "reasons",
 ]
 
 
@@ -140,7 +150,17 @@ CONTACT = (
     _number("marker_Omega_rad_per_s", "rad/s", "Omega as the camera's two markers would give it."),
     _number("marker_V_cn_m_per_s", "m/s", "Normal velocity of the lower marker."),
     _number("marker_V_ct_m_per_s", "m/s", "Tangential velocity of the lower marker."),
+    Key("extrapolated", "values", "as the key", "Limit from two meshes of each key that has one.", True),
     Key("bands", "bands", "as the key", "Two-mesh half-width of each key that carries one.", nullable=True),
+)
+
+ACCURACY = (
+    _number("accuracy_target", "-", "Relative error that the scene asked for."),
+    Key("accuracy_setting", "text", "", "Setting that the measured costs chose for it.", nullable=True),
+    _number("expected_error", "-", "Largest relative error of e and E_vib where the costs were measured."),
+    _number("expected_wall_s", "s", "Wall time to be expected, scaled to this machine."),
+    _number("achieved_error", "-", "Largest relative error of e and E_vib that two meshes leave open."),
+    _number("achieved_wall_s", "s", "Wall time of all runs of the setting."),
 )
 
 COST = (
@@ -165,6 +185,7 @@ KEYS: tuple[Key, ...] = (
     *(key for name in ARMS for key in _arms(name)),
     *ENERGY,
     *CONTACT,
+    *ACCURACY,
     *COST,
     *REASONS,
 )

@@ -92,6 +92,14 @@ def _band(name: str, width: Any) -> str | None:
     return None
 
 
+def _values(value: Any) -> str | None:
+    if not isinstance(value, dict):
+        return "must map keys to numbers"
+    known = all(name in KEY_TABLE and KEY_TABLE[name].kind == "number" for name in value)
+    right = known and not any(map(_number, value.values()))
+    return None if right else "must give finite numbers to numeric keys of the table"
+
+
 def _reasons(value: Any) -> str | None:
     if not isinstance(value, Mapping):
         return "must map null keys to sentences"
@@ -109,5 +117,6 @@ _CHECKS: dict[Kind, Callable[[Any], str | None]] = {
     "contacts": _contacts,
     "choices": _choices,
     "bands": _bands,
+    "values": _values,
     "reasons": _reasons,
 }

@@ -144,6 +144,7 @@ ACCURACY = (
         source="chosen for this package: a second contact comes 0.3-1.0 ms after the first",
     ),
 )
+MESH = ("tip_size", "across")  # keys of accuracy that a target replaces
 SAVE = (
     Field(
         "frames",

@@ -7,6 +7,7 @@ from difflib import get_close_matches
 from typing import Any
 
 from fem_impact.errors import SceneError
+from fem_impact.scene import fields
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
@@ -40,6 +41,8 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     table.pop(_plain(last, table), None)
     table[last] = value
     _rename(table, path, last)
+    if path == ["accuracy"]:
+        _keep_one(table, last)
     if (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state":
         data.pop("measured", None)
 
@@ -59,6 +62,13 @@ def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
 def _plain(last: str, table: Mapping[str, Any]) -> str:
     """Return the unit-free twin of an SI key, so that ``length_m`` replaces ``length``."""
     return next((last.removesuffix(s) for s in _SUFFIXES if last.removesuffix(s) in table), last)
+
+
+def _keep_one(table: dict[str, Any], last: str) -> None:
+    """Let a mesh replace a target, and a target a mesh."""
+    mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
+    for key in mesh if last == "target" else ["target"] if last in mesh else []:
+        table.pop(key, None)
 
 
 def _rename(table: dict[str, Any], path: list[str], last: str) -> None:

@@ -11,7 +11,7 @@ from fem_impact.scene import fields, library
 from fem_impact.scene.effect_names import AUTO, check_effects
 from fem_impact.scene.fields import Field
 from fem_impact.scene.types import Accuracy, Barrier, Impact, Material, Projectile, Save, Scene, Surface
-from fem_impact.scene.units import parse_number, parse_quantity
+from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 __all__ = ["read_scene"]
 
@@ -46,7 +46,7 @@ def read_scene(data: Table) -> Scene:
         surface=_within(data, "surface", _surface) if _touches(data, effects) else _frictionless(),
         impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
         effects=effects,
-        accuracy=_within(data, "accuracy", lambda t: Accuracy(**_numbers(t, fields.ACCURACY)), {}),
+        accuracy=_within(data, "accuracy", _accuracy, {}),
         save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
         measured=data.get("measured"),
         restitution=_restitution(data),
@@ -76,6 +76,21 @@ def _projectile(table: Table) -> Projectile:
 def _barrier(table: Table) -> Barrier:
     _check_keys(table, ("material",))
     return Barrier(_within(table, "material", _material))
+
+
+def _accuracy(table: Table | str) -> Accuracy:
+    """Read a mesh, or a wanted error written alone or as the key ``target``."""
+    if isinstance(table, str):
+        return Accuracy(target=parse_share(table, ""))
+    numbers = _numbers(table, fields.ACCURACY, ("target",))
+    if "target" not in table:
+        return Accuracy(**numbers)
+    for key in fields.MESH:
+        if key in table:
+            raise SceneError(
+                "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
+            )
+    return Accuracy(**numbers, target=parse_share(table["target"], "target"))
 
 
 def _material(table: Table | str) -> Material:
@@ -145,7 +160,7 @@ def _number(table: Table, field: Field, default: Any) -> Any:
 def _within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:
     """Read one sub-table and place its complaints below its key."""
     table = data.get(key, default) if default is not None else _needed(data, key)
-    if not isinstance(table, Mapping) and not (key == "material" and isinstance(table, str)):
+    if not isinstance(table, Mapping) and not (key in ("material", "accuracy") and isinstance(table, str)):
         raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
     try:
         return read(table)

@@ -125,12 +125,16 @@ class Impact:
 
 @dataclass(frozen=True, slots=True)
 class Accuracy:
-    """What the answer may cost: element size at the tip and margin of the block in m, latest time in s."""
+    """What the answer may cost: element size at the tip and margin of the block in m, latest time in s.
+
+    ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
+    """
 
     tip_size: float = 0.35e-3
     across: int = 8
     block_margin: float = 6e-3
     max_time: float = 2.5e-3
+    target: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)

@@ -11,7 +11,15 @@ from typing import Any
 
 from fem_impact.errors import SceneError
 
-__all__ = ["DIMENSIONS", "Dimension", "Unit", "format_quantity", "parse_number", "parse_quantity"]
+__all__ = [
+    "DIMENSIONS",
+    "Dimension",
+    "Unit",
+    "format_quantity",
+    "parse_number",
+    "parse_quantity",
+    "parse_share",
+]
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
@@ -103,6 +111,26 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
     if not isinstance(value, str):
         raise SceneError(f"a bare number is not a {dim.name}.", key=key, value=value, remedy=remedy)
     return _read_text(value, dim, key, remedy)
+
+
+def parse_share(value: Any, key: str) -> float:
+    """Read a share written in per cent, such as ``"2 %"``, above 0 and at most 100 %.
+
+    Examples
+    --------
+    >>> parse_share("2 %", "accuracy")
+    0.02
+    """
+    found = _QUANTITY.fullmatch(value[:_LONGEST]) if isinstance(value, str) else None
+    share = float(Decimal(found[1]).scaleb(-2)) if found and (found[2] or "").strip() == "%" else 0.0
+    if not 0.0 < share <= 1.0:
+        raise SceneError(
+            "must be a share in per cent, above 0 and at most 100 %.",
+            key=key,
+            value=value,
+            remedy='Write it like "2 %".',
+        )
+    return share
 
 
 def parse_number(value: Any, key: str) -> float:

@@ -9,7 +9,7 @@ from typing import Any
 
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Field
-from fem_impact.scene.types import Material, Scene
+from fem_impact.scene.types import Accuracy, Material, Scene
 
 __all__ = ["digest", "to_dict", "to_toml"]
 
@@ -32,7 +32,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         "barrier": {"material": _material(scene.barrier.material)},
         "surface": surface | _written(scene.surface, fields.SURFACE),
         "impact": _written(scene.impact, fields.IMPACT),
-        "accuracy": _written(scene.accuracy, fields.ACCURACY),
+        "accuracy": _accuracy(scene.accuracy),
         "save": _written(scene.save, fields.SAVE),
     }
 
@@ -46,6 +46,14 @@ def digest(scene: Scene) -> str:
     """Return the SHA-256 of the scene's canonical JSON."""
     text = json.dumps(to_dict(scene), sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
+    written = _written(accuracy, fields.ACCURACY)
+    if accuracy.target is None:
+        return written
+    rest = {key: value for key, value in written.items() if key not in fields.MESH}
+    return {"target": f"{100 * accuracy.target:.12g} %", **rest}
 
 
 def _material(material: Material) -> dict[str, Any]:

@@ -159,6 +159,7 @@ REASONS = {
     "W_damping_over_E_0": "no damping effect was in the model",
     "E_hourglass_over_E_0": "fully integrated elements have no hourglass motion",
     "effect_choices": "made by hand",
+    "extrapolated": "one mesh only",
     "bands": "one mesh only; a study at two tip sizes fills it",
 }
 
@@ -179,7 +180,8 @@ def values(**changes):
         "effects": ["vibration", "friction", "rod-plasticity", "barrier-elastoplastic"],
         "validity": ["The impact speed lies inside the measured range, 1.3 to 6.1 m/s."],
         "warnings": ["Yield stress is uncertain by a factor up to 1.5 (hardness and tensile data disagree)."],
-        "contacts": contacts(), "bands": None, "E_vib_below_floor": False, "reasons": dict(REASONS),
+        "contacts": contacts(), "bands": None, "extrapolated": None, "E_vib_below_floor": False,
+        "reasons": dict(REASONS),
         "E_hourglass_over_E_0": None, "W_damping_over_E_0": None,
         "element_steps": 320_000_000, "elements_rod": 5200, "elements_barrier": 2600,
         "elements_yielding": 2400,

@@ -1,0 +1,39 @@
+"""What accuracy costs in time: the ladder of settings, its errors, and the choice of a setting."""
+
+from fem_impact.cost.achieve import simulate_to_target
+from fem_impact.cost.choose import advice, best_within, cheapest
+from fem_impact.cost.document import text_table, write_cost
+from fem_impact.cost.judge import Judged, Truth, front, worst
+from fem_impact.cost.measure import Cost, measure
+from fem_impact.cost.quantities import QUANTITIES, TARGETED, chosen
+from fem_impact.cost.settings import FAMILY, Mesh, Setting, ladder, on_mesh
+from fem_impact.cost.stored import NEARNESS, Plan, nearest, plan, summarise, summary
+
+__all__ = [
+    "FAMILY",
+    "NEARNESS",
+    "QUANTITIES",
+    "TARGETED",
+    "Cost",
+    "Judged",
+    "Mesh",
+    "Plan",
+    "Setting",
+    "Truth",
+    "advice",
+    "best_within",
+    "cheapest",
+    "chosen",
+    "front",
+    "ladder",
+    "measure",
+    "nearest",
+    "on_mesh",
+    "plan",
+    "simulate_to_target",
+    "summarise",
+    "summary",
+    "text_table",
+    "worst",
+    "write_cost",
+]

@@ -1,0 +1,75 @@
+"""The cost of a scene as a table, as CSV and as JSON."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from fem_impact.cost.judge import Judged
+from fem_impact.cost.measure import Cost
+from fem_impact.cost.plot import work_precision
+from fem_impact.cost.quantities import QUANTITIES
+from fem_impact.output import write_table, write_text
+
+__all__ = ["text_table", "write_cost"]
+
+NAMES = tuple(quantity.name for quantity in QUANTITIES)
+SCALARS = ("name", "kind", "fidelity", "across", "levels", "coarser", "tip_size_m")
+COSTS = ("wall_s", "cpu_s", "element_steps", "peak_memory_MB")
+COLUMNS = (
+    *SCALARS,
+    *COSTS,
+    *(f"value_{name}" for name in NAMES),
+    *(f"error_{name}" for name in NAMES),
+    "front",
+)
+
+
+def write_cost(cost: Cost, out: Path, names: tuple[str, ...]) -> None:
+    """Write cost.json, cost.csv, cost.txt and the plot of the targeted quantities, cost.svg."""
+    write_text(out / "cost.json", json.dumps(cost.to_dict(), indent=1, allow_nan=False) + "\n")
+    write_table(out / "cost.csv", COLUMNS, [_row(setting) for setting in cost.settings])
+    write_text(out / "cost.txt", text_table(cost) + "\n")
+    work_precision(cost.settings, names, out / "cost.svg")
+
+
+def _row(setting: Judged) -> list[str | float | int | None]:
+    data = setting.to_dict()
+    errors = [setting.error[name] for name in NAMES]
+    values = [setting.value[name] for name in NAMES]
+    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, " ".join(setting.front)]
+
+
+def text_table(cost: Cost) -> str:
+    """Return limits and orders, then one line a setting: times, and each quantity's error in per cent.
+
+    An asterisk marks the Pareto front of that quantity.
+    """
+    width = max(len(setting.name) for setting in cost.settings)
+    head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
+    lines = [head + "".join(f"{name:>11}" for name in NAMES)]
+    truth = [cost.truth[name] for name in NAMES]
+    blank = " " * (width + 36)
+    lines += [f"{'limit':<{len(blank)}}" + "".join(f"{t.value:>11.4g}" for t in truth)]
+    lines += [f"{'uncertainty of the limit, %':<{len(blank)}}"]
+    lines[-1] += "".join(f"{100 * t.uncertainty / t.scale:>11.2g}" for t in truth)
+    lines += [f"{'observed order':<{len(blank)}}"]
+    lines[-1] += "".join(f"{'-' if t.order is None else f'{t.order:.2f}':>11}" for t in truth)
+    lines += [_line(setting, width) for setting in cost.settings if setting.kind != "effect"]
+    lines += ["errors in %, the limit's uncertainty included; * on the Pareto front"]
+    left_out = [_line(setting, width) for setting in cost.settings if setting.kind == "effect"]
+    if left_out:
+        lines += ["", "changes in % by leaving an effect out, on the same mesh", *left_out]
+    return "\n".join(lines)
+
+
+def _line(setting: Judged, width: int) -> str:
+    steps = "-" if setting.element_steps is None else f"{setting.element_steps:.2g}"
+    memory = "-" if setting.peak_memory_MB is None else f"{setting.peak_memory_MB:.0f}"
+    head = f"{setting.name:<{width}} {setting.wall_s:>8.3g} {setting.cpu_s:>8.3g} {steps:>10} {memory:>6}"
+    return head + "".join(f"{_cell(setting, name):>11}" for name in NAMES)
+
+
+def _cell(setting: Judged, name: str) -> str:
+    error = setting.error[name]
+    return "-" if error is None else f"{100 * error:.3g}{'*' if name in setting.front else ' '}"

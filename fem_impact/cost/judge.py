@@ -1,0 +1,167 @@
+"""Errors of the settings against the limit, the Pareto front, and the choice."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
+from math import inf
+from typing import Any
+
+from fem_impact.cost.quantities import QUANTITIES, Quantity
+from fem_impact.cost.settings import Setting
+from fem_impact.outcome import Outcome
+from fem_impact.study.richardson import SURE, UNSURE, limit
+
+__all__ = ["Judged", "Truth", "extrapolated", "front", "judge", "truths", "worst"]
+
+PAIR_ORDER = 1.0  # assumed where two meshes are all there is
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """What the meshes say of one quantity: limit, observed order, its own uncertainty, error scale."""
+
+    value: float
+    order: float | None
+    uncertainty: float
+    scale: float
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A setting with what it gave and what it took; times in s, memory in 1e6 bytes.
+
+    ``error`` holds, for each quantity, distance from the limit plus the limit's own uncertainty over the
+    scale; where an effect is left out, what that changes on the same mesh over the scale. ``front`` names
+    the quantities on whose Pareto front the setting lies.
+    """
+
+    name: str
+    kind: str
+    fidelity: str
+    across: int | None
+    levels: int | None
+    coarser: int | None
+    tip_size_m: float | None
+    value: dict[str, float | None]
+    error: dict[str, float | None]
+    wall_s: float
+    cpu_s: float
+    element_steps: int | None
+    peak_memory_MB: float | None
+    front: list[str] = field(default_factory=list)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        return asdict(self)
+
+
+def extrapolated(fine: float, coarse: float, ratio: float, order: float = PAIR_ORDER) -> float:
+    """Return the limit of q_0 + c h^order from two meshes; ``ratio`` is coarse over fine size.
+
+    Examples
+    --------
+    >>> extrapolated(1.1, 1.2, 2.0)
+    1.0
+    """
+    return float(fine + (fine - coarse) / (ratio**order - 1))
+
+
+def truths(runs: Sequence[Outcome]) -> dict[str, Truth]:
+    """Return the limit of every quantity from the runs of one family (two or more meshes).
+
+    The uncertainty of a limit is what Eca and Hoekstra's band leaves beyond the finest mesh's own
+    distance from it; with two meshes the order is assumed and the safety factor that of a disbelieved fit.
+    """
+    sizes = [run["tip_size_m"] for run in runs]
+    finest = runs[sizes.index(min(sizes))]
+    return {q.name: _truth(q, sizes, [_known(q, run) for run in runs], finest) for q in QUANTITIES}
+
+
+def _known(quantity: Quantity, outcome: Mapping[str, Any]) -> float:
+    value = quantity.value(outcome)
+    assert value is not None  # a finished finite-element run knows all quantities
+    return value
+
+
+def _truth(quantity: Quantity, sizes: list[float], values: list[float], finest: Outcome) -> Truth:
+    last = values[sizes.index(min(sizes))]
+    if len(sizes) > 2:
+        found = limit(sizes, values)
+        value, order, band = found.value, found.order, found.band
+    else:
+        first = values[sizes.index(max(sizes))]
+        value = extrapolated(last, first, max(sizes) / min(sizes))
+        order, band = None, UNSURE * abs(value - last)
+    least = (SURE - 1) * abs(value - last)
+    return Truth(value, order, max(band - abs(value - last), least), quantity.scale(value, finest))
+
+
+def judge(
+    setting: Setting, runs: Sequence[Outcome], truth: Mapping[str, Truth], whole: Outcome | None = None
+) -> Judged:
+    """Return a setting with its errors.
+
+    ``runs`` is one outcome, or fine and coarse of a pair; ``whole`` the outcome with all effects on the same
+    mesh if the setting leaves one out: then errors of the mesh must not hide those of the effect.
+    """
+    if whole is not None:
+        truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES}
+    value = {q.name: _value(q, runs) for q in QUANTITIES}
+    first = runs[0]
+    return Judged(
+        name=setting.name,
+        kind=setting.kind,
+        fidelity=setting.fidelity,
+        across=setting.mesh.across if setting.mesh else None,
+        levels=setting.mesh.levels if setting.mesh else None,
+        coarser=setting.coarser.across if setting.coarser else None,
+        tip_size_m=first["tip_size_m"],
+        value=value,
+        error={name: _error(number, truth[name]) for name, number in value.items()},
+        wall_s=sum(run["wall_s"] for run in runs),
+        cpu_s=sum(run["cpu_s"] for run in runs),
+        element_steps=_total(run["element_steps"] for run in runs),
+        peak_memory_MB=max((run["peak_memory_MB"] or 0.0 for run in runs), default=0.0) or None,
+    )
+
+
+def _on_mesh(quantity: Quantity, whole: Outcome, truth: Truth) -> Truth:
+    return Truth(_known(quantity, whole), None, 0.0, truth.scale)
+
+
+def _value(quantity: Quantity, runs: Sequence[Outcome]) -> float | None:
+    values = [quantity.value(run) for run in runs]
+    if len(values) == 1 or values[0] is None or values[1] is None:
+        return values[0]
+    return extrapolated(values[0], values[1], runs[1]["tip_size_m"] / runs[0]["tip_size_m"])
+
+
+def _error(value: float | None, truth: Truth) -> float | None:
+    return None if value is None else (abs(value - truth.value) + truth.uncertainty) / truth.scale
+
+
+def _total(counts: Iterable[int | None]) -> int | None:
+    known = [count for count in counts if count is not None]
+    return sum(known) if known else None
+
+
+def worst(judged: Judged, names: Iterable[str]) -> float:
+    """Return the largest error over some quantities; infinite if one is not known."""
+    errors = [judged.error[name] for name in names]
+    return max(inf if error is None else error for error in errors)
+
+
+def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
+    """Return the settings that no other beats in both time and worst error, from cheap to dear.
+
+    A setting that leaves an effect out takes no part: its error is not one against the limit.
+    """
+    found: list[Judged] = []
+    best = inf
+    whole = [one for one in judged if one.kind != "effect"]
+    for one in sorted(whole, key=lambda j: (j.wall_s, worst(j, names))):
+        if worst(one, names) < best:
+            best = worst(one, names)
+            found.append(one)
+    return found

@@ -1,0 +1,152 @@
+"""Run the ladder of one scene and judge it: every finished run is stored, so it goes on where it stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor, ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from multiprocessing import get_context
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cost.judge import Judged, Truth, front, judge, truths
+from fem_impact.cost.quantities import QUANTITIES
+from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
+from fem_impact.errors import RunError
+from fem_impact.outcome import Outcome, installed_versions, utc_now
+from fem_impact.scale import STORE, Failure, Job, Results, run_jobs
+from fem_impact.scale.job import compute
+from fem_impact.solid.kernels import compiled_before
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Meter
+    from fem_impact.scene import Scene
+
+__all__ = ["SCHEMA", "Cost", "measure"]
+
+SCHEMA = "fem-impact/cost/1"
+BRIEF = 5e-6  # s: into the first contact
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What accuracy costs for one scene.
+
+    Attributes
+    ----------
+    scene : Scene
+    truth : limit of every quantity
+    settings : judged, from cheap to dear
+    failures : settings that gave nothing, with the reason
+    """
+
+    scene: Scene
+    truth: dict[str, Truth]
+    settings: list[Judged]
+    failures: list[dict[str, str]]
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return plain data."""
+        from fem_impact.cost.yardsticks import yardsticks
+
+        return {
+            "schema": SCHEMA,
+            "created_utc": utc_now(),
+            "versions": installed_versions(),
+            "machine": yardsticks(),
+            "scene": self.scene.to_dict(),
+            "quantities": {
+                q.name: {
+                    "unit": q.unit,
+                    "limit": self.truth[q.name].value,
+                    "order": self.truth[q.name].order,
+                    "uncertainty": self.truth[q.name].uncertainty,
+                    "scale": self.truth[q.name].scale,
+                }
+                for q in QUANTITIES
+            },
+            "settings": [setting.to_dict() for setting in self.settings],
+            "failures": self.failures,
+        }
+
+
+def measure(
+    scene: Scene,
+    out: Path,
+    progress: Meter,
+    family: Sequence[Mesh] = FAMILY,
+    executor: Executor | None = None,
+) -> Cost:
+    """Run what is not stored in ``out`` yet, one run at a time so that times are times.
+
+    Raises
+    ------
+    RunError
+        Fewer than two meshes of the family gave a result, so nothing is known of the limit.
+    """
+    settings = ladder(scene, family)
+    jobs = [job for setting in settings if (job := setting.job)]
+    # a fresh process for every run: its peak memory is its own
+    owned = executor or ProcessPoolExecutor(1, mp_context=get_context("spawn"), max_tasks_per_child=1)
+    try:
+        _compile(scene, owned)
+        results = run_jobs(jobs, out / STORE, progress, owned)
+    finally:
+        if executor is None:
+            owned.shutdown(cancel_futures=True)
+    return conclude(scene, settings, results, family)
+
+
+def _compile(scene: Scene, executor: Executor) -> None:
+    """Have the kernels compiled by a few steps that nobody keeps: they must not count as time of a run."""
+    if not compiled_before():
+        coarse = on_mesh(scene, PLAIN)
+        brief = replace(coarse, accuracy=replace(coarse.accuracy, max_time=BRIEF))
+        executor.submit(compute, Job("compilation", brief)).result()
+
+
+def conclude(scene: Scene, settings: Sequence[Setting], results: Results, family: Sequence[Mesh]) -> Cost:
+    """Judge the runs of a ladder."""
+    runs: dict[Mesh, Outcome] = {}
+    for setting in settings:
+        found = _result(setting, results)
+        if setting.kind == "mesh" and setting.mesh and isinstance(found, Outcome) and found["finished"]:
+            runs[setting.mesh] = found
+    own = [runs[mesh] for mesh in family if mesh in runs]
+    if len(own) < 2:
+        reasons = [r.reason for r in results.values() if isinstance(r, Failure)]
+        raise RunError(f"{scene.id}: no two meshes gave a result. {' '.join(reasons)}".strip())
+    truth = truths(own)
+    judged = []
+    for setting in settings:
+        given, whole = _given(setting, results, runs), runs.get(PLAIN)
+        if setting.kind == "effect":
+            judged += [judge(setting, given, truth, whole)] if given and whole else []
+        elif given:
+            judged.append(judge(setting, given, truth))
+    failures = [
+        {"setting": name, "reason": result.reason}
+        for name, result in results.items()
+        if isinstance(result, Failure)
+    ]
+    return Cost(scene, truth, _marked(judged), failures)
+
+
+def _result(setting: Setting, results: Results) -> Outcome | Failure | None:
+    return results[setting.job.name] if setting.job else None
+
+
+def _given(setting: Setting, results: Results, runs: dict[Mesh, Outcome]) -> list[Outcome]:
+    """Return the outcomes that a setting stands on, none if one is missing."""
+    if setting.mesh and setting.coarser:
+        pair = [runs.get(setting.mesh), runs.get(setting.coarser)]
+        return [run for run in pair if run] if all(pair) else []
+    found = _result(setting, results)
+    return [found] if isinstance(found, Outcome) else []
+
+
+def _marked(judged: list[Judged]) -> list[Judged]:
+    """Sort by time and name the quantities on whose Pareto front each setting lies."""
+    fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
+    ordered = sorted(judged, key=lambda one: one.wall_s)
+    return [replace(o, front=[name for name, held in fronts.items() if o.name in held]) for o in ordered]

@@ -1,0 +1,174 @@
+"""Costs that were measured before and ship with the package: how near a scene is to one, and the choice."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from math import inf, log
+from typing import Any
+
+from fem_impact.contact_law import softer
+from fem_impact.cost.choose import cheapest
+from fem_impact.cost.judge import Judged, front, worst
+from fem_impact.cost.measure import Cost
+from fem_impact.cost.quantities import TARGETED
+from fem_impact.cost.settings import Mesh
+from fem_impact.cost.yardsticks import yardsticks
+from fem_impact.errors import SceneError
+from fem_impact.scene import Scene
+
+__all__ = ["NEARNESS", "SUMMARY", "Plan", "nearest", "plan", "summarise", "summary"]
+
+SUMMARY = "fem-impact/cost-summary/1"
+
+# what a scene may differ by from one whose cost was measured; ratios as differences of logarithms
+NEARNESS = {
+    "length over diameter": 0.1,
+    "diameter": 0.3,
+    "tip radius over diameter": 0.1,
+    "angle (rad)": 0.05,
+    "normal speed": 0.25,
+    "slope of the approach": 0.1,
+    "friction f": 0.05,
+    "softer yield stress": 0.1,
+    "Young's modulus": 0.1,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A chosen setting; expected error is relative, expected wall time in s on this machine."""
+
+    target: float
+    setting: Judged
+    like: str
+    expected_error: float
+    expected_wall_s: float
+
+    @property
+    def meshes(self) -> list[Mesh]:
+        """Return the meshes to run, fine first."""
+        one = self.setting
+        if one.across is None or one.levels is None:
+            return []
+        return [Mesh(across, one.levels) for across in (one.across, one.coarser) if across is not None]
+
+    @property
+    def sentence(self) -> str:
+        """Say what was chosen and why."""
+        return (
+            f"accuracy {100 * self.target:.3g} %: {self.setting.name}, expected error "
+            f"{100 * self.expected_error:.2g} % of {' and '.join(TARGETED)}, expected time "
+            f"{self.expected_wall_s:.2g} s (measured on {self.like})"
+        )
+
+
+def summarise(costs: Mapping[str, Cost]) -> dict[str, Any]:
+    """Return the stored form of several scenes' costs, with one date and one machine for all."""
+    shared = ("created_utc", "versions", "machine")
+    whole = {name: cost.to_dict() for name, cost in costs.items()}
+    first = next(iter(whole.values()))
+    scenes = {
+        name: {k: v for k, v in cost.items() if k not in (*shared, "schema")} for name, cost in whole.items()
+    }
+    return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
+
+
+@cache
+def summary() -> dict[str, Any]:
+    """Return the costs that ship with the package."""
+    text = files("fem_impact.cost").joinpath("data", "summary.json").read_text(encoding="utf-8")
+    return dict(json.loads(text))
+
+
+def _features(scene: Scene) -> dict[str, float]:
+    rod, impact, soft = scene.projectile, scene.impact, softer(scene)
+    return {
+        "length over diameter": log(rod.length / rod.diameter),
+        "diameter": log(rod.diameter),
+        "tip radius over diameter": log(max(rod.tip_radius / rod.diameter, 1e-3)),
+        "angle (rad)": impact.angle,
+        "normal speed": log(-impact.v_n),
+        "slope of the approach": impact.v_t / impact.v_n,
+        "friction f": scene.surface.friction if "friction" in scene.active else 0.0,
+        "softer yield stress": log(soft.yield_stress) if soft else inf,
+        "Young's modulus": log(rod.material.E),
+    }
+
+
+def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
+    """Return the largest difference over what is allowed, and its name; infinite for another model."""
+    for name, mine, its in (
+        ("tip", scene.projectile.tip, other.projectile.tip),
+        ("effects", scene.active, other.active),
+    ):
+        if mine != its:
+            return inf, name
+    a, b = _features(scene), _features(other)
+    gaps = {name: 0.0 if a[name] == b[name] else abs(a[name] - b[name]) / NEARNESS[name] for name in NEARNESS}
+    name = max(gaps, key=lambda key: gaps[key])
+    return gaps[name], name
+
+
+def nearest(scene: Scene) -> tuple[str, float, str]:
+    """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
+    found = [
+        (*_distance(scene, Scene.from_dict(held["scene"])), name)
+        for name, held in summary()["scenes"].items()
+    ]
+    distance, differs, name = min(found)
+    return name, distance, differs
+
+
+def plan(scene: Scene, fidelity: str | None = None) -> Plan:
+    """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
+
+    Raises
+    ------
+    SceneError
+        No stored cost is near enough, or none of its settings meets the target.
+    """
+    target = scene.accuracy.target
+    if target is None:
+        raise SceneError("gives no target.", key="accuracy", remedy='Write accuracy = "5 %".')
+    name, distance, differs = nearest(scene)
+    if distance > 1:
+        raise _too_far(scene, name, distance, differs)
+    held = [Judged(**setting) for setting in summary()["scenes"][name]["settings"]]
+    settings = [one for one in held if fidelity in (None, one.fidelity)]
+    found = cheapest(settings, TARGETED, target)
+    if found is None:
+        raise _not_met(scene, name, front(settings, TARGETED)[-1])
+    machine = summary()["machine"]["csr_ns_per_element_step"]
+    pace = yardsticks()["csr_ns_per_element_step"] / machine
+    return Plan(target, found, name, worst(found, TARGETED), found.wall_s * pace)
+
+
+def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
+    how = "is another" if distance == inf else f"is {distance:.2g} times what is allowed away in its"
+    allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
+    return SceneError(
+        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip and effects "
+        f"must be the same; allowed are differences (of logarithms where it is a ratio) of: {allowed}.",
+        key="accuracy",
+        value=_written(scene),
+        remedy="Run `fem-impact cost SCENE` and give the mesh it names: accuracy.tip_size and across.",
+    )
+
+
+def _not_met(scene: Scene, name: str, best: Judged) -> SceneError:
+    error = worst(best, TARGETED)
+    return SceneError(
+        f"cannot be met: on {name}, the best measured setting ({best.name}, {best.wall_s:.2g} s) is "
+        f"uncertain by {100 * error:.2g} % in {' and '.join(TARGETED)}.",
+        key="accuracy",
+        value=_written(scene),
+        remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',
+    )
+
+
+def _written(scene: Scene) -> str:
+    return f"{100 * (scene.accuracy.target or 0):.3g} %"

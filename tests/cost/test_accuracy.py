@@ -1,0 +1,150 @@
+"""A scene that states the error it allows: reading, choosing from stored costs, refusing, achieving."""
+
+from dataclasses import replace
+
+import pytest
+from cost_fakes import Here, run
+
+import fem_impact.simulate
+from fem_impact.cost import FAMILY, NEARNESS, achieve, measure, nearest, plan, stored, summarise, summary
+from fem_impact.errors import SceneError
+from fem_impact.progress import NullMeter
+from fem_impact.scene import MEASURED_SETS, Scene, load
+
+
+@pytest.fixture
+def costs(monkeypatch, tmp_path):
+    """Stored costs of t5b whose limit, order and times are known, measured on half as quick a machine."""
+    monkeypatch.setattr(fem_impact.simulate, "simulate", run)
+    held = summarise({"t5b": measure(load("t5b"), tmp_path, NullMeter(), executor=Here())})
+    held["machine"] = {"csr_ns_per_element_step": 2 * stored.yardsticks()["csr_ns_per_element_step"]}
+    monkeypatch.setattr(stored, "summary", lambda: held)
+    monkeypatch.setattr(achieve, "simulate", run)
+
+
+def asking(target, scene="t5b", **changes):
+    scene = load(scene).replace("accuracy", f"{100 * target:g} %")
+    for key, value in changes.items():
+        scene = scene.replace(key.replace("__", "."), value)
+    return scene
+
+
+def test_a_target_is_written_and_read_back():
+    scene = asking(0.02)
+    assert scene.accuracy.target == 0.02
+    assert Scene.from_dict(scene.to_dict()) == scene
+    assert scene.to_dict()["accuracy"]["target"] == "2 %"
+    assert scene.digest() != load("t5b").digest()
+
+
+def test_a_mesh_replaces_a_target_and_the_other_way_round():
+    scene = asking(0.02).replace("accuracy.tip_size", "0.5 mm")
+    assert (scene.accuracy.target, scene.accuracy.tip_size) == (None, 0.5e-3)
+    scene = scene.replace("accuracy.target", "3 %")
+    assert scene.accuracy.target == 0.03
+    assert asking(0.02).replace("accuracy.max_time", "1 ms").accuracy.target == 0.02
+
+
+@pytest.mark.parametrize("text", ["2", "0 %", "-1 %", "101 %", "2 mm", "", "%", 0.02, 2])
+def test_what_is_no_share_is_refused(text):
+    data = load("t5b").to_dict()
+    with pytest.raises(SceneError, match="accuracy"):
+        Scene.from_dict(data | {"accuracy": text})
+
+
+def test_a_mesh_beside_a_target_is_refused():
+    data = load("t5b").to_dict()
+    with pytest.raises(SceneError, match=r"accuracy.tip_size: stands beside a target"):
+        Scene.from_dict(data | {"accuracy": {"target": "2 %", "tip_size": "0.4 mm"}})
+
+
+def test_the_cheapest_stored_setting_is_chosen_and_its_time_scaled(costs):
+    chosen = plan(asking(0.2))
+    assert (chosen.setting.name, chosen.like) == ("modal", "t5b")
+    assert chosen.expected_wall_s == pytest.approx(0.5 * 0.01)
+    assert chosen.expected_error <= 0.2
+    solid = plan(asking(0.2), "solid")
+    assert solid.setting.fidelity == "solid"
+    assert plan(asking(0.09)).expected_wall_s > chosen.expected_wall_s
+    assert "expected error" in solid.sentence and "measured on t5b" in solid.sentence
+
+
+def test_a_target_that_no_setting_meets_is_refused_with_the_best(costs):
+    words = r'accuracy = "0.01 %": cannot be met: on t5b, the best .* Allow "\d+ %"'
+    with pytest.raises(SceneError, match=words):
+        plan(asking(1e-4))
+
+
+@pytest.mark.parametrize(
+    ("changes", "differs"),
+    [
+        ({"impact__angle": "60 deg"}, "angle"),
+        ({"impact__v_n": "-3.5 m/s", "impact__v_t": "-3.45 m/s"}, "normal speed"),
+        ({"projectile__length": "120 mm"}, "length over diameter"),
+        ({"surface__friction": 0.3}, "friction"),
+        ({"effects": ["vibration", "barrier-elastic"]}, "effects"),
+        ({"barrier__material__yield_stress": "400 MPa"}, "yield"),
+    ],
+)
+def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
+    scene = load("t5b")
+    for key, value in changes.items():
+        scene = scene.replace(key.replace("__", "."), value)
+    words = f"nearest scene with a measured cost, t5b, is .*{differs}.*fem-impact cost"
+    with pytest.raises(SceneError, match=words):
+        plan(scene.replace("accuracy", "20 %"))
+
+
+def test_a_scene_near_a_stored_one_is_taken(costs):
+    near = asking(0.2, impact__angle="46 deg", projectile__length="82 mm")
+    name, distance, _ = nearest(near)
+    assert name == "t5b"
+    assert 0 < distance < 1
+    assert plan(near).setting.name == "modal"
+
+
+def test_two_meshes_state_what_they_achieved(costs, tmp_path):
+    scene = asking(0.05)
+    chosen = plan(scene)
+    outcome = achieve.simulate_to_target(scene, out=tmp_path)
+    assert chosen.setting.kind == "pair"
+    assert outcome["accuracy_target"] == 0.05
+    assert outcome["accuracy_setting"] == chosen.setting.name
+    assert outcome["expected_error"] == chosen.expected_error
+    assert outcome["achieved_wall_s"] == pytest.approx(chosen.setting.wall_s)
+    assert 0 < outcome["achieved_error"] < 1
+    assert outcome["extrapolated"]["e_edge"] == pytest.approx(chosen.setting.value["e"])
+    assert (tmp_path / "outcome.json").exists()
+
+
+def test_a_reduced_run_does_not_claim_an_achieved_error(costs):
+    outcome = achieve.simulate_to_target(asking(0.2))
+    assert (outcome["fidelity"], outcome["accuracy_setting"]) == ("modal", "modal")
+    assert outcome["achieved_error"] is None
+    assert "alone" in outcome.reason("achieved_error")
+
+
+def test_simulate_hands_over_a_scene_with_a_target(monkeypatch):
+    monkeypatch.setattr(fem_impact.cost, "simulate_to_target", lambda *words: words)
+    scene = asking(0.2)
+    assert fem_impact.simulate.simulate(scene) == (scene, None, None, None)
+
+
+def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
+    held = summary()
+    assert held["created_utc"] and held["versions"]["numpy"]
+    assert held["machine"]["triad_GB_per_s"] > 0
+    assert held["scenes"]
+    for name, cost in held["scenes"].items():
+        scene = Scene.from_dict(cost["scene"])
+        assert name in MEASURED_SETS
+        assert nearest(load(name))[:2] == (name, 0.0)
+        assert scene.impact == load(name).impact
+        kinds = {setting["kind"] for setting in cost["settings"]}
+        assert {"rigid", "modal", "mesh", "pair"} <= kinds
+    assert set(NEARNESS) == set(stored._features(load("t2")))
+
+
+def test_the_family_is_of_one_kind():
+    assert len({mesh.levels for mesh in FAMILY}) == 1
+    assert replace(FAMILY[0], across=7) < FAMILY[1]
