@@ -32,7 +32,14 @@ def rigid_outcome(scene: Scene) -> Outcome:
     e, source = _restitution(scene, abs(impact.v_n + d_c * impact.omega))
     f = scene.surface.friction if "friction" in scene.active else 0.0
     impulse = partial(
-        rigid.sliding_path, *(impact.v_n, impact.v_t), e=e, f=f, d_c=d_c, d_d=d_d, k2=rod.k2, omega=impact.omega
+        rigid.sliding_path,
+        *(impact.v_n, impact.v_t),
+        e=e,
+        f=f,
+        d_c=d_c,
+        d_d=d_d,
+        k2=rod.k2,
+        omega=impact.omega,
     )
     impulse()  # a first call is slow: the second is timed
     wall, cpu = time.perf_counter(), time.process_time()

@@ -13,7 +13,7 @@ def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
     code, out, err = cli("run", "t5b", "--out", "here")
     name, (scene,), options = stand.calls[0]
     assert (code, name, scene) == (0, "simulate", load("t5b"))
-    assert options["fidelity"] == "solid"
+    assert options["fidelity"] is None
     assert options["out"] == Path("here")
     for words in ("results: here", "0.5 +- 0.01", "not known: not in the stand-in", "E_0 = 0.39 J"):
         assert words in out
