@@ -165,6 +165,7 @@ def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, 
     spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
     K = assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T)
     K.setdiag(K.diagonal() + T.T @ spring.ravel())
+    K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
     n = K.shape[0]
     block = ElasticBlock(
         NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)

@@ -162,6 +162,7 @@ def _nothing() -> NodeProduct:
         np.zeros((0, 3), np.int64),
         np.zeros(1, np.int64),
         np.zeros(0, np.int32),
+        np.zeros(0, np.int32),
         np.zeros((0, 9)),
         np.zeros((0, 3)),
     )

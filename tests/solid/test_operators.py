@@ -122,3 +122,15 @@ def test_rigid_motion_of_a_tied_assembly_is_free():
     assert isinstance(K, sp.csr_matrix)
     u = np.cross([1.0, -2.0, 0.5], points)
     assert abs(K @ u.ravel()).max() < 1e-11 * abs(K).max() * abs(u).max()
+
+
+def test_equal_cells_share_their_blocks():
+    points, cells = shapes.grid((6, 6, 6), 1e-3)
+    places = np.arange(3 * len(points)).reshape(-1, 3)
+    K = element_stiffness(points, cells, C, "bbar")
+    matrix = assemble(K, cells, sp.identity(places.size, format="csr"))
+    product = NodeProduct.of(matrix, places)
+    assert len(product.blocks) < 0.1 * len(product.kinds)
+    x, y = np.random.default_rng(4).normal(size=places.size), np.zeros(places.size)
+    product.add_to(x, y)
+    assert y == pytest.approx(matrix @ x, abs=1e-11 * abs(matrix @ x).max())
