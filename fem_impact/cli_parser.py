@@ -21,6 +21,7 @@ STUDIES = {
     "sets": "the published series of tests beside the model",
     "convergence": "their limits for vanishing elements",
     "gamma": "vibration against slenderness",
+    "criterion": "when a rod may be called rigid",
     "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
 }
 _RESULT = "directory that a run or a study wrote"

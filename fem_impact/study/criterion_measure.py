@@ -1,0 +1,178 @@
+"""Per rod: restitution over the angles, the error of rigid theory, the group T1/tau; levels and exponents."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from itertools import pairwise
+from math import pi, sqrt
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.contact_law import contact_law
+from fem_impact.estimates import projectile
+from fem_impact.outcome import Outcome
+from fem_impact.scale import Results
+from fem_impact.study.linear_spring import spring_drop
+from fem_impact.study.rods import BODY, Drop, length_of
+from fem_impact.verify.reference.beam import bending_modes
+from fem_impact.verify.reference.hertz import SPAN
+from fem_impact.verify.reference.oblique import ObliqueRod, oblique_rod
+from rigid import LIMIT
+
+__all__ = ["LEVELS", "Rod", "Rods", "blind_ratio", "exponent", "gamma_at", "linear_rods", "rods_of"]
+
+Array = NDArray[np.float64]
+
+LEVELS = (0.02, 0.05, 0.10)
+"""Errors of e at which a rod counts as no longer rigid."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rod:
+    """One rod on one contact over the angles.
+
+    Attributes
+    ----------
+    drop : Drop
+        At any of the angles.
+    angles : (n,) degrees
+    e, e_rigid : (n,)
+        Restitution with vibration, and of the rod that cannot vibrate on the same contact.
+    groups : (n,)
+        T1/tau: first bending period over the contact time of the rod that cannot vibrate.
+    """
+
+    drop: Drop
+    angles: Array
+    e: Array
+    e_rigid: Array
+    groups: Array
+
+    @property
+    def error(self) -> float:
+        """Largest change of e by vibration over the angles."""
+        return float(np.abs(self.e - self.e_rigid).max())
+
+    @property
+    def spread(self) -> float:
+        """Largest less smallest e over the angles: the published meaning of the criterion."""
+        return float(np.ptp(self.e))
+
+    @property
+    def group(self) -> float:
+        """T1/tau at the angle of the largest error."""
+        return float(self.groups[int(np.abs(self.e - self.e_rigid).argmax())])
+
+
+Rods = list[Rod]
+
+
+def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
+    """Return the rods of a family; angles whose runs failed are left out."""
+    found: dict[tuple[float, float], list[tuple[Drop, Outcome, Outcome]]] = {}
+    for drop in drops:
+        run, stiff = results[drop.name], results[_stiff(drop)]
+        if isinstance(run, Outcome) and isinstance(stiff, Outcome):
+            found.setdefault((drop.diameter, drop.length), []).append((drop, run, stiff))
+    return [_rod(each) for each in found.values()]
+
+
+def _stiff(drop: Drop) -> str:
+    return replace(drop, vibrates=False).name
+
+
+def _rod(each: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
+    T1 = first_period(each[0][0])
+    return Rod(
+        each[0][0],
+        np.array([drop.angle for drop, _, _ in each]),
+        np.array([run["e_edge"] for _, run, _ in each]),
+        np.array([stiff["e_edge"] for _, _, stiff in each]),
+        np.array([T1 / (s["contacts"][0]["end_s"] - s["contacts"][0]["start_s"]) for _, _, s in each]),
+    )
+
+
+def linear_rods(drops: Iterable[Drop]) -> Rods:
+    """Return the rods on one linear spring for all: as long a contact as Hertz' at the limit of Eq 29."""
+    reference = Drop(length_of(LIMIT, BODY))
+    k = _effective(slender(reference)) * (pi / _hertz_time(reference)) ** 2
+    found: dict[tuple[float, float], list[Drop]] = {}
+    for drop in drops:
+        found.setdefault((drop.diameter, drop.length), []).append(drop)
+    return [_linear_rod(each, k) for each in found.values()]
+
+
+def _linear_rod(each: Sequence[Drop], k: float) -> Rod:
+    bodies = [slender(drop) for drop in each]
+    T1 = first_period(each[0])
+    return Rod(
+        each[0],
+        np.array([drop.angle for drop in each]),
+        np.array([spring_drop(body, k).restitution for body in bodies]),
+        np.ones(len(each)),
+        np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies]),
+    )
+
+
+def _effective(rod: ObliqueRod) -> float:
+    """Return the mass behind a frictionless contact, kg."""
+    return rod.mass / (1 + rod.d_c**2 / rod.k2)
+
+
+def _hertz_time(drop: Drop) -> float:
+    """Return Hertz' contact time of a drop, s (Johnson, Contact Mechanics, section 11.4)."""
+    scene = drop.scene()
+    stiffness, v_n = contact_law(scene).stiffness, -scene.impact.v_n
+    depth = (5 * _effective(slender(drop)) * v_n**2 / (4 * stiffness)) ** 0.4
+    return float(SPAN * depth / v_n)
+
+
+@lru_cache(maxsize=4096)
+def slender(drop: Drop) -> ObliqueRod:
+    """Return the rod by bending (Timoshenko) and stretching (Love) modes."""
+    scene = drop.scene()
+    body, steel, alpha = projectile(scene), scene.projectile.material, scene.impact.angle
+    d_c, d_d = (float(arm) for arm in body.arms(alpha))
+    rho, z = (float(place) for place in body.contact_point(alpha))
+    whole, radius = (body.mass, body.k2), drop.diameter / 2
+    return oblique_rod(steel.E, steel.nu, steel.rho, drop.length, radius, alpha, whole, (d_c, d_d), (rho, z))
+
+
+@lru_cache(maxsize=256)
+def _period(E: float, nu: float, rho: float, length: float, radius: float) -> float:
+    return 2 * pi / float(bending_modes(E, nu, rho, length, radius, 1).omega[0])
+
+
+def first_period(drop: Drop) -> float:
+    """Return the first bending period of a rod, s."""
+    steel = drop.scene().projectile.material
+    return _period(steel.E, steel.nu, steel.rho, drop.length, drop.diameter / 2)
+
+
+def blind_ratio(drop: Drop) -> float:
+    """Return mu*: a contact force of this ratio does not excite the first bending mode."""
+    rod = slender(drop)
+    return float(-rod.along_n[0] / rod.along_t[0])
+
+
+def gamma_at(rods: Rods, diameter: float, level: float) -> float | None:
+    """Return the slenderness at which the error of rods of a diameter first passes a level, interpolated."""
+    same = sorted((r.drop.gamma, r.error) for r in rods if r.drop.diameter == diameter)
+    for (low, below), (high, above) in pairwise(same):
+        if below < level <= above:
+            return low + (high - low) * (level - below) / (above - below)
+    return None
+
+
+def exponent(rods: Rods, level: float) -> float | None:
+    """Return p of l = C d^p along which the error stays at a level, fitted over the diameters."""
+    diameters = sorted({r.drop.diameter for r in rods})
+    found = [(d, gamma_at(rods, d, level)) for d in diameters]
+    known = [(d, length_of(g, d)) for d, g in found if g is not None]
+    if len(known) < 2:
+        return None
+    d, length = np.log(np.array(known)).T
+    return float(np.polyfit(d, length, 1)[0])
