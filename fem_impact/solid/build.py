@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 import scipy.sparse as sp
@@ -13,7 +13,7 @@ from fem_impact.effects.spec import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.modes import rod_modes
-from fem_impact.solid.boundary import spread_boundary
+from fem_impact.solid.boundary import radiating_share, spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.damping import ModalDamping
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
@@ -33,7 +33,7 @@ from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import SKIN, HexMesh
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Material, Scene
+    from fem_impact.scene import Scene
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -41,6 +41,17 @@ Bools = NDArray[np.bool_]
 
 START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
 BAND = 0.02  # contact band over the tip size, see SurfaceContact
+
+
+class Elastic(Protocol):
+    """What an operator needs of a material: E, Pa; nu; rho, kg/m3."""
+
+    @property
+    def E(self) -> float: ...  # noqa: D102
+    @property
+    def nu(self) -> float: ...  # noqa: D102
+    @property
+    def rho(self) -> float: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +69,16 @@ class Body:
     mesh: HexMesh
     points: Array
     places: Ints
-    material: Material
+    material: Elastic
     yields: Bools
     stiffness: Array
     mass: Array
 
 
-def _body(name: str, mesh: HexMesh, points: Array, places: Ints, material: Material, yields: Bools) -> Body:
+def make_body(
+    name: str, mesh: HexMesh, points: Array, places: Ints, material: Elastic, yields: Bools
+) -> Body:
+    """Return a body with its operators and masses."""
     C = isotropic_stiffness(material.E, material.nu)
     K = element_stiffness(points, mesh.cells, C, "incompatible")
     K[yields] = element_stiffness(points, mesh.cells[yields], C, "bbar")
@@ -77,12 +91,12 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     rod, barrier = geometry.rod.mesh, geometry.barrier
     fine = geometry.levels > 0
     yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
-    found = [_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
+    found = [make_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
     _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
     if barrier is not None:
         yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
         found.append(
-            _body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields)
+            make_body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields)
         )
     return found
 
@@ -100,7 +114,8 @@ def _rest_mass(scene: Scene, geometry: Geometry) -> float:
     return rest_mass(geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
 
 
-def _masses(bodies: list[Body], layout: Layout) -> Array:
+def assemble_masses(bodies: list[Body], layout: Layout) -> Array:
+    """Return the lumped masses (size,), kg."""
     mass = np.zeros(layout.size)
     for body in bodies:
         T = tie_operator(body.mesh.tie, body.places, layout.size)
@@ -108,7 +123,7 @@ def _masses(bodies: list[Body], layout: Layout) -> Array:
     return mass
 
 
-def _inverse(mass: Array, bodies: list[Body]) -> Array:
+def invert(mass: Array, bodies: list[Body]) -> Array:
     """Invert; nothing moves through the symmetry plane."""
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
     for body in bodies:
@@ -156,42 +171,52 @@ def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
     return RigidRest(places, mass[places[:, 0]])
 
 
-def _elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, Array]:
-    """Return the block's linear part and the damping of its free unknowns."""
+def elastic_block(
+    body: Body, layout: Layout, x: Array, whole: sp.csr_matrix, held: Bools
+) -> tuple[ElasticBlock, Array]:
+    """Return the block's linear part and the damping of its free unknowns.
+
+    ``whole`` is the stiffness of all its cells, ``held`` (n,) what the symmetry holds.
+    """
     place = layout.barrier_slice
     shifted = body.places - place.start
     T = tie_operator(body.mesh.tie, shifted, place.stop - place.start)
     m = body.material
     spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
-    K = assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T)
-    K.setdiag(K.diagonal() + T.T @ spring.ravel())
+    springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
+    K = sp.csr_matrix(assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T) + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
     n = K.shape[0]
     block = ElasticBlock(
         NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)
     )
-    return block, T.T @ damping.ravel()
+    nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
+    loaded = int(shifted[int(nearest.argmin()), 2])
+    share = radiating_share(sp.csr_matrix(whole + springs), pots, held, loaded, (m.E, m.nu, m.rho))
+    return block, share * pots
 
 
-def _dashpots(damping: Array, layout: Layout, inverse_mass: Array) -> Dashpots:
+def dashpots(damping: Array, layout: Layout, inverse_mass: Array) -> Dashpots:
+    """Return the radiating boundary from the block's damping."""
     places = layout.barrier_slice.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
     return Dashpots(places, damping[places - layout.barrier_slice.start], inverse_mass[places])
 
 
-def _zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
+def yielding_zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
+    """Return the cells that may yield as one item."""
     cells, m = body.mesh.cells[body.yields], body.material
     return YieldingZone.of(body.name, body.places[cells], body.points[cells], m.E, m.nu, law, layout.dummy)
 
 
-def _skin(body: Body, geometry: Geometry) -> Ints:
+def facing_skin(body: Body) -> Ints:
     """Return the skin quads (m, 4) of the finest cells, all nodes free, facing the other body."""
     quads = body.mesh.faces_with(SKIN)
     corners = body.points[quads]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
     facing = steep < -0.1 if body.name == "rod" else steep > 0.1
-    finest = np.isin(quads, body.mesh.cells[body.mesh.level == geometry.levels]).all(axis=1)
+    finest = np.isin(quads, body.mesh.cells[body.mesh.level == body.mesh.level.max()]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
     found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
     return np.asarray(found[:, ::-1] if body.name == "rod" else found)
@@ -206,7 +231,7 @@ def _contact(
         if not spec.vibrating:  # the rigid section takes no contact
             skin = np.setdiff1d(skin, geometry.rod.body_nodes)
         return PlaneContact(bodies[0].places[skin], inverse_mass, f)
-    rod, barrier = (make_patch(_skin(body, geometry), body.places, body.points) for body in bodies)
+    rod, barrier = (make_patch(facing_skin(body), body.places, body.points) for body in bodies)
     return SurfaceContact.of(rod, barrier, inverse_mass, f, BAND * geometry.tip_size, x)
 
 
@@ -231,7 +256,7 @@ def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
         )
 
 
-def _assembled(body: Body, size: int, shift: int = 0) -> sp.csr_matrix:
+def assembled(body: Body, size: int, shift: int = 0) -> sp.csr_matrix:
     """Return a body's stiffness over ``size`` unknowns, ``shift`` places lower than the flat vector's."""
     T = tie_operator(body.mesh.tie, body.places - shift, size)
     return assemble(body.stiffness, body.mesh.cells, T)
@@ -249,10 +274,10 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     geometry = build_geometry(scene, START_GAP, spec.meshed_barrier, spec.vibrating)
     layout = number(geometry.rod, geometry.barrier)
     bodies = _bodies(scene, spec, geometry, layout)
-    mass = _masses(bodies, layout)
+    mass = assemble_masses(bodies, layout)
     if not spec.vibrating:
         mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
-    inverse_mass = _inverse(mass, bodies)
+    inverse_mass = invert(mass, bodies)
     rod = bodies[0]
     drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
     x, v = _start(bodies, layout, scene, mass, drawn)
@@ -260,13 +285,15 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
     forces: list[Force] = [linear]
     impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
     zones = [
-        _zone(b, law, layout) for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False) if law
+        yielding_zone(b, law, layout)
+        for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False)
+        if law
     ]
     forces += zones
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
     n, place = layout.rod_size, layout.barrier_slice
-    rod_stiffness = drawn.reduced(_assembled(rod, n), layout.body_shape[1])
+    rod_stiffness = drawn.reduced(assembled(rod, n), layout.body_shape[1])
     steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
     if spec.loss_factor is not None:
         modes = rod_modes(rod_stiffness, mass[:n], inverse_mass[:n] == 0)
@@ -275,12 +302,13 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
             ModalDamping.of(modes, linear.frame, inverse_mass[:n], free, spec.loss_factor, steps["rod"])
         )
     if len(bodies) == 2:
-        block_stiffness = _assembled(bodies[1], place.stop - n, n)
+        block_stiffness = assembled(bodies[1], place.stop - n, n)
         steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])
-        block, damping = _elastic_block(bodies[1], layout, x)
+        held = inverse_mass[place] == 0
+        block, damping = elastic_block(bodies[1], layout, x, block_stiffness, held)
         forces.append(block)
         if spec.radiating:
-            impulses.append(_dashpots(damping, layout, inverse_mass))
+            impulses.append(dashpots(damping, layout, inverse_mass))
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])

@@ -1,4 +1,4 @@
-"""One free body as a model of the solver: any mesh, held unknowns, contact with the rigid plane.
+"""One free body as a model of the solver: any mesh, held unknowns, contact with a plane or a block.
 
 The project's scenes are rods; these problems need balls, square bars and flat faces as well. All
 operators, contact, ledger and the march are the solver's.
@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.modes import RigidMotion, rigid_motion
-from fem_impact.solid.contact import ContactBook, PlaneContact
+from fem_impact.solid import build
+from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.elements import (
     Kind,
@@ -28,17 +29,36 @@ from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, tie_operator
 from fem_impact.solid.stable import stable_step
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import HexMesh, RodMesh
 
-__all__ = ["Body", "body_model", "placed", "rigid_of", "unsliced"]
+__all__ = ["Block", "Body", "body_model", "placed", "rigid_of", "unsliced"]
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True)
+class Block:
+    """The barrier under a body: a half-space around the origin, its top at n = 0.
+
+    Attributes
+    ----------
+    mesh : as fine as the body around the contact; its outer faces carry on as springs and dashpots
+    size : cell edge at the contact, m
+    E, nu, rho : material; law : hardening of its finest cells, or None where it stays elastic
+    """
+
+    mesh: HexMesh
+    size: float
+    E: float
+    nu: float
+    rho: float
+    law: Hardening | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +71,8 @@ class Body:
     velocity : (n, 3) at the start, m/s
     E, nu, rho : material; law : hardening of the cells that ``yields`` (m,) names
     held : (n, 3) unknowns that cannot move besides those of the symmetry plane
-    friction : Coulomb's coefficient on the plane n = 0, or None for no contact at all
+    friction : Coulomb's coefficient, or None for no contact at all
+    block : what it strikes, or None for the rigid plane n = 0
     turning : the linear part follows large rotations
     """
 
@@ -66,6 +87,7 @@ class Body:
     yields: Bools | None = None
     held: Bools | None = None
     friction: float | None = None
+    block: Block | None = None
     turning: bool = False
 
 
@@ -90,51 +112,79 @@ def rigid_of(model: Model, state: State) -> RigidMotion:
 
 
 def body_model(body: Body) -> Model:
-    """Return the model of one body over the rigid plane n = 0."""
-    mesh, layout = body.mesh.mesh, number(body.mesh, None)
-    yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
-    K = element_stiffness(body.points, mesh.cells, isotropic_stiffness(body.E, body.nu), body.kind)
-    nodal = lumped_mass(body.points, mesh.cells, body.rho)
-    T = tie_operator(mesh.tie, layout.rod, layout.size)
-    mass = assemble_mass(nodal, mesh.cells, T)
-    inverse = _inverse(body, mass, layout)
-    drawn = MassPoints.of_rod(body.mesh, nodal, body.rho)
-    x, v = _start(body, layout, drawn)
-    forces: list[Force] = [_linear(body, K, ~yields, layout, mass, x, drawn)]
-    zones = _zones(body, yields, layout)
-    contact = _contact(body, layout, inverse)
-    impulses: list[Impulse] = [contact] if contact else []
-    own = tie_operator(mesh.tie, layout.rod, layout.rod_size)
-    stiffness = drawn.reduced(assemble(K, mesh.cells, own), layout.body_shape[1])
+    """Return the model of one body over the rigid plane n = 0, or over its block."""
+    mesh, block = body.mesh.mesh, body.block
+    layout = number(body.mesh, block.mesh if block else None)
+    parts = [_part(body, layout), *([_block_part(block, layout)] if block else [])]
+    mass = build.assemble_masses(parts, layout)
+    inverse = _inverse(body, parts, mass, layout)
+    drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
+    x, v = _start(body, parts, layout, drawn)
+    zones = _zones(body, parts, layout)
+    forces: list[Force] = [_linear(body, parts[0], layout, mass, x, drawn), *zones]
+    impulses: list[Impulse] = []
+    n, place = layout.rod_size, layout.barrier_slice
+    stiffness = drawn.reduced(build.assembled(parts[0], n), layout.body_shape[1])
+    steps = {"rod": stable_step(stiffness, inverse[:n])}
+    if block:
+        whole = build.assembled(parts[1], place.stop - n, n)
+        steps["barrier"] = stable_step(whole, inverse[place])
+        elastic, damping = build.elastic_block(parts[1], layout, x, whole, inverse[place] == 0)
+        forces.append(elastic)
+        impulses.append(build.dashpots(damping, layout, inverse))
+    contact = _contact(body, parts, inverse, x)
     return Model(
-        geometry=Geometry(body.mesh, body.points, None, 0.0, int(mesh.level.max())),
+        geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, int(mesh.level.max())),
         layout=layout,
         mass=mass,
         inverse_mass=inverse,
         drawn=drawn,
-        forces=[*forces, *zones],
-        impulses=impulses,
-        hanging=Hanging.of([(mesh.tie, layout.rod)]),
+        forces=forces,
+        impulses=[*impulses, *([contact] if contact else [])],
+        hanging=Hanging.of([(part.mesh.tie, part.places) for part in parts]),
         zones=zones,
         book=contact.book if contact else ContactBook(),
         rod_stiffness=stiffness,
-        steps={"rod": stable_step(stiffness, inverse[: layout.rod_size])},
+        steps=steps,
         start=(x, v),
     )
 
 
-def _inverse(body: Body, mass: Array, layout: Layout) -> Array:
-    inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
-    inverse[layout.rod[np.abs(body.points[:, 1]) < 1e-12, 1]] = 0.0
+def _zones(body: Body, parts: list[build.Body], layout: Layout) -> list[YieldingZone]:
+    laws = (body.law, body.block.law if body.block else None)
+    return [
+        build.yielding_zone(part, law, layout)
+        for part, law in zip(parts, laws, strict=False)
+        if law and part.yields.any()
+    ]
+
+
+def _part(body: Body, layout: Layout) -> build.Body:
+    mesh = body.mesh.mesh
+    yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
+    K = element_stiffness(body.points, mesh.cells, isotropic_stiffness(body.E, body.nu), body.kind)
+    mass = lumped_mass(body.points, mesh.cells, body.rho)
+    return build.Body("rod", mesh, body.points, layout.rod, body, yields, K, mass)
+
+
+def _block_part(block: Block, layout: Layout) -> build.Body:
+    finest = block.mesh.level == block.mesh.level.max()
+    yields = finest & (block.law is not None)
+    return build.make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
+
+
+def _inverse(body: Body, parts: list[build.Body], mass: Array, layout: Layout) -> Array:
+    inverse = build.invert(mass, parts)
     if body.held is not None:
         inverse[layout.rod[body.held]] = 0.0
     return inverse
 
 
-def _start(body: Body, layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
+def _start(body: Body, parts: list[build.Body], layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
     x, v = np.zeros(layout.size), np.zeros(layout.size)
     x[layout.dummy] = dummy_element()
-    x[layout.rod] = body.points
+    for part in parts:
+        x[part.places] = part.points
     v[layout.rod] = body.velocity
     for vector in (x, v):
         drawn.draw_in(layout.slices_of(vector))
@@ -144,11 +194,11 @@ def _start(body: Body, layout: Layout, drawn: MassPoints) -> tuple[Array, Array]
 
 
 def _linear(
-    body: Body, K: Array, linear: Bools, layout: Layout, mass: Array, x: Array, drawn: MassPoints
+    body: Body, part: build.Body, layout: Layout, mass: Array, x: Array, drawn: MassPoints
 ) -> ElasticRod:
     """Return the linear part: slices by stencil where the mesh has them, the rest by rows."""
-    mesh, n = body.mesh.mesh, layout.rod_size
-    rest = linear.copy()
+    mesh, n, K = part.mesh, layout.rod_size, part.stiffness
+    rest = ~part.yields
     rest[body.mesh.body_cells] = False
     T = tie_operator(mesh.tie, layout.rod, n)
     free = layout.rod[~mesh.is_hanging]
@@ -175,16 +225,12 @@ def _slices(body: Body, K: Array) -> SliceOperator:
     return SliceOperator.of_rod(body.mesh, K)
 
 
-def _zones(body: Body, yields: Bools, layout: Layout) -> list[YieldingZone]:
-    if body.law is None or not yields.any():
-        return []
-    cells = body.mesh.mesh.cells[yields]
-    return [
-        YieldingZone.of("rod", layout.rod[cells], body.points[cells], body.E, body.nu, body.law, layout.dummy)
-    ]
-
-
-def _contact(body: Body, layout: Layout, inverse: Array) -> PlaneContact | None:
+def _contact(
+    body: Body, parts: list[build.Body], inverse: Array, x: Array
+) -> PlaneContact | SurfaceContact | None:
     if body.friction is None:
         return None
-    return PlaneContact(layout.rod[body.mesh.mesh.free_skin], inverse, body.friction)
+    if body.block is None:
+        return PlaneContact(parts[0].places[body.mesh.mesh.free_skin], inverse, body.friction)
+    above, below = (make_patch(build.facing_skin(p), p.places, p.points) for p in parts)
+    return SurfaceContact.of(above, below, inverse, body.friction, build.BAND * body.block.size, x)

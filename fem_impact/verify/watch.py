@@ -13,7 +13,7 @@ from fem_impact.solid.state import State
 __all__ = ["Force", "Until"]
 
 IMPULSE_N, ACTIVE = 1, 5
-MECHANICAL = ("kinetic_rod", "strain_rod")
+MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 
 class Force:

@@ -1,0 +1,64 @@
+"""A ball over a rigid plane or a block of its own kind: the parameters and the model of two problems."""
+
+from __future__ import annotations
+
+from math import inf, pi
+
+import numpy as np
+
+import meshes
+from fem_impact.solid.model import Model
+from fem_impact.verify import steel
+from fem_impact.verify.bodies import Block, Body, body_model, placed, unsliced
+from fem_impact.verify.problem import Parameter, Values
+from fem_impact.verify.reference.hertz import HertzImpact, contact_modulus, hertz
+from fem_impact.verify.tips import block_under, contact_zone, levels_for_radius
+
+__all__ = ["ball_mass", "modulus", "parameters", "plain_hertz", "sphere_model"]
+
+
+def parameters(radius: float, *others: Parameter) -> tuple[Parameter, ...]:
+    """Return the list: radius, the problem's own, mesh and barrier."""
+    return (
+        Parameter("radius", "radius of the sphere", radius, 1e-4, 1.0, "length"),
+        *others,
+        Parameter("block", "1: a block like the sphere, 0: a rigid plane", 1, 0, 1, multiple=1),
+        Parameter("cells", "cells over the contact radius", 8, 2, 20),
+        steel.across(16),
+    )
+
+
+def ball_mass(p: Values) -> float:
+    """Return the mass of the sphere, kg."""
+    return 4 / 3 * pi * p["radius"] ** 3 * p["rho"]
+
+
+def modulus(p: Values) -> float:
+    """Return E* of the sphere with what it strikes, Pa."""
+    return contact_modulus(p["E"], p["nu"], p["E"] if p["block"] else inf, p["nu"])
+
+
+def plain_hertz(p: Values, v_n: float) -> HertzImpact:
+    """Return Hertz' impact at an approach speed, m/s."""
+    return hertz(modulus(p), p["radius"], ball_mass(p), v_n)
+
+
+def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f: float = 0.0) -> Model:
+    """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t."""
+    R, across = p["radius"], int(p["across"])
+    base = 2 * R / across
+    levels = levels_for_radius(base, touch.radius, p["cells"])
+    zone = contact_zone(touch.radius, touch.radius)
+    mesh = unsliced(meshes.sphere(R, across, zone=zone, levels=levels))
+    points = placed(mesh.mesh.points, 0.0, 0.0)
+    velocity = np.zeros_like(points)
+    velocity[:, 0], velocity[:, 2] = -v_t, -v_n
+    # flat cells inside the round skin lack volume: the true mass is what strikes
+    rho = ball_mass(p) / (2 * float(np.sum(meshes.volume(mesh.mesh))))
+    block = None
+    if p["block"]:
+        under = block_under(touch.radius, base, levels, v_t * touch.duration)
+        block = Block(under, base / 2**levels, p["E"], p["nu"], p["rho"])
+    return body_model(
+        Body(mesh, points, velocity, p["E"], p["nu"], rho, friction=f, block=block, turning=f > 0)
+    )

@@ -1,0 +1,112 @@
+"""``thornton``: an elastic sphere that yields strikes a rigid frictionless plane at several speeds.
+
+While the contact is fully plastic and still small, restitution falls as speed to the power -1/4.
+"""
+
+from __future__ import annotations
+
+from math import exp, floor, log, log2, pi, sqrt
+
+import numpy as np
+
+import meshes
+from fem_impact.solid.hardening import linear_hardening
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.stepguard import StepGuard
+from fem_impact.verify import steel
+from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.reference.hertz import contact_modulus
+from fem_impact.verify.reference.thornton import fitted_restitution, thornton_restitution, yield_speed
+from fem_impact.verify.tips import contact_zone
+from fem_impact.verify.watch import Until
+
+__all__ = ["PROBLEM"]
+
+SLOPE, SLOPE_TOLERANCE, CONVERGED, FIT = -0.25, 0.05, 0.03, 0.25
+MEAN, FIRST = (
+    2.8,
+    1.6,
+)  # mean pressure of a full plastic contact, peak pressure of first yield, over yield stress
+SPEEDS = 4
+ACROSS = 8  # least cells over the diameter
+FINER = 1.5
+WIDTH, DEPTH = 1.6, 2.2  # the plastic zone over the contact radius
+LONGEST, APART = 6.0, 0.1  # over the time of the indentation: when a run ends, how long it must be free
+
+
+def _indentation(p: Values, v: float) -> tuple[float, float]:
+    """Return contact radius, m, and duration, s, of a rigid plane pressed in by a constant pressure."""
+    mass, pressure = _mass(p), MEAN * p["yield_stress"]
+    radius = (2 * mass * v**2 * p["radius"] / (pi * pressure)) ** 0.25
+    return radius, pi / 2 * sqrt(mass / (2 * pi * p["radius"] * pressure))
+
+
+def _mass(p: Values) -> float:
+    return 4 / 3 * pi * p["radius"] ** 3 * p["rho"]
+
+
+def _model(p: Values, v: float, cells: float) -> Model:
+    R, touch = p["radius"], _indentation(p, v)[0]
+    # the same cells over the contact radius at every speed: halvings, then the base mesh for the rest
+    levels = max(0, floor(log2(2 * R * cells / (touch * ACROSS))))
+    across = 2 * round(R * cells / touch / 2**levels)
+    mesh = meshes.sphere(R, max(across, ACROSS), contact_zone(WIDTH * touch, DEPTH * touch), levels)
+    points = placed(mesh.points, 0.0, 0.0)
+    velocity = np.zeros_like(points)
+    velocity[:, 2] = -v
+    rho = _mass(p) / (2 * float(np.sum(meshes.volume(mesh))))
+    law = linear_hardening(p["yield_stress"], p["hardening"])
+    yields = mesh.level == levels
+    return body_model(
+        Body(unsliced(mesh), points, velocity, p["E"], p["nu"], rho, law=law, yields=yields, friction=0.0)
+    )
+
+
+def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, int]:
+    """Return e, the worst residual of the ledger over E_0, steps and cells of one run."""
+    model, time = _model(p, v, cells), _indentation(p, v)[1]
+    state, book = model.initial_state(), model.book
+    energy = Until(
+        model.ledger(), LONGEST * time, lambda: bool(state.time - APART * time > book.last_touch > 0), 20
+    )
+    march(model, state, [StepGuard(model), energy])
+    worst = energy.ledger.worst / energy.ledger.start
+    return rigid_of(model, state).V_n / v, worst, state.step, len(model.geometry.rod.mesh.cells)
+
+
+def solve(p: Values) -> Solved:
+    """Compare the slope of ln e over ln v, its convergence, and e beside two published fits."""
+    low, high = log(p["slowest"]), log(p["fastest"])
+    speeds = [exp(low + (high - low) * i / (SPEEDS - 1)) for i in range(SPEEDS)]
+    runs = [_restitution(p, v, p["cells"]) for v in speeds]
+    slope = float(np.polyfit(np.log(speeds), np.log([run[0] for run in runs]), 1)[0])
+    middle = speeds[SPEEDS // 2]
+    fine = _restitution(p, middle, FINER * p["cells"])
+    E_star, mass = contact_modulus(p["E"], p["nu"]), _mass(p)
+    full, first = (yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (MEAN, FIRST))
+    checks = (
+        Check("slope of ln e over ln v", "1", slope, SLOPE, SLOPE_TOLERANCE, "absolute"),
+        Check("e, and with finer cells", "1", runs[SPEEDS // 2][0], fine[0], CONVERGED),
+        Check("e beside Thornton", "1", fine[0], thornton_restitution(middle, full), FIT),
+        Check("e beside the finite-element fit", "1", fine[0], fitted_restitution(middle, first), FIT),
+        Check("energy ledger / E_0", "1", max(run[1] for run in (*runs, fine)), 0.0, 1e-3, "at most"),
+    )
+    return Solved(checks, fine[2], fine[3])
+
+
+PROBLEM = Problem(
+    "thornton",
+    "a yielding sphere on a rigid plane: restitution falls as speed to the power -1/4",
+    (
+        Parameter("radius", "radius of the sphere", 9.5e-3, 1e-4, 1.0, "length"),
+        steel.speed("slowest", "lowest approach speed", 1.0),
+        steel.speed("fastest", "highest approach speed", 8.0),
+        *steel.elastic(),
+        Parameter("yield_stress", "yield stress", 546e6, 1e5, 1e10, "stress"),
+        Parameter("hardening", "plastic modulus", 0.0, 0.0, 1e11, "stress"),
+        Parameter("cells", "cells over the contact radius", 5, 2, 20),
+    ),
+    solve,
+)
