@@ -19,6 +19,7 @@ PROBLEMS = {
     "bar": ("bar", "PROBLEM"),
     "hertz": ("hertz_sphere", "PROBLEM"),
     "oblique-sphere": ("oblique_sphere", "PROBLEM"),
+    "sears": ("sears_rod", "PROBLEM"),
     "thornton": ("thornton_tip", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),
     "wall-bar": ("wall_bar", "PROBLEM"),
