@@ -8,15 +8,23 @@ import numpy as np
 
 import rigid
 from fem_impact.effects import choices, neglected
+from fem_impact.heating import flash, halves, heat_keys
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
+from fem_impact.outcome.keys import HEATING
 from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, provenance
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
     from fem_impact.solid.run import SolidResult
 
-VIBRATING = ("E_vib_over_E_0", "E_vib_floor_over_E_0", "E_vib_below_floor", "E_vib_check_over_E_0")
+VIBRATING = (
+    "E_lt_less_vibration_over_E_0",
+    "E_vib_over_E_0",
+    "E_vib_floor_over_E_0",
+    "E_vib_below_floor",
+    "E_vib_check_over_E_0",
+)
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 
 
@@ -31,6 +39,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     values |= _motion(scene, result)
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
+    values |= _heat(result, values)
     reasons |= NO_TARGET | {
         "W_damping_over_E_0": "the material-damping effect is off",
         "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
@@ -38,6 +47,8 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     }
     if result.vibration_check is None:
         reasons["E_vib_check_over_E_0"] = "the run ended before the last separation was certain"
+    if result.heat is None:
+        reasons |= dict.fromkeys((k.name for k in HEATING), "the contact-heating effect is off")
     if "vibration" not in scene.active:
         reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
     return Outcome(values, {k: v for k, v in reasons.items() if values.get(k) is None})
@@ -86,6 +97,19 @@ def _energies(result: SolidResult, values: Values) -> Values:
     found["E_vib_check_over_E_0"] = None if check is None else check / E_0
     below = None if result.model.rod_stiffness is None else bool(vibration < floor)
     return found | {"E_0_J": E_0, "E_vib_below_floor": below}
+
+
+def _heat(result: SolidResult, values: Values) -> Values:
+    """Return flash temperature and bound, and rigid theory's friction loss less the vibration in it."""
+    watch, vibration = result.heat, values.get("E_vib_over_E_0")
+    if watch is None or not watch.power:
+        return {}
+    power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
+    flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
+    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.scene))
+    keys = heat_keys(result.scene, found, float(power.max()), float(flux.max()), float(patch.max()))
+    share = None if vibration is None else values["E_lt_edge_over_E_0"] - vibration
+    return keys | {"E_lt_less_vibration_over_E_0": share}
 
 
 def _markers(result: SolidResult, values: Values) -> Values:

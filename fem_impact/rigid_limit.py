@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import rigid
 from fem_impact.contact_law import contact_law, restitution
 from fem_impact.estimates import effective_mass, projectile
+from fem_impact.heating import closed_form
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
 
@@ -50,6 +51,8 @@ def rigid_outcome(scene: Scene) -> Outcome:
     values |= motion_keys(scene, float(V_n), float(V_t), float(Omega), rod.mass, rod.k2)
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(scene, path, rod) | {"wall_s": wall, "cpu_s": cpu}
+    if "contact-heating" in scene.active:
+        values |= closed_form(scene, values["W_friction_over_E_0"] * values["E_0_J"])
     unknown = {key.name: UNKNOWN for key in KEYS if key.nullable and values.get(key.name) is None}
     return Outcome(values, unknown | NO_TARGET | reasons)
 

@@ -7,6 +7,7 @@ from fem_impact.effects import (
     damping,
     friction,
     gravity,
+    heating,
     plasticity,
     radiation,
     rate,
@@ -31,5 +32,6 @@ EFFECTS: dict[str, Effect] = {
         gravity.EFFECT,
         rotation.EFFECT,
         damping.EFFECT,
+        heating.EFFECT,
     )
 }

@@ -77,11 +77,12 @@ def choices(scene: Scene) -> tuple[Choice, ...]:
 def neglected(scene: Scene) -> tuple[str, ...]:
     """Return a sentence for each effect that the scene forces off although it matters."""
     barrier = next(BARRIERS.index(name) for name in scene.active if name in BARRIERS)
-    return tuple(
-        _warning(choice)
+    missed = [
+        choice
         for choice in choices(scene)
         if choice.needed and not choice.on and choice.name not in BARRIERS[: barrier + 1]
-    )
+    ]
+    return tuple(_warning(choice) for choice in missed if choice.harm.e or choice.harm.E_vib)
 
 
 def everything(scene: Scene) -> Scene:

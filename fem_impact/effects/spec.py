@@ -24,6 +24,7 @@ class ModelSpec:
     radiating : the block's outer boundary lets waves out
     gravity : acceleration, m/s2, or None
     loss_factor : of the rod's vibration, or None
+    heat : the contact's heat is watched
     turning_frame : the rod's linear part follows its rotation
     """
 
@@ -35,6 +36,7 @@ class ModelSpec:
     radiating: bool = False
     gravity: float | None = None
     loss_factor: float | None = None
+    heat: bool = False
     turning_frame: bool = False
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from fem_impact.modal.assumptions import ASSUMPTIONS
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome import KEYS, Outcome
+from fem_impact.outcome.keys import HEATING
 from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
 from fem_impact.scene import Scene
 
@@ -24,6 +25,7 @@ REASONS = {
         (key.name for key in KEYS if key.name.startswith("marker_")),
         "the camera's markers are followed on the finite elements only",
     ),
+    **dict.fromkeys((key.name for key in HEATING), "heat is followed on the finite elements only"),
     "bands": "the reduced model has no second mesh",
     **dict.fromkeys(
         ("element_steps", "elements_rod", "elements_barrier", "elements_yielding", "tip_size_m"), NOT_MESHED

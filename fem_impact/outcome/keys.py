@@ -163,6 +163,18 @@ ACCURACY = (
     _number("achieved_wall_s", "s", "Wall time of all runs of the setting."),
 )
 
+HEATING = (
+    _number("contact_patch_m2", "m2", "Largest true contact patch, whole contact."),
+    _number("friction_power_W", "W", "Highest friction power, whole contact."),
+    _number("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch."),
+    _number("flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction."),
+    _number("flash_temperature_K", "K", "Highest mean temperature of the patch."),
+    _number("ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."),
+    _number("time_above_ignition_s", "s", "How long the patch is hotter than that."),
+    _number("flash_bound_K", "K", "Temperature that no spot of the contact exceeds, under assumptions."),
+    _fraction("E_lt_less_vibration", "E_lt with the edge's arms less E_vib: what can heat the contact"),
+)
+
 COST = (
     _count("steps", "Time steps taken."),
     _count("element_steps", "Elements times steps, summed."),
@@ -186,6 +198,7 @@ KEYS: tuple[Key, ...] = (
     *ENERGY,
     *CONTACT,
     *ACCURACY,
+    *HEATING,
     *COST,
     *REASONS,
 )

@@ -8,7 +8,9 @@ from pathlib import Path
 
 from fem_impact.figures import partition_figure
 from fem_impact.figures.style import percent
+from fem_impact.heating import ASSUMPTIONS
 from fem_impact.outcome import ARMS, Outcome
+from fem_impact.outcome.keys import HEATING
 from fem_impact.output import make_directory, read_text
 from fem_impact.report.effects import effects_section
 from fem_impact.report.embed import picture
@@ -18,6 +20,7 @@ from fem_impact.report.html import (
     details,
     join,
     number,
+    paragraph,
     section,
     table,
     with_band,
@@ -62,6 +65,7 @@ def run_page(folder: Path) -> str:
         history_figures(outcome, folder),
         section("Contacts", contacts_table(outcome)),
         film_section(folder),
+        section("Heat of the contact", _heat(outcome)),
         section("Motion", key_table(outcome, MOTION)),
         section("Coefficients and losses with three sets of arms", _arms(outcome)),
         unknown([outcome]),
@@ -82,6 +86,16 @@ def _partition(outcome: Outcome, folder: Path) -> Markup:
         "Bars of the shares of the energy after the last separation",
         "Shares of E₀ after the last separation.",
     )
+
+
+def _heat(outcome: Outcome) -> Markup:
+    """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
+    if outcome["flash_bound_K"] is None:
+        return Markup("")
+    shares = ("W_friction_over_E_0", "E_lt_edge_over_E_0", "E_lt_less_vibration_over_E_0")
+    told = key_table(outcome, (*shares, *(key.name for key in HEATING[:-1])))
+    bound = paragraph("The bound for a safety case holds under these assumptions:")
+    return join([told, bound, bullets(ASSUMPTIONS)])
 
 
 def _cards(outcome: Outcome) -> Markup:

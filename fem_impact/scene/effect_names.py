@@ -17,13 +17,14 @@ AUTO = "auto"
 BARRIERS = ("barrier-rigid", "barrier-elastic", "barrier-elastoplastic")
 NAMES = (
     *("vibration", "friction", "rod-plasticity", *BARRIERS, "rate-hardening", "radiation"),
-    *("gravity", "large-rotation", "material-damping"),
+    *("gravity", "large-rotation", "material-damping", "contact-heating"),
 )
 # an effect that means nothing unless one of these is on
 NEEDS = {
     "rate-hardening": ("rod-plasticity", "barrier-elastoplastic"),
     "radiation": ("barrier-elastic", "barrier-elastoplastic"),
     "material-damping": ("vibration",),
+    "contact-heating": ("friction",),
 }
 _REMEDY = (
     f'Write "auto", ["auto", "NAME", "-NAME"], or the list of all effects wanted, out of: {", ".join(NAMES)}.'

@@ -11,6 +11,7 @@ from fem_impact.scene.units import DIMENSIONS, format_quantity
 __all__ = [
     "ACCURACY",
     "DEFAULTS",
+    "HEATING",
     "IMPACT",
     "MATERIAL",
     "PROJECTILE",
@@ -168,6 +169,36 @@ SAVE = (
     ),
 )
 
+_STEEL = "carbon steel at 20 degC, EN 1993-1-2:2005, 3.4.1"
+HEATING = (
+    Field(
+        "ignition",
+        "temperature that the contact must not reach",
+        "temperature",
+        300.0,
+        5000.0,
+        default=703.15,
+        source="hot spots of 430 degC and more set off secondary explosives (Bowden & Yoffe 1952)",
+    ),
+    Field(
+        "ambient",
+        "temperature before the impact",
+        "temperature",
+        1.0,
+        299.0,
+        default=293.15,
+        source="a room; the bound on the contact grows with it degree by degree",
+    ),
+    *(
+        Field(f"{body}_{key}", f"{words} of the {body}", words, 1e-3, 1e5, default=value, source=_STEEL)
+        for body in ("rod", "barrier")
+        for key, words, value in (
+            ("conductivity", "conductivity", 53.0),
+            ("heat_capacity", "heat capacity", 440.0),
+        )
+    ),
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Default:
@@ -180,7 +211,12 @@ class Default:
 
 DEFAULTS: tuple[Default, ...] = tuple(
     Default(f"{section}.{f.key}", f.write(f.default), f.source)
-    for section, fields in (("impact", IMPACT), ("accuracy", ACCURACY), ("save", SAVE))
+    for section, fields in (
+        ("impact", IMPACT),
+        ("accuracy", ACCURACY),
+        ("save", SAVE),
+        ("heating", HEATING),
+    )
     for f in fields
     if f.default is not None
 )

@@ -14,7 +14,18 @@ from fem_impact.scene.write import to_dict
 
 __all__ = ["replace", "replace_all"]
 
-_SUFFIXES = ("_m_per_s", "_rad_per_s", "_kg_per_m3", "_rad", "_Pa", "_m", "_s")
+_SUFFIXES = (
+    "_m_per_s",
+    "_rad_per_s",
+    "_kg_per_m3",
+    "_rad",
+    "_Pa",
+    "_W_per_m_K",
+    "_J_per_kg_K",
+    "_K",
+    "_m",
+    "_s",
+)
 
 
 def replace(scene: Scene, key: str, value: Any) -> Scene:

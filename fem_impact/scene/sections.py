@@ -10,7 +10,17 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields, library
 from fem_impact.scene.effect_names import AUTO, check_effects
 from fem_impact.scene.fields import Field
-from fem_impact.scene.types import Accuracy, Barrier, Impact, Material, Projectile, Save, Scene, Surface
+from fem_impact.scene.types import (
+    Accuracy,
+    Barrier,
+    Heating,
+    Impact,
+    Material,
+    Projectile,
+    Save,
+    Scene,
+    Surface,
+)
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 __all__ = ["read_scene"]
@@ -29,6 +39,7 @@ _TOP = (
     "impact",
     "accuracy",
     "save",
+    "heating",
 )
 
 
@@ -48,6 +59,7 @@ def read_scene(data: Table) -> Scene:
         effects=effects,
         accuracy=_within(data, "accuracy", _accuracy, {}),
         save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
+        heating=_within(data, "heating", lambda t: Heating(**_numbers(t, fields.HEATING)), {}),
         measured=data.get("measured"),
         restitution=_restitution(data),
     )

@@ -20,6 +20,7 @@ __all__ = [
     "MEASURED_SETS",
     "Accuracy",
     "Barrier",
+    "Heating",
     "Impact",
     "Material",
     "Projectile",
@@ -141,6 +142,21 @@ class Accuracy:
 
 
 @dataclass(frozen=True, slots=True)
+class Heating:
+    """What contact heating is judged by: K, W/(m K), J/(kg K)."""
+
+    ignition: float = 703.15
+    ambient: float = 293.15
+    rod_conductivity: float = 53.0
+    rod_heat_capacity: float = 440.0
+    barrier_conductivity: float = 53.0
+    barrier_heat_capacity: float = 440.0
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.HEATING)
+
+
+@dataclass(frozen=True, slots=True)
 class Save:
     """What is kept of a run: frames of the fields, steps between rows of the histories."""
 
@@ -169,6 +185,7 @@ class Scene:
     effects: tuple[str, ...] = ("auto",)
     accuracy: Accuracy = Accuracy()
     save: Save = Save()
+    heating: Heating = Heating()
     measured: str | None = None
     restitution: float | None = None
 

@@ -28,15 +28,16 @@ _LONGEST = 64
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """One unit: ``value_SI = number * 10**power * factor``; factor is 1 for every decimal unit."""
+    """One unit: ``value_SI = number * 10**power * factor + offset``; factor is 1 for every decimal unit."""
 
     symbol: str
     power: int = 0
     factor: float = 1.0
+    offset: float = 0.0
 
     def to_si(self, number: str) -> float:
         """Convert decimal text to SI, rounding once, so that writing and reading are exact."""
-        return float(Decimal(number).scaleb(self.power)) * self.factor
+        return float(Decimal(number).scaleb(self.power)) * self.factor + self.offset
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,6 +78,9 @@ DIMENSIONS: dict[str, Dimension] = {
             "stress", "Pa", "MPa", "546 MPa", (Unit("Pa"), Unit("kPa", 3), Unit("MPa", 6), Unit("GPa", 9))
         ),
         Dimension("density", "kg_per_m3", "kg/m3", "7850 kg/m3", (Unit("kg/m3"), Unit("g/cm3", 3))),
+        Dimension("temperature", "K", "K", "430 degC", (Unit("K"), Unit("degC", offset=273.15))),
+        Dimension("conductivity", "W_per_m_K", "W/(mK)", "53 W/(m K)", (Unit("W/(mK)"), Unit("W/mK"))),
+        Dimension("heat capacity", "J_per_kg_K", "J/(kgK)", "440 J/(kg K)", (Unit("J/(kgK)"), Unit("J/kgK"))),
         Dimension("time", "s", "ms", "2.5 ms", (Unit("s"), Unit("ms", -3), Unit("us", -6), Unit("ns", -9))),
     )
 }
@@ -187,7 +191,7 @@ def _read_text(text: str, dim: Dimension, key: str, remedy: str) -> float:
 def _finite(number: str, unit: Unit, key: str, text: str) -> float:
     if not math.isfinite(float(number)):
         raise SceneError("is too large for a number.", key=key, value=text)
-    return unit.to_si(number) + 0.0 if float(number) else 0.0
+    return unit.to_si(number) + 0.0 if float(number) else unit.offset
 
 
 def _plain(symbol: str) -> str:

@@ -34,6 +34,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         "impact": _written(scene.impact, fields.IMPACT),
         "accuracy": _accuracy(scene.accuracy),
         "save": _written(scene.save, fields.SAVE),
+        "heating": _written(scene.heating, fields.HEATING),
     }
 
 

@@ -20,6 +20,7 @@ from fem_impact.progress import Progress
 from fem_impact.solid.build import build
 from fem_impact.solid.doubts import SkinWatch, doubts
 from fem_impact.solid.fields import Fields
+from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, evaluate, march
 from fem_impact.solid.model import Model
@@ -59,6 +60,7 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     vibration_check : twice the mean vibrational kinetic energy over a half-period, J, or None
+    heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own
     """
 
@@ -78,6 +80,7 @@ class SolidResult:
     reason: str
     cost: Cost
     warnings: tuple[str, ...]
+    heat: HeatWatch | None = None
     shares: dict[str, float] = field(default_factory=dict)
 
 
@@ -85,14 +88,16 @@ def solve(
     scene: Scene, out: Path | None = None, progress: Callable[[Progress], None] | None = None
 ) -> SolidResult:
     """Run a scene; histories and fields go to ``out`` while it runs."""
-    model = build(scene, specify(scene))
+    spec = specify(scene)
+    model = build(scene, spec)
     view = RodView.of(model)
     state, watch = model.initial_state(), Watch(model.ledger(), scene.save.history_every)
     guard, stop = StepGuard(model), Separation(model, view, scene.accuracy.max_time)
     frames = _frames(scene, model, view, out)
     history = _history(scene, model, view, watch, out)
     skin, peak = SkinWatch(model), PeakForce(model.book)
-    observers: list[Observer] = [guard, watch, *history, *frames, skin, peak, stop]
+    heat = HeatWatch(model) if spec.heat else None
+    observers: list[Observer] = [guard, watch, *history, *frames, skin, peak, *([heat] if heat else []), stop]
     if progress is not None:
         observers.append(Meter(progress, watch, model, scene.accuracy.max_time, scene.id))
     if progress is not None and not compiled_before():
@@ -124,6 +129,7 @@ def solve(
         reason=stop.reason,
         cost=cost,
         warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model, skin),
+        heat=heat,
     )
     if stop.finished and model.rod_stiffness is not None:
         result = replace(result, vibration_check=coast(model, view, state))

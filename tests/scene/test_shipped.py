@@ -9,6 +9,7 @@ from fem_impact.scene import (
     DEFAULTS,
     MEASURED_SETS,
     Accuracy,
+    Heating,
     Impact,
     Save,
     Scene,
@@ -79,12 +80,13 @@ def test_the_steels_are_those_of_the_paper():
 
 def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
     made = {"impact": Impact(0.5, -1.0, -1.0), "accuracy": Accuracy(), "save": Save()}
+    made["heating"] = Heating()
     elastic = load("elastic-frictionless")
     for default in DEFAULTS:
         section, key = default.key.split(".")
         assert getattr(made[section], key) == getattr(getattr(elastic, section), key), default
         assert elastic.to_dict()[section][key] == default.value
-        assert len(default.source) > 20
+        assert len(default.source) > 20, default
 
 
 def test_a_scene_that_leaves_the_measured_range_says_where():

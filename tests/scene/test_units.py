@@ -12,13 +12,17 @@ from fem_impact.scene.units import DIMENSIONS, parse_number
 
 magnitudes = st.floats(1e-200, 1e30)
 finite = magnitudes | magnitudes.map(lambda x: -x) | st.just(0.0)
-DECIMAL = [(d.name, u.symbol, u.power) for d in DIMENSIONS.values() for u in d.units if u.factor == 1.0]
+PLAIN = [(d.name, u) for d in DIMENSIONS.values() for u in d.units if u.factor == 1.0 and not u.offset]
+DECIMAL = [(name, u.symbol, u.power) for name, u in PLAIN]
 
 
 @pytest.mark.parametrize(
     ("text", "dimension", "expected"),
     [
         ("240 mm", "length", 0.24),
+        ("430 degC", "temperature", 703.15),
+        ("0 °C", "temperature", 273.15),
+        ("53 W/(m K)", "conductivity", 53.0),
         ("0.35 mm", "length", 0.00035),
         ("0.7mm", "length", 0.0007),
         ("2.1 m/s", "speed", 2.1),

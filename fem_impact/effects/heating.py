@@ -1,0 +1,39 @@
+"""Heating of the contact by friction: observed, never fed back."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.heating import expected_rise
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+
+def number(scene: Scene) -> float:
+    """Return the expected flash rise over the rise to the temperature that must not be reached."""
+    return expected_rise(scene) / (scene.heating.ignition - scene.heating.ambient)
+
+
+def harm(scene: Scene) -> Harm:
+    """Return nothing: heat does not act on the motion."""
+    return Harm(0.0, 0.0)
+
+
+def fill(scene: Scene, spec: ModelSpec) -> None:
+    """Have the contact's heat watched."""
+    spec.heat = True
+
+
+EFFECT = Effect(
+    "contact-heating",
+    "The heat of friction and the flash temperature of the contact are followed.",
+    "The heat of the contact is not followed.",
+    "expected flash rise over the rise to ignition",
+    0.1,
+    "half-space conduction (Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), ten times as safe",
+    number,
+    harm,
+    fill,
+)

@@ -1,0 +1,124 @@
+"""Watches the friction power and the true contact patch of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.contact import PlaneContact, SurfaceContact
+from fem_impact.solid.contact.book import IMPULSE_T
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+from meshes import SKIN
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+WINDOW = 0.5e-6  # s over which powers and patches are means: nodes come and go within steps
+
+
+def tributary_areas(x: Array, places: Ints, quads: Ints) -> Array:
+    """Return the area (k,), m2, of a quarter of each quad (m, 4) around each node with ``places`` (k, 3)."""
+    corners = x[places[quads]]
+    area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    share = np.repeat(0.25 * np.linalg.norm(area, axis=1), 4)
+    return np.asarray(np.bincount(quads.ravel(), weights=share, minlength=len(places)), dtype=np.float64)
+
+
+def loaded_area(p: Array, area: Array) -> float:
+    """Return (sum p)^2 / sum(p^2 / area), m2: the area of an even pressure, 8/9 of Hertz' ellipse."""
+    squares = float((p * p / area).sum())
+    return float(p.sum()) ** 2 / squares if squares > 0 else 0.0
+
+
+@dataclass(slots=True)
+class HeatWatch:
+    """Means over windows of the whole contact: friction power, patch and sliding speed.
+
+    Attributes
+    ----------
+    t : ends of the windows, s, after the first their start
+    power, patch, speed : W, m2, m/s
+    """
+
+    model: Model
+    every: int = 1
+    t: list[float] = field(default_factory=lambda: [0.0])
+    power: list[float] = field(default_factory=list)
+    patch: list[float] = field(default_factory=list)
+    speed: list[float] = field(default_factory=list)
+    surface: PlaneSurface | PairSurface = field(init=False)
+    taken: float = 0.0
+    pushed: float = 0.0
+
+    def __post_init__(self) -> None:
+        contact = self.model.impulses[-1]
+        if isinstance(contact, SurfaceContact):
+            self.surface = PairSurface(contact, self.model)
+        elif isinstance(contact, PlaneContact):
+            self.surface = PlaneSurface(contact, self.model)
+
+    def observe(self, state: State) -> bool:
+        """Add the last step; close the window when it is full."""
+        book = self.model.book
+        self.pushed += abs(float(book.step[IMPULSE_T]))
+        self.surface.add(state)
+        span = state.time - self.t[-1]
+        if span >= WINDOW:
+            heat, self.taken = book.friction - self.taken, book.friction
+            self.power.append(2 * heat / span)
+            self.speed.append(heat / self.pushed if self.pushed > 0 else 0.0)
+            self.patch.append(2 * self.surface.close())
+            self.t.append(state.time)
+            self.pushed = 0.0
+        return False
+
+
+class PlaneSurface:
+    """The patch on a rigid plane: the skin that stands on it, mean of a window's steps."""
+
+    def __init__(self, contact: PlaneContact, model: Model) -> None:
+        g = model.geometry
+        quads = g.rod.mesh.faces_with(SKIN)
+        areas = tributary_areas(model.start[0], model.layout.rod, quads)
+        node = np.full(model.layout.size, -1)
+        node[model.layout.rod[:, 2]] = np.arange(len(areas))
+        self.rows = contact.nodes[:, 2]
+        self.area = areas[node[self.rows]]
+        self.sum, self.steps = 0.0, 0
+
+    def add(self, state: State) -> None:
+        """Add the skin at the height of the plane."""
+        self.sum += float(self.area[state.x[self.rows] < 1e-9].sum())
+        self.steps += 1
+
+    def close(self) -> float:
+        """Return the mean of the window, m2, and begin the next."""
+        mean, self.sum, self.steps = self.sum / self.steps, 0.0, 0
+        return mean
+
+
+class PairSurface:
+    """The patch between rod and block: loaded areas of both slave surfaces, weighted by their loads."""
+
+    def __init__(self, contact: SurfaceContact, model: Model) -> None:
+        self.memory = contact.points.memory
+        x = model.start[0]
+        patches = (contact.rod, contact.barrier)
+        self.areas = [np.maximum(tributary_areas(x, p.places, p.quads), 1e-18) for p in patches]
+        self.load = np.zeros(len(self.memory))
+
+    def add(self, state: State) -> None:
+        """Add the normal impulses of the last step."""
+        self.load += self.memory[:, 2]
+
+    def close(self) -> float:
+        """Return the patch of the window, m2, and begin the next."""
+        parts = np.split(np.maximum(self.load, 0.0), [len(self.areas[0])])
+        loads = [float(p.sum()) for p in parts]
+        found = [loaded_area(p, a) for p, a in zip(parts, self.areas, strict=True)]
+        self.load[:] = 0.0
+        total = sum(loads)
+        return sum(w * a for w, a in zip(loads, found, strict=True)) / total if total > 0 else 0.0
