@@ -51,7 +51,7 @@ def cost(options: Options) -> int:
 
 def _paper(options: Options, names: tuple[str, ...], family: tuple[Mesh, ...]) -> int:
     """Measure all sets of the paper, one store each, and write summary.json."""
-    from fem_impact.cost import measure, summarise, write_cost
+    from fem_impact.cost import measure, summarise, summary_markdown, write_cost
     from fem_impact.output import write_text
     from fem_impact.scene import MEASURED_SETS
 
@@ -64,6 +64,7 @@ def _paper(options: Options, names: tuple[str, ...], family: tuple[Mesh, ...]) -
         write_cost(costs[name], out / name, names)
     document = summarise(costs)
     write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
+    write_text(out / "summary.md", summary_markdown(document))
     if options.json:
         print_json(document)
     else:

@@ -4,6 +4,7 @@ from fem_impact.cost.achieve import simulate_to_target
 from fem_impact.cost.choose import advice, best_within, cheapest
 from fem_impact.cost.document import text_table, write_cost
 from fem_impact.cost.judge import Judged, Truth, front, worst
+from fem_impact.cost.markdown import summary_markdown
 from fem_impact.cost.measure import Cost, measure
 from fem_impact.cost.quantities import QUANTITIES, TARGETED, chosen
 from fem_impact.cost.settings import FAMILY, Mesh, Setting, ladder, on_mesh
@@ -33,6 +34,7 @@ __all__ = [
     "simulate_to_target",
     "summarise",
     "summary",
+    "summary_markdown",
     "text_table",
     "worst",
     "write_cost",

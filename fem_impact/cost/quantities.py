@@ -67,10 +67,11 @@ def chosen(names: Iterable[str]) -> tuple[str, ...]:
     SceneError
         For an unknown name.
     """
+    wanted = tuple(names)
     known = [quantity.name for quantity in QUANTITIES]
-    for name in names:
+    for name in wanted:
         if name not in known:
             raise SceneError(
                 "is not a quantity of interest.", key="--of", value=name, remedy=f"Known: {', '.join(known)}."
             )
-    return tuple(names) or TARGETED
+    return wanted or TARGETED

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from fem_impact.modal.assumptions import ASSUMPTIONS
+from fem_impact.modal.beside import beside_solid
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.outcome.keys import HEATING
@@ -19,7 +20,7 @@ REASONS = {
     "W_radiated_over_E_0": "a local contact law sends no waves into the barrier",
     "W_closing_over_E_0": "no contact nodes close",
     "effect_choices": "effects are weighed for the finite elements; `fem-impact check` lists them",
-    "W_damping_over_E_0": "no material damping is modelled",
+    "W_damping_over_E_0": "the reduced model has no material damping",
     "E_hourglass_over_E_0": NOT_MESHED,
     **dict.fromkeys(
         (key.name for key in KEYS if key.name.startswith("marker_")),
@@ -37,7 +38,8 @@ REASONS = {
 def reduce(scene: Scene, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact; what it cannot know is null with its reason."""
     warnings = [] if result.finished else ["The impact was not over at max_time."]
-    values = provenance(scene, "modal", result.finished, _end(result), ASSUMPTIONS, warnings)
+    told = (*ASSUMPTIONS, *beside_solid(scene))
+    values = provenance(scene, "modal", result.finished, _end(result), told, warnings)
     rod = result.rod
     values |= motion_keys(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
     coefficients, reasons = coefficient_keys(scene, values)

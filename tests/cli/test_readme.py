@@ -40,7 +40,9 @@ def test_the_python_of_the_readme_runs(capsys):
 @pytest.mark.parametrize("command", COMMANDS)
 def test_the_table_lists_every_command_and_its_options_exist(command):
     (line,) = [row[0].strip("`") for row in rows(f"`fem-impact {command}")]
-    words = re.sub(r"\[(--set key=value|--out \w+|--workers N|--quick|ID \.\.\.)\]", r"\1", line)
+    words = re.sub(
+        r"\[(--set key=value|--fidelity modal|--out \w+|--workers N|--quick|ID \.\.\.)\]", r"\1", line
+    )
     words = words.replace("ID ...", "t4").replace("--workers N", "--workers 2")
     options = read_line(shlex.split(words)[1:])
     assert options.handler.startswith("fem_impact.cli_")

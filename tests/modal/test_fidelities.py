@@ -1,6 +1,7 @@
 """One call and one record for three fidelities; here the two that need no finite-element run."""
 
 import json
+import re
 from dataclasses import replace
 
 import pytest
@@ -112,3 +113,12 @@ def test_the_command_takes_a_fidelity(cli):
     code, _, err = cli("run", "t5b", "--fidelity", "none")
     assert code == 2
     assert "--fidelity" in err
+
+
+def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
+    told = " ".join(simulate(load("t5b"), "modal")["assumptions"])
+    found = re.search(r"On t5b: e (\S+) beside (\S+), mu (\S+) beside (\S+), Omega", told)
+    modal, solid = map(float, found.groups()[2:])
+    assert modal == pytest.approx(0.57)
+    assert 0.3 < solid < 0.57  # a contact that slides has mu = f here; the plate's shear flow makes it less
+    assert "do not use it where that matters" in told

@@ -1,0 +1,56 @@
+"""The stored costs as a table for README."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fem_impact.cost.judge import Judged
+from fem_impact.cost.quantities import TARGETED
+from fem_impact.study.markdown import table
+
+__all__ = ["summary_markdown"]
+
+
+def summary_markdown(document: dict[str, Any]) -> str:
+    """Return one row a scene: limits of the targeted quantities, then errors and time of every setting.
+
+    A cell reads: errors of the targeted quantities in per cent, wall time in s.
+    """
+    scenes = {
+        name: (cost["quantities"], [Judged(**setting) for setting in cost["settings"]])
+        for name, cost in document["scenes"].items()
+    }
+    columns = _columns([settings for _, settings in scenes.values()])
+    head = ["set", *(f"{name}, limit" for name in TARGETED), *columns]
+    body = [[name, *_limits(q), *(_cell(s, column) for column in columns)] for name, (q, s) in scenes.items()]
+    machine = document["machine"]
+    note = (
+        f"Measured {document['created_utc'][:10]}, wall times in s on a machine with a triad of "
+        f"{machine['triad_GB_per_s']:.3g} GB/s and a CSR product of "
+        f"{machine['csr_ns_per_element_step']:.3g} ns an element-step."
+    )
+    return f"{table(head, body)}\n\n{note}\n"
+
+
+def _columns(groups: list[list[Judged]]) -> list[str]:
+    """Return names of settings from cheap to dear, without those that leave an effect out."""
+    kinds = ("rigid", "modal", "mesh", "pair")
+    named = {one.name: one for settings in groups for one in settings if one.kind in kinds}
+    return sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
+
+
+def _limits(quantities: dict[str, Any]) -> list[str]:
+    return [f"{quantities[name]['limit']:.3g} ± {quantities[name]['uncertainty']:.1g}" for name in TARGETED]
+
+
+def _cell(settings: list[Judged], name: str) -> str:
+    found = [one for one in settings if one.name == name]
+    if not found:
+        return ""
+    errors = [found[0].error[quantity] for quantity in TARGETED]
+    words = " / ".join("-" if error is None else _percent(error) for error in errors)
+    return f"{words}, {found[0].wall_s:.2g} s"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"

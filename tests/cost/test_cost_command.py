@@ -1,0 +1,89 @@
+"""The command ``cost``, the run of a scene with a target, and the table of README."""
+
+import json
+import re
+from importlib import import_module
+from pathlib import Path
+
+import pytest
+from cost_fakes import Here, run
+
+import fem_impact.cost
+import fem_impact.scene
+import fem_impact.simulate
+from fem_impact.cost import summary, summary_markdown
+
+README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    monkeypatch.setattr(fem_impact.simulate, "simulate", run)
+    measure = import_module("fem_impact.cost.measure")
+    monkeypatch.setattr(measure, "compiled_before", lambda: True)
+    monkeypatch.setattr(measure, "ProcessPoolExecutor", lambda *_, **__: Here())
+
+
+def test_cost_prints_table_and_advice(cli, fake):
+    code, out, err = cli("cost", "t5b", "--target", "20 %", "--budget", "1 s", "--of", "e", "--quiet")
+    assert (code, err) == (0, "")
+    assert "Cheapest within 20 % of e: rigid" in out
+    assert "Best within 1 s: modal" in out
+    assert "results: results/cost/t5b" in out
+    assert Path("results/cost/t5b/cost.svg").exists()
+    code, out, _ = cli("cost", "t5b", "--json", "--target", "20 %")
+    assert json.loads(out)["advice"] == ["Cheapest within 20 % of e and E_vib: modal, error 11 % in 0.01 s."]
+
+
+def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
+    sets = ("t3-machined", "t5b")
+    monkeypatch.setattr(fem_impact.scene, "MEASURED_SETS", sets)
+    code, out, _ = cli("cost", "paper", "--across", "6,8", "--out", "all", "--quiet")
+    assert code == 0
+    held = json.loads(Path("all/summary.json").read_text())
+    assert list(held["scenes"]) == list(sets)
+    assert Path("all/summary.md").read_text() == summary_markdown(held)
+    assert "summary: all/summary.json" in out
+
+
+@pytest.mark.parametrize(
+    ("words", "complaint"),
+    [
+        (["--target", "2"], "--target"),
+        (["--budget", "30"], "has no unit"),
+        (["--of", "speed"], "is not a quantity of interest"),
+        (["--across", "6"], "two or more different even numbers"),
+        (["--across", "5,8"], "two or more different even numbers"),
+        (["--across", "8,8"], "two or more different even numbers"),
+    ],
+)
+def test_wrong_words_are_refused_before_any_work(cli, words, complaint):
+    code, _, err = cli("cost", "t5b", *words)
+    assert code == 3
+    assert complaint in err
+    assert not Path("results").exists()
+
+
+def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
+    chosen = type("Plan", (), {"sentence": "accuracy 20 %: modal, expected error 15 %"})
+    monkeypatch.setattr(fem_impact.cost, "plan", lambda *_: chosen)
+    stated = {"accuracy_target": 0.2, "accuracy_setting": "modal", "expected_error": 0.15}
+    stated |= {"expected_wall_s": 0.01, "achieved_wall_s": 0.02}
+
+    def answer(scene, **_):
+        return run(scene, "modal").replace(
+            reasons={"achieved_error": "one run alone"}, **stated | {"achieved_error": None}
+        )
+
+    monkeypatch.setattr(fem_impact.simulate, "simulate", answer)
+    code, out, err = cli("run", "t5b", "--set", "accuracy=20 %")
+    assert code == 0
+    assert "accuracy 20 %: modal, expected error 15 %" in err
+    assert "asked for 20 %: modal" in out
+    assert "expected error of e and E_vib 15 %, time 0.01 s" in out
+    assert "achieved error of e and E_vib not known: one run alone, time 0.02 s" in out
+
+
+def test_the_table_of_the_readme_is_the_stored_one():
+    found = re.search(r"<!-- cost -->\n(.*?)<!-- end of cost -->", README, re.DOTALL)
+    assert found[1] == summary_markdown(summary())
