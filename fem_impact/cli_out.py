@@ -10,7 +10,9 @@ from fem_impact.errors import OutputPathError, ResultError
 __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
-_OWN_FILES = (*RESULT_FILES, "store.sqlite", "scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
+_OF_STUDIES = ("store.sqlite", "ledger.csv")
+_OF_RUNS = ("scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
+_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *_OF_RUNS)
 
 
 def checked_out(out: Path) -> Path:

@@ -24,6 +24,7 @@ STUDIES = {
     "criterion": "when a rod may be called rigid",
     "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
 }
+REPORT = {"report": "one page over all studies beside it"}
 _RESULT = "directory that a run or a study wrote"
 
 
@@ -130,8 +131,8 @@ def _add_study(commands: Commands) -> None:
     parser = _command(
         commands, "study", "compute many runs and draw conclusions from them", "fem_impact.cli_study:study"
     )
-    listed = "; ".join(f"{name}: {words}" for name, words in STUDIES.items())
-    parser.add_argument("name", choices=STUDIES, metavar="NAME", help=listed)
+    listed = "; ".join(f"{name}: {words}" for name, words in {**STUDIES, **REPORT}.items())
+    parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help=listed)
     parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
     parser.add_argument(
         "--fidelity", choices=["modal", "solid"], default="", help="of scatter (default: modal)"

@@ -28,6 +28,8 @@ def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
     ids = _checked_ids(options.ids)
     out = checked_out(options.out or Path("results") / options.name)
+    if options.name == "report":
+        return _report(options, out)
     from fem_impact.study import Request
 
     request = Request(out, ids, options.quick, options.fidelity)
@@ -35,6 +37,18 @@ def study(options: Options) -> int:
         if options.estimate:
             return _estimate(options, request, meter, executor)
         return _study(options, request, meter, executor)
+
+
+def _report(options: Options, out: Path) -> int:
+    """Write one page over the studies that stand beside ``out``."""
+    from fem_impact.report import write_all
+
+    path = write_all(out.parent, out)
+    if options.json:
+        print_json({"path": str(path)})
+    else:
+        sys.stdout.write(f"report: {path}\n")
+    return 0
 
 
 def _study(options: Options, request: Request, meter: Meter, executor: Executor) -> int:

@@ -63,8 +63,11 @@ def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide
     across = columns if shape == "wide" else 1
     down = math.ceil(len(panels) / across)
     with figure(path, shape, 3.3 * down + 0.2) as drawn:
-        for axes, panel in zip(_axes(drawn, down, across), panels, strict=False):
+        every = _axes(drawn, down, across)
+        for axes, panel in zip(every, panels, strict=False):
             _panel(axes, panel)
+        for axes in every[len(panels) :]:
+            axes.set_visible(False)
     return path
 
 

@@ -11,7 +11,7 @@ from fem_impact.errors import ResultError
 from fem_impact.figures import Shape
 from fem_impact.report.html import Markup
 
-__all__ = ["FILMS", "film", "picture"]
+__all__ = ["FILMS", "data_link", "download", "film", "picture", "stored_picture"]
 
 TYPES = {
     ".svg": "image/svg+xml",
@@ -44,11 +44,32 @@ def picture(draw: Draw, stem: Path, alt: str, caption: str) -> Markup:
     slim = draw(stem.with_name(f"{stem.name}-narrow.svg"), "narrow")
     narrow = _data(slim)
     slim.with_suffix(".csv").unlink(missing_ok=True)  # the same numbers stand beside the wide one
+    return _figure(wide, narrow, alt, caption)
+
+
+def stored_picture(stem: Path, caption: str) -> Markup:
+    """Return a figure that a study drew, ``stem.svg`` and ``stem-narrow.svg``, embedded."""
+    slim = stem.with_name(f"{stem.name}-narrow.svg")
+    return _figure(_data(stem.with_suffix(".svg")), _data(slim), caption, caption)
+
+
+def _figure(wide: str, narrow: str, alt: str, caption: str) -> Markup:
     inner = (
         f'<picture><source media="(max-width: 640px)" srcset="{narrow}">'
         f'<img src="{wide}" alt="{escape(alt)}"></picture>'
     )
     return Markup(f"<figure>{inner}<figcaption>{escape(caption)}</figcaption></figure>")
+
+
+def download(path: Path, words: str) -> Markup:
+    """Return a link to a file that the page carries inside."""
+    return Markup(f"<p>{data_link(_bytes(path), path.name, words)}</p>")
+
+
+def data_link(held: bytes, name: str, words: str) -> str:
+    """Return the link to a CSV file inside the page."""
+    text = base64.b64encode(held).decode("ascii")
+    return f'<a download="{escape(name)}" href="data:text/csv;base64,{text}">{escape(words)}</a>'
 
 
 def film(folder: Path, caption: str) -> Markup:
@@ -63,9 +84,13 @@ def film(folder: Path, caption: str) -> Markup:
     return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
 
 
-def _data(path: Path) -> str:
+def _bytes(path: Path) -> bytes:
     try:
-        held = path.read_bytes()
+        return path.read_bytes()
     except OSError as error:
         raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
+
+
+def _data(path: Path) -> str:
+    held = _bytes(path)
     return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(held).decode('ascii')}"

@@ -19,7 +19,7 @@ from fem_impact.report.sections import film_section, has_film, history_figures, 
 from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.tables import card, sentences, unknown
 
-__all__ = ["study_page"]
+__all__ = ["comparison_part", "partition_part", "study_page"]
 
 ENERGIES = (*(account.key for account in FINAL), "residual_over_E_0")
 
@@ -33,13 +33,13 @@ def study_page(folder: Path) -> str:
         study.json is missing, damaged or wrong.
     """
     study = read_study(folder / "study.json")
-    rows = list(study.rows)
+    rows, figures = list(study.rows), make_directory(folder / "figures")
     body = (
         _cards(study),
         notices(rows),
-        section("Model beside measurement", _comparison(study, folder), _tables(study.comparison)),
+        section("Model beside measurement", comparison_part(study, figures), _tables(study.comparison)),
         section("Notes", bullets(study.notes)),
-        section("Where the energy went", _partition(study, folder), _energies(rows)),
+        section("Where the energy went", partition_part(study, figures)),
         section("Runs that failed", _failures(study)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
         unknown(rows),
@@ -64,12 +64,13 @@ def _cards(study: Study) -> Markup:
     return Markup(f'<div class="cards">{join(cards).text}</div>')
 
 
-def _comparison(study: Study, folder: Path) -> Markup:
+def comparison_part(study: Study, figures: Path) -> Markup:
+    """Return the figure of model beside measurement, drawn into a folder."""
     if not study.comparison:
         return Markup("")
     return picture(
         partial(comparison_figure, study.comparison),
-        make_directory(folder / "figures") / "comparison",
+        figures / "comparison",
         "Model and measured values with intervals, a panel for each quantity",
         "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
         "two-mesh band where two meshes were run.",
@@ -119,15 +120,17 @@ def _is_inside(verdict: Any) -> bool:
     return str(verdict).startswith("inside")
 
 
-def _partition(study: Study, folder: Path) -> Markup:
+def partition_part(study: Study, figures: Path) -> Markup:
+    """Return figure and table of the shares of E_0."""
     if not study.rows:
         return Markup("")
-    return picture(
+    drawn = picture(
         partial(study_partition_figure, study.rows),
-        make_directory(folder / "figures") / "partition",
+        figures / "partition",
         "Stacked bars of the shares of the energy, one a run",
         "Shares of E₀ after the last separation; a white rest is not known.",
     )
+    return join([drawn, _energies(study.rows)])
 
 
 def _energies(rows: Sequence[Outcome]) -> Markup:

@@ -1,0 +1,150 @@
+"""One page over all studies of a folder, and its Markdown twin."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from fem_impact.errors import ResultError
+from fem_impact.output import make_directory, read_text, write_text
+from fem_impact.report.embed import data_link
+from fem_impact.report.findings import findings_section, read_findings
+from fem_impact.report.html import Markup, details, join, section, table
+from fem_impact.report.page import page, sources
+from fem_impact.report.study_data import STUDY_SCHEMA, Study, read_study
+from fem_impact.report.study_page import comparison_part, partition_part
+from fem_impact.report.tables import card
+from fem_impact.report.verdicts import marker_section, verdict_section
+
+__all__ = ["write_all"]
+
+LEDGER = "runs.csv"
+
+
+def write_all(results: Path, out: Path) -> Path:
+    """Write ``report.html``, ``summary.md``, ``ledger.csv`` over the studies in ``results``; return the page.
+
+    Raises
+    ------
+    ResultError
+        There is no study in the folder, or one is damaged.
+    """
+    told = {folder: held for folder in _folders(results) if (held := read_findings(folder)) is not None}
+    sets = _sets(results)
+    if not told and sets is None:
+        raise ResultError(f"{results}: holds no study. Run one, such as fem-impact study gamma --quick.")
+    figures = make_directory(out / "figures")
+    ledger = _ledger(told, sets)
+    write_text(out / "ledger.csv", ledger)
+    write_text(out / "summary.md", _markdown(told, results if sets else None))
+    body = [
+        _cards(told, sets, ledger),
+        *(_sets_part(sets, figures) if sets else []),
+        *(findings_section(held, folder) for folder, held in told.items()),
+        section("Ledger of every run", _ledger_part(ledger)),
+        sources({name for held in told.values() for name in held["sources"]} | _effects(sets)),
+    ]
+    lead = f"{len(told) + (sets is not None)} studies of where the energy of a dropped rod goes."
+    text = page("Where the energy of a dropped steel rod goes", "All studies", lead, _footer(sets), body)
+    return write_text(out / "report.html", text)
+
+
+def _folders(results: Path) -> list[Path]:
+    return sorted(place for place in results.iterdir() if place.is_dir()) if results.is_dir() else []
+
+
+def _sets(results: Path) -> Study | None:
+    path = results / "sets" / "study.json"
+    return read_study(path) if path.is_file() and STUDY_SCHEMA in read_text(path) else None
+
+
+def _effects(sets: Study | None) -> set[str]:
+    return {effect for row in sets.rows for effect in row["effects"]} if sets else set()
+
+
+def _sets_part(sets: Study, figures: Path) -> list[Markup]:
+    rows = list(sets.rows)
+    return [
+        section("Model beside measurement", comparison_part(sets, figures)),
+        section("Where the energy went", partition_part(sets, figures)),
+        verdict_section(rows, figures),
+        marker_section(rows),
+    ]
+
+
+def _cards(told: dict[Path, dict[str, Any]], sets: Study | None, ledger: str) -> Markup:
+    failed = sum(len(held["failures"]) for held in told.values()) + (len(sets.failures) if sets else 0)
+    runs = ledger.count("\n") - 1
+    count = str(len(told) + (sets is not None))
+    cards = [card("studies", count, ""), card("runs", str(runs), f"{failed} failed")]
+    return Markup(f'<div class="cards">{join(cards).text}</div>')
+
+
+def _ledger(told: Iterable[Path], sets: Study | None) -> str:
+    """Return one table of the runs of all studies."""
+    lines = io.StringIO()
+    writer, head = csv.writer(lines, lineterminator="\n"), None
+    for folder in told:
+        for row in csv.reader(io.StringIO(read_text(folder / LEDGER))):
+            if row and row[0] == "run":
+                head = head or writer.writerow(["study", *row])
+            elif row:
+                writer.writerow([folder.name, *row])
+    names = _columns(lines.getvalue())
+    if head is None:
+        writer.writerow(names)
+    for run in sets.rows if sets else ():
+        writer.writerow(["sets", run["scene_id"], *(_cell(run, name) for name in names[2:])])
+    return lines.getvalue()
+
+
+def _columns(text: str) -> list[str]:
+    default = "study,run,fidelity,scene_digest,tip_size_m,contacts,e_edge,mu,residual_over_E_0,wall_s"
+    return (text.partition("\n")[0] or default).split(",")
+
+
+def _cell(run: Any, name: str) -> Any:
+    value = run[name]
+    return len(value) if name == "contacts" and value is not None else value
+
+
+def _ledger_part(ledger: str) -> Markup:
+    """Return the finite-element runs as a table, and all runs as a file inside the page."""
+    head, *rows = list(csv.reader(io.StringIO(ledger)))
+    at = head.index("fidelity")
+    solid = [row for row in rows if row[at] == "solid"]
+    words = f"{len(rows)} runs, {len(solid)} of them with finite elements: "
+    link = data_link(ledger.encode(), "ledger.csv", "ledger.csv")
+    shown = [[_short(cell) for cell in row] for row in solid]
+    listed = details("Finite-element runs", table(head, shown, compact=True))
+    return join([Markup(f"<p>{words}{link}</p>"), listed])
+
+
+def _short(cell: str) -> str:
+    try:
+        return f"{float(cell):.4g}"
+    except ValueError:
+        return cell[:24]
+
+
+def _markdown(told: dict[Path, dict[str, Any]], results: Path | None) -> str:
+    parts = ["# Where the energy of a dropped steel rod goes"]
+    folders = ([results / "sets"] if results else []) + list(told)
+    parts += [_summary(folder) for folder in folders]
+    return "\n\n".join(parts) + "\n"
+
+
+def _summary(folder: Path) -> str:
+    """Return a study's summary one heading lower, its pictures found from the report's folder."""
+    text = read_text(folder / "summary.md").strip().replace("](figures/", f"](../{folder.name}/figures/")
+    return text.replace("# ", "## ", 1) if text.startswith("# ") else f"## {folder.name}\n\n{text}"
+
+
+def _footer(sets: Study | None) -> str:
+    if not sets or not sets.rows:
+        return "Versions and dates of the runs stand in the ledger."
+    versions = ", ".join(f"{name} {version}" for name, version in sets.rows[0]["versions"].items())
+    return f"Computed with {versions}; dates of the runs stand in the ledger."

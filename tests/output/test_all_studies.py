@@ -1,0 +1,84 @@
+"""One page over all studies: everything inside it, nothing outside; what the paper's conclusions come to."""
+
+import csv
+import json
+import re
+
+import pytest
+from result_maker import values
+
+from fem_impact.errors import ResultError
+from fem_impact.figures.lines import Panel, Series
+from fem_impact.outcome import Outcome
+from fem_impact.output import write_text
+from fem_impact.report import write_all, write_report
+from fem_impact.report.findings import read_findings
+from fem_impact.study.document import Paper, Picture, Sheet, publish
+from fem_impact.study.request import Request
+
+
+@pytest.fixture
+def results(tmp_path):
+    """A folder with one small study."""
+    panel = Panel("a line", "x, m", "y, -", (Series("one", [0.0, 1.0], [2.0, 3.0]),))
+    sheets = [Sheet("numbers", "Some numbers", ("name", "value_m"), [["<b>", 0.25], ["none", None]])]
+    picture = Picture("line", "A rising line.", (panel,))
+    paper = Paper("gamma", "A study", ["It rises & falls."], [picture], sheets)
+    publish(paper, Request(tmp_path / "gamma", quick=True), {"run-1": Outcome(values())})
+    return tmp_path
+
+
+def test_the_page_holds_findings_figures_data_and_ledger(results):
+    page = write_all(results, results / "report").read_text()
+    assert "It rises &amp; falls." in page
+    assert page.count("data:image/svg+xml;base64,") == 2
+    assert "&lt;b&gt;" in page
+    assert "<code>fem-impact study gamma --quick</code>" in page
+    assert {"line.csv", "numbers.csv", "ledger.csv"} <= set(re.findall(r'download="([\w.-]+)"', page))
+    assert not re.findall(r'(?:src|href)="(?!data:)', page)
+    (row,) = csv.DictReader((results / "report" / "ledger.csv").read_text().splitlines())
+    assert (row["study"], row["run"]) == ("gamma", "run-1")
+    told = (results / "report" / "summary.md").read_text()
+    assert "](../gamma/figures/line.png)" in told
+    assert "- It rises & falls." in told
+
+
+def test_a_study_alone_has_a_page_too(results):
+    assert "A rising line." in write_report(results / "gamma").read_text()
+
+
+def test_the_papers_conclusions_are_judged(results):
+    row = Outcome(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
+    document = {"schema": "fem-impact/study/1", "rows": [row.to_dict()], "comparison": [], "failures": []}
+    write_text(results / "sets" / "study.json", json.dumps(document))
+    write_text(results / "sets" / "summary.md", "the sets\n")
+    page = write_all(results, results / "report").read_text()
+    for words in ("while vibration took 3 to 3 %", "measured or computed, in t5b", "Does not stand: E_lt"):
+        assert words in page
+    for name in ("closure", "moment", "critical", "heat"):
+        assert (results / "report" / "figures" / f"{name}.csv").stat().st_size > 100
+    ledger = (results / "report" / "ledger.csv").read_text().splitlines()
+    assert len(ledger) == 3
+    assert ledger[2].startswith("sets,t5b,")
+
+
+def test_an_empty_folder_is_refused_with_a_remedy(tmp_path):
+    with pytest.raises(ResultError, match=r"holds no study\. Run one"):
+        write_all(tmp_path, tmp_path / "report")
+
+
+@pytest.mark.parametrize(
+    "harm",
+    [
+        lambda held: held.pop("findings"),
+        lambda held: held.update(figures=[{"name": "../../secret", "caption": "x"}]),
+        lambda held: held.update(sheets="none"),
+    ],
+)
+def test_a_damaged_study_is_named(results, harm):
+    path = results / "gamma" / "study.json"
+    held = json.loads(path.read_text())
+    harm(held)
+    path.write_text(json.dumps(held))
+    with pytest.raises(ResultError, match=r"gamma/study\.json: key"):
+        read_findings(results / "gamma")
