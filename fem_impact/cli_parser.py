@@ -22,6 +22,7 @@ STUDIES = {
     "convergence": "their limits for vanishing elements",
     "gamma": "vibration against slenderness",
     "criterion": "when a rod may be called rigid",
+    "effects": "effects chosen by the scene beside everything on, and what each costs",
     "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
 }
 REPORT = {"report": "one page over all studies beside it"}

@@ -1,0 +1,154 @@
+"""Ablation: what the scene's own choice of effects leaves out, beside everything on; and what effects cost.
+
+The thirteen measured sets and a designed set of others (short and long, slow and fast, low and high angle,
+hard and soft) run twice, with ``auto`` and with all effects; a few run again with one effect changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.effects import choices, everything
+from fem_impact.outcome import Outcome
+from fem_impact.output.tables import Cell
+from fem_impact.scale import Job, Results
+from fem_impact.scene import BARRIERS, MEASURED_SETS, NAMES, load, replace_all
+from fem_impact.study.document import Paper, Sheet, publish
+from fem_impact.study.request import Request, StudyResult
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Meter
+    from fem_impact.scene import Scene
+
+__all__ = ["DESIGNED", "conclude", "cost_row", "plan", "row"]
+
+TIP = "0.8 mm"  # coarse: both runs of a pair share it
+WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
+COSTED = ("t5b", "t3-machined")
+BASE = "t5b"
+
+
+def _speed(v: float) -> dict[str, Any]:
+    return {"impact.v_n": f"{-v} m/s", "impact.v_t": f"{-v} m/s"}
+
+
+def _yield(body: str, stress: float) -> dict[str, Any]:
+    return {f"{body}.material.{key}": f"{stress} MPa" for key in ("yield_stress", "ultimate_stress")}
+
+
+DESIGNED: Mapping[str, Mapping[str, Any]] = {
+    "short-slow": {"projectile.length": "40 mm", **_speed(0.2)},
+    "short-fast": {"projectile.length": "40 mm", **_speed(8.0)},
+    "long-slow": {"projectile.length": "200 mm", **_speed(0.2)},
+    "long-fast": {"projectile.length": "200 mm", **_speed(8.0)},
+    "low-angle": {"impact.angle": "5 deg"},
+    "high-angle": {"impact.angle": "75 deg"},
+    "axial": {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "projectile.tip": "A"},
+    "soft-plate": _yield("barrier", 80.0),
+    "hard-steels": {**_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
+    "stiff-barrier": {"barrier.material.E": "10000 GPa", **_yield("barrier", 90000.0)},
+    "stub-on-lead": {"projectile.length": "30 mm", **_speed(0.2), **_yield("barrier", 10.0)},
+    "hard-gentle": {**_speed(0.05), **_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
+}
+
+
+def plan(request: Request, results: Results) -> list[Job]:
+    """Return both runs of every scene, and those with one effect changed."""
+    jobs = []
+    for name, scene in _scenes(request).items():
+        jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", everything(scene))]
+        if name in COSTED:
+            jobs += [Job(f"{name}{change}", replace(scene, effects=e)) for change, e in _changes(scene)]
+    return jobs
+
+
+def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+    """Tell where auto differs from everything on, and what each effect costs."""
+    scenes = _scenes(request)
+    pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
+    rows = [
+        row(name, auto, whole)
+        for name, (auto, whole) in pairs.items()
+        if isinstance(auto, Outcome) and isinstance(whole, Outcome)
+    ]
+    costs = [
+        cost_row(f"{name}{change}", run, base)
+        for name, scene in scenes.items()
+        if name in COSTED and isinstance(base := results[f"{name}-auto"], Outcome)
+        for change, _ in _changes(scene)
+        if isinstance(run := results[f"{name}{change}"], Outcome)
+    ]
+    return publish(_paper(rows, costs), request, results)
+
+
+def row(name: str, auto: Mapping[str, Any], whole: Mapping[str, Any]) -> list[Cell]:
+    """Return one line of the ablation table; vibration that is off counts as none."""
+    e, e_all = auto["e_edge"], whole["e_edge"]
+    vib, vib_all = (run["E_vib_over_E_0"] or 0.0 for run in (auto, whole))
+    same = abs(e - e_all) <= WITHIN_E * abs(e_all) and _near(vib, vib_all)
+    off = [effect for effect in NAMES if effect in whole["effects"] and effect not in auto["effects"]]
+    cost = auto["cpu_s"] / whole["cpu_s"] if whole["cpu_s"] else None
+    return [name, ", ".join(off) or "none", e, e_all, vib, vib_all, cost, "within" if same else "beyond"]
+
+
+def cost_row(name: str, run: Mapping[str, Any], base: Mapping[str, Any]) -> list[Cell]:
+    """Return one line of the cost table: time over that of auto, and changes of e and E_vib."""
+    changed = (run["E_vib_over_E_0"] or 0.0) - (base["E_vib_over_E_0"] or 0.0)
+    times = [r["cpu_s"] / r["steps"] if r["steps"] else 0.0 for r in (run, base)]
+    return [
+        *(name, run["cpu_s"] / base["cpu_s"] if base["cpu_s"] else None),
+        *(times[0] / times[1] if times[1] else None, run["e_edge"] - base["e_edge"], changed),
+    ]
+
+
+def _near(vib: float, vib_all: float) -> bool:
+    return abs(vib - vib_all) <= max(WITHIN_VIB * vib_all, LEAST_VIB)
+
+
+def _scenes(request: Request) -> dict[str, Scene]:
+    """Return the scenes asked for, all with effects chosen by themselves and a coarse tip."""
+    every = {name: load(name) for name in MEASURED_SETS}
+    every |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
+    wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(every))
+    coarse = {"effects": "auto", "accuracy.tip_size": TIP, "save.frames": 0}
+    return {name: replace_all(every[name], coarse) for name in wanted}
+
+
+def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
+    """Return each change of one effect: its name and the effects to state."""
+    found: list[tuple[str, tuple[str, ...]]] = []
+    for choice in choices(scene):
+        if choice.name in BARRIERS and not choice.on:
+            found.append((f"-with-{choice.name}", ("auto", choice.name)))
+        elif choice.name not in BARRIERS:
+            mark, word = ("-", "without") if choice.on else ("", "with")
+            found.append((f"-{word}-{choice.name}", ("auto", f"{mark}{choice.name}")))
+    return found
+
+
+def _paper(rows: list[list[Cell]], costs: list[list[Cell]]) -> Paper:
+    beyond = [str(line[0]) for line in rows if line[-1] == "beyond"]
+    cheaper = [line for line in rows if isinstance(line[6], float) and line[6] < 1]
+    columns = ("scene", "left out", "e auto", "e all", "E_vib auto", "E_vib all", "CPU, of all", "verdict")
+    limits = f"{WITHIN_E:.0%} of e and {WITHIN_VIB:.0%} of E_vib or {LEAST_VIB:g} of E_0"
+    return Paper(
+        study="effects",
+        title="Effects chosen by the scene, beside everything on",
+        findings=[
+            f"{len(rows) - len(beyond)} of {len(rows)} scenes agree with everything on within {limits}.",
+            f"{len(cheaper)} of {len(rows)} take less processor time.",
+            *([f"Beyond: {', '.join(beyond)}."] if beyond else []),
+        ],
+        sheets=[
+            Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", columns, rows),
+            Sheet(
+                "costs",
+                "One effect changed: time and time a step over those of auto, changes of e and E_vib/E_0.",
+                ("run", "CPU, of auto", "a step, of auto", "change of e", "change of E_vib/E_0"),
+                costs,
+            ),
+        ],
+        assumptions=[f"Tips of {TIP}: the difference of a pair counts here, not its value."],
+    )

@@ -1,0 +1,75 @@
+"""The ablation study: which jobs it plans, and how it judges a pair."""
+
+from dataclasses import replace
+from math import isclose
+
+import pytest
+
+from fem_impact.effects import everything
+from fem_impact.scene import BARRIERS, MEASURED_SETS
+from fem_impact.simulate import simulate
+from fem_impact.study import Request
+from fem_impact.study.effects import COSTED, DESIGNED, cost_row, plan, row
+
+RUN = {
+    "e_edge": 0.4,
+    "E_vib_over_E_0": 2e-3,
+    "cpu_s": 3.0,
+    "steps": 100,
+    "effects": ["vibration", "friction"],
+}
+
+
+def test_every_scene_runs_with_auto_and_with_everything(tmp_path):
+    jobs = {job.name: job.scene for job in plan(Request(tmp_path), {})}
+    for name in (*MEASURED_SETS, *DESIGNED):
+        assert jobs[f"{name}-auto"].effects == ("auto",)
+        assert set(jobs[f"{name}-auto"].active) - set(BARRIERS) <= set(jobs[f"{name}-everything"].active)
+    assert all(f"{name}-without-friction" in jobs for name in COSTED)
+    assert "friction" not in jobs["t5b-without-friction"].active
+    assert "gravity" in jobs["t5b-with-gravity"].active
+
+
+def test_the_designed_scenes_switch_every_effect(tmp_path):
+    """Each effect that a scene can lack is off in one of them, and on in another where steel can need it."""
+    active = [set(job.scene.active) for job in plan(Request(tmp_path), {}) if job.name.endswith("-auto")]
+    for name in ("vibration", "friction", "rod-plasticity", "rate-hardening", "radiation", "gravity"):
+        assert {name in found for found in active} == {True, False}, name
+    assert {next(b for b in BARRIERS if b in found) for found in active} == set(BARRIERS)
+
+
+@pytest.mark.parametrize(
+    ("change", "verdict"),
+    [
+        ({}, "within"),
+        ({"e_edge": 0.4085}, "beyond"),
+        ({"e_edge": 0.4079}, "within"),
+        ({"E_vib_over_E_0": 2.3e-3}, "beyond"),
+        ({"E_vib_over_E_0": 2.15e-3}, "within"),
+        ({"E_vib_over_E_0": None}, "beyond"),
+    ],
+)
+def test_a_pair_is_judged_by_e_and_vibration(change, verdict):
+    found = row("x", RUN | {"effects": ["vibration"], "cpu_s": 1.5} | change, RUN)
+    assert found[-1] == verdict
+    assert found[1] == "friction"
+    assert found[6] == 0.5
+
+
+def test_no_vibration_agrees_with_hardly_any():
+    assert row("x", RUN | {"E_vib_over_E_0": None}, RUN | {"E_vib_over_E_0": 9e-5})[-1] == "within"
+
+
+def test_costs_are_ratios():
+    found = cost_row("x", RUN | {"cpu_s": 6.0, "steps": 400}, RUN)
+    assert found[1:3] == [2.0, 0.5]
+
+
+def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
+    """A fast case of the study, on a coarser tip; only gravity and damping are left out."""
+    (auto, _, *_) = plan(Request(tmp_path, ids=("stiff-barrier",)), {})
+    scene = auto.scene.replace("accuracy.tip_size", "1.2 mm").replace("accuracy.max_time", "1 ms")
+    whole = replace(everything(scene), effects=(*scene.active, "gravity", "material-damping"))
+    found = row("x", simulate(scene), simulate(whole))
+    assert found[-1] == "within", found
+    assert not isclose(found[2], found[3], rel_tol=1e-9)
