@@ -26,13 +26,15 @@ class ModalDamping:
 
     Attributes
     ----------
-    modes : in the reference position; frame : of the rod's linear part, for its angle
+    modes : in the reference position; weighted : (modes, n), their shapes times mass
+    frame : of the rod's linear part, for its angle
     places : (k, 3) int64, unknowns of the rod's free nodes
     loss : loss factor eta; every : steps between two applications
     taken : energy, J, of the half model; last : time of the last application, s
     """
 
     modes: RodModes
+    weighted: Array
     frame: FixedFrame | TurningFrame
     inverse_mass: Array
     places: Ints
@@ -53,7 +55,8 @@ class ModalDamping:
     ) -> ModalDamping:
         """Apply often enough for the highest mode, at steps of ``step``, s."""
         every = max(1, int(PHASE / modes.omega[-1] / step))
-        return cls(modes, frame, inverse_mass, places, loss, every)
+        weighted = np.ascontiguousarray(modes.shape.T * modes.mass)
+        return cls(modes, weighted, frame, inverse_mass, places, loss, every)
 
     def resolve(self, state: State) -> None:
         """Damp every few steps and book the work with the mean of old and new velocity."""
@@ -62,8 +65,8 @@ class ModalDamping:
         n = len(self.modes.mass)
         kicked = self._turned(state.v[:n], -self.frame.angle)
         pushed = self._turned(self.inverse_mass * state.force[:n], -self.frame.angle)
-        weighted = self.modes.shape.T * self.modes.mass
-        q, old = weighted @ kicked, weighted @ (kicked - state.kick * pushed)
+        q = self.weighted @ kicked
+        old = q - state.kick * (self.weighted @ pushed)
         lost = q * -np.expm1(-self.loss * self.modes.omega * (state.time - self.last))
         self.last = state.time
         self.taken += 0.5 * float(lost @ (old + q - lost))
