@@ -52,6 +52,8 @@ class Options(argparse.Namespace):
     of: str = ""
     across: str = ""
     estimate: bool = False
+    resume: bool = False
+    checkpoint: float = 30.0
     result: Path
     set_id: str | None = None
     file: Path
@@ -125,6 +127,14 @@ def _add_run(commands: Commands) -> None:
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
+    parser.add_argument(
+        "--checkpoint",
+        type=_seconds,
+        default=30.0,
+        metavar="SECONDS",
+        help="time between checkpoints (default: 30)",
+    )
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
@@ -202,6 +212,16 @@ def _add_verify(commands: Commands) -> None:
 def _add_scene_words(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help=_SCENE)
     parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
+    return value
 
 
 def _at_least_one(text: str) -> int:

@@ -28,9 +28,16 @@ def run(options: Options) -> int:
 
     meter = chosen_meter(options)
     try:
-        outcome = simulate(scene, fidelity=options.fidelity or None, out=out, progress=meter)
+        outcome = simulate(
+            scene,
+            fidelity=options.fidelity or None,
+            out=out,
+            progress=meter,
+            resume=options.resume,
+            checkpoint_s=options.checkpoint,
+        )
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"Results: {out}") from None
+        raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None
     finally:
         meter.close()
     if options.json:

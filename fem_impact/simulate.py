@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
+from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL
 
 if TYPE_CHECKING:
     from fem_impact.outcome import Outcome
@@ -22,7 +23,12 @@ FIDELITIES = ("rigid", "modal", "solid")
 
 
 def simulate(
-    scene: Scene, fidelity: str | None = None, out: Path | None = None, progress: Report | None = None
+    scene: Scene,
+    fidelity: str | None = None,
+    out: Path | None = None,
+    progress: Report | None = None,
+    resume: bool = False,
+    checkpoint_s: float = INTERVAL,
 ) -> Outcome:
     """Compute an impact.
 
@@ -36,12 +42,16 @@ def simulate(
     out : directory for outcome.json and scene.toml, contacts.csv where contacts have a duration, and
         history.csv and fields.vtkhdf of the solid fidelity; none of them is written without it
     progress : called every few hundred steps of the solid fidelity
+    resume : go on from the checkpoint in ``out`` (solid); without one there, start at the beginning
+    checkpoint_s : wall time between checkpoints of the solid fidelity
 
     Raises
     ------
     SceneError
         If the fidelity is unknown, the tip has no fine zone where the solid fidelity needs one, or no
         measured cost tells how to keep to the error that the scene allows.
+    ResultError
+        If the checkpoint is damaged, or of another scene or program.
     RunError
         If the run cannot go on; what was computed stays in ``out``.
     """
@@ -52,22 +62,37 @@ def simulate(
     if scene.accuracy.target is not None:
         from fem_impact.cost import simulate_to_target
 
-        return simulate_to_target(scene, fidelity, out, progress)
-    return _run(scene, fidelity or "solid", out, progress)
+        return simulate_to_target(scene, fidelity, out, progress, resume, checkpoint_s)
+    return _run(scene, fidelity or "solid", out, progress, resume, checkpoint_s)
 
 
-def _run(scene: Scene, fidelity: str, out: Path | None, progress: Report | None) -> Outcome:
+def _run(
+    scene: Scene,
+    fidelity: str,
+    out: Path | None,
+    progress: Report | None,
+    resume: bool,
+    checkpoint_s: float,
+) -> Outcome:
     """Compute one impact on the mesh that the scene gives, and write its files."""
-    from fem_impact.output import make_directory, write_text
-
     require_runnable(scene, fidelity)
-    if out is not None:
-        make_directory(out)
-        write_text(out / "scene.toml", scene.to_toml())
-    outcome = _compute(scene, fidelity, out, progress)
+    goes_on = resume and out is not None and (out / CHECKPOINT).exists()
+    if out is not None and not goes_on:
+        _begin(scene, out)
+    outcome = _compute(scene, fidelity, out, progress, goes_on, checkpoint_s)
     if out is not None:
         _write(outcome, out)
     return outcome
+
+
+def _begin(scene: Scene, out: Path) -> None:
+    """Clear an older run away, so that nothing of it is taken for this one, and name the scene."""
+    from fem_impact.output import make_directory, write_text
+
+    make_directory(out)
+    for name in (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf"):
+        (out / name).unlink(missing_ok=True)
+    write_text(out / "scene.toml", scene.to_toml())
 
 
 def require_runnable(scene: Scene, fidelity: str) -> None:
@@ -79,7 +104,14 @@ def require_runnable(scene: Scene, fidelity: str) -> None:
         require_fine_zone(scene, specify(scene))
 
 
-def _compute(scene: Scene, fidelity: str, out: Path | None, progress: Report | None) -> Outcome:
+def _compute(
+    scene: Scene,
+    fidelity: str,
+    out: Path | None,
+    progress: Report | None,
+    goes_on: bool,
+    checkpoint_s: float,
+) -> Outcome:
     """Import and run one model."""
     if fidelity == "rigid":
         from fem_impact.rigid_limit import rigid_outcome
@@ -92,7 +124,7 @@ def _compute(scene: Scene, fidelity: str, out: Path | None, progress: Report | N
     from fem_impact.reduce import reduce
     from fem_impact.solid.run import solve
 
-    return reduce(scene, solve(scene, out, progress))
+    return reduce(scene, solve(scene, out, progress, goes_on, checkpoint_s))
 
 
 def _write(outcome: Outcome, out: Path) -> None:
@@ -101,3 +133,4 @@ def _write(outcome: Outcome, out: Path) -> None:
     if outcome["contacts"] is not None:
         write_table(out / "contacts.csv", CONTACTS, outcome["contacts"])
     outcome.write(out / "outcome.json")
+    (out / CHECKPOINT).unlink(missing_ok=True)

@@ -13,6 +13,7 @@ from fem_impact.cost.settings import on_mesh
 from fem_impact.cost.stored import Plan, plan
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.simulate import simulate
+from fem_impact.solid.checkpoint import INTERVAL
 
 if TYPE_CHECKING:
     from fem_impact.progress import Progress
@@ -30,6 +31,8 @@ def simulate_to_target(
     fidelity: str | None = None,
     out: Path | None = None,
     progress: Callable[[Progress], None] | None = None,
+    resume: bool = False,
+    checkpoint_s: float = INTERVAL,
 ) -> Outcome:
     """Run the setting that the measured costs choose.
 
@@ -44,12 +47,14 @@ def simulate_to_target(
     chosen = plan(scene, fidelity)
     meshes = chosen.meshes
     if not meshes:
-        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress)
+        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
         return _kept(_stated(alone, chosen), out)
     coarse = None
     if len(meshes) > 1:
-        coarse = simulate(on_mesh(scene, meshes[1]), "solid", out and out / COARSER, progress)
-    return _kept(_stated(simulate(on_mesh(scene, meshes[0]), "solid", out, progress), chosen, coarse), out)
+        place = out and out / COARSER
+        coarse = simulate(on_mesh(scene, meshes[1]), "solid", place, progress, resume, checkpoint_s)
+    fine = simulate(on_mesh(scene, meshes[0]), "solid", out, progress, resume, checkpoint_s)
+    return _kept(_stated(fine, chosen, coarse), out)
 
 
 def _kept(outcome: Outcome, out: Path | None) -> Outcome:

@@ -16,6 +16,10 @@ __all__ = ["STEP_ROWS", "add_frame", "write_mesh"]
 VTK_HEXAHEDRON = 12
 STEP_ROWS = ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets", "NumberOfParts")
 _CHUNK_STEPS = 256
+# Frames in a piece of the file. The index of pieces grows by adding to one node until it holds 64 of them,
+# and is split in several writes then: up to 1024 frames a writer killed at any moment leaves all earlier ones
+# readable.
+_CHUNK_FRAMES = 16
 
 
 def write_mesh(path: Path, points: np.ndarray, cells: np.ndarray, static: Mapping[str, np.ndarray]) -> None:
@@ -109,10 +113,8 @@ def _put_step(group: h5py.Group, name: str, at: int, value: float) -> None:
 def _put_rows(group: h5py.Group, name: str, at: int, values: np.ndarray) -> None:
     if name not in group:
         free = (None, *values.shape[1:])
-        # one chunk a frame: a frame is then one contiguous piece of the file
-        group.create_dataset(
-            name, shape=(0, *values.shape[1:]), maxshape=free, chunks=values.shape, dtype="f4"
-        )
+        piece = (_CHUNK_FRAMES * len(values), *values.shape[1:])
+        group.create_dataset(name, shape=(0, *values.shape[1:]), maxshape=free, chunks=piece, dtype="f4")
     rows = group[name]
     rows.resize((at + 1) * len(values), axis=0)
     rows[at * len(values) :] = values

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import shutil
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
+from fem_impact.errors import OutputPathError
 from fem_impact.output.atomic import atomic_path
 from fem_impact.output.fields_layout import add_frame, write_mesh
+from fem_impact.output.fields_read import read_fields
 
 __all__ = ["FieldWriter"]
 
@@ -34,6 +37,8 @@ class FieldWriter:
         Hexahedra in VTK node order.
     cell_data : mapping of str to (m,) arrays, optional
         Cell data that do not change, such as ``body``.
+    go_on : bool
+        Keep the frames of an older file; `frames` then cuts it to what a checkpoint knew.
 
     Raises
     ------
@@ -49,6 +54,7 @@ class FieldWriter:
         points: np.ndarray,
         cells: np.ndarray,
         cell_data: Mapping[str, np.ndarray] | None = None,
+        go_on: bool = False,
     ) -> None:
         static = dict(cell_data or {})
         _check_mesh(np.asarray(points), np.asarray(cells))
@@ -57,13 +63,31 @@ class FieldWriter:
         self._counts = (len(points), len(cells))
         self._shapes: dict[str, tuple[int, ...]] = {}
         self._warnings: list[str] = []
-        with atomic_path(self.path) as draft:
-            write_mesh(draft, points, cells, static)
+        self._begun = False
+        if not go_on:
+            with atomic_path(self.path) as draft:
+                write_mesh(draft, points, cells, static)
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """Sentences on the frames that were dropped."""
         return tuple(self._warnings)
+
+    @property
+    def frames(self) -> int:
+        """Number of frames in the file."""
+        return len(read_fields(self.path).times)
+
+    @frames.setter
+    def frames(self, known: int) -> None:
+        """Drop the frames after a checkpoint. Raises ResultError, or ValueError when some are missing."""
+        found = self.frames
+        if found < known:
+            raise ValueError(f"{self.path.name} holds {found} frames of the {int(known)} written before.")
+        import h5py
+
+        with h5py.File(self.path, "r+") as file:
+            file["VTKHDF"]["Steps"].attrs["NSteps"] = int(known)
 
     @property
     def dropped(self) -> int:
@@ -111,11 +135,22 @@ class FieldWriter:
             # a full disk can leave an HDF5 file beyond repair, so the room is asked for beforehand
             if shutil.disk_usage(self.path.parent).free < 2 * size + 2**20:
                 return "the disk is full"
-            with h5py.File(self.path, "r+") as file:
+            with self._place() as place, h5py.File(place, "r+") as file:
                 add_frame(file["VTKHDF"], time, points, cells)
-        except (OSError, RuntimeError, KeyError) as error:
+            self._begun = True
+        except (OSError, RuntimeError, KeyError, OutputPathError) as error:
             return str(error) or type(error).__name__
         return ""
+
+    @contextmanager
+    def _place(self) -> Iterator[Path]:
+        """Lend the file, or for the first frame, which makes the places of all others, a copy of it."""
+        if self._begun:
+            yield self.path
+            return
+        with atomic_path(self.path) as draft:
+            shutil.copyfile(self.path, draft)
+            yield draft
 
     def _check_fields(self, points: Mapping[str, np.ndarray], cells: Mapping[str, np.ndarray]) -> None:
         _check_rows("point", self._counts[0], points)

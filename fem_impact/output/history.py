@@ -29,6 +29,8 @@ class HistoryWriter:
         Rows kept back at most before they are written.
     seconds : float
         Longest time a row is kept back, in s, looked at on each append.
+    go_on : bool
+        Keep the rows of an older file; `size` then cuts it to what a checkpoint knew.
 
     Raises
     ------
@@ -37,13 +39,19 @@ class HistoryWriter:
     """
 
     def __init__(
-        self, path: str | Path, columns: Sequence[str] = HISTORY, batch: int = 64, seconds: float = 2.0
+        self,
+        path: str | Path,
+        columns: Sequence[str] = HISTORY,
+        batch: int = 64,
+        seconds: float = 2.0,
+        go_on: bool = False,
     ) -> None:
         self.path = Path(path)
         self.columns = tuple(columns)
         self._batch, self._seconds = batch, seconds
         self._waiting: list[str] = []
-        write_text(self.path, format_row(self.columns, self.columns))
+        if not go_on:
+            write_text(self.path, format_row(self.columns, self.columns))
         self._due = time.monotonic() + seconds
 
     def append(self, row: Sequence[Cell] | Mapping[str, Cell]) -> None:
@@ -58,6 +66,21 @@ class HistoryWriter:
         self._due = time.monotonic() + self._seconds
         if text:
             _append(self.path, text.encode("utf-8"))
+
+    @property
+    def size(self) -> int:
+        """Bytes of the file with all rows so far in it."""
+        self.flush()
+        return self.path.stat().st_size
+
+    @size.setter
+    def size(self, known: int) -> None:
+        """Drop what was written after a checkpoint. Raises ValueError when the file is shorter."""
+        self._waiting = []
+        found = self.path.stat().st_size if self.path.is_file() else 0
+        if found < known:
+            raise ValueError(f"{self.path.name} holds {found} bytes of the {int(known)} written before.")
+        _cut_back(self.path, int(known))
 
     def __enter__(self) -> Self:
         return self

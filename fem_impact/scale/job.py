@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import FemImpactError
+from fem_impact.errors import FemImpactError, ResultError
 from fem_impact.sources import source_digest
 
 if TYPE_CHECKING:
@@ -108,7 +108,10 @@ def _run(job: Job) -> str:
     if job.out is not None:
         # a run killed half way must not stand beside the outcome of an earlier one
         (job.out / "outcome.json").unlink(missing_ok=True)
-    return simulate(job.scene, fidelity=job.fidelity, out=job.out).to_json()
+    try:
+        return simulate(job.scene, fidelity=job.fidelity, out=job.out, resume=True).to_json()
+    except ResultError:  # a checkpoint of another scene or program
+        return simulate(job.scene, fidelity=job.fidelity, out=job.out).to_json()
 
 
 def read_outcome(job: Job, text: str) -> Outcome | None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,7 @@ class ModalDamping:
     taken : energy, J, of the half model; last : time of the last application, s
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("taken", "last")
     modes: RodModes
     weighted: Array
     frame: FixedFrame | TurningFrame

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 import numpy as np
 
 from fem_impact.solid.contact import SurfaceContact
@@ -17,6 +19,7 @@ class SkinWatch:
     """Watches the rod's skin outside the contact patch: it must never come down to a meshed barrier."""
 
     every = 100
+    moving: ClassVar[tuple[str, ...]] = ("lowest",)
 
     def __init__(self, model: Model) -> None:
         contact, mesh = model.impulses[-1], model.geometry.rod.mesh

@@ -24,6 +24,7 @@ class ElasticRod:
     """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
 
     body: ClassVar[str] = "rod"
+    moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
     slices: SliceOperator
     drawn: MassPoints
     nose: NodeProduct
@@ -55,6 +56,7 @@ class ElasticBlock:
     """The barrier's linear part; its rows start at ``place.start`` of the flat vector."""
 
     body: ClassVar[str] = "barrier"
+    moving: ClassVar[tuple[str, ...]] = ()
     stiffness: NodeProduct
     reference: Array
     place: slice
@@ -77,6 +79,7 @@ class ElasticBlock:
 class Dashpots:
     """Viscous boundary: takes radiated waves out, implicitly, so that it never limits the step."""
 
+    moving: ClassVar[tuple[str, ...]] = ("radiated",)
     place: Array
     damping: Array
     inverse_mass: Array
@@ -105,6 +108,7 @@ class Weight:
     """
 
     body: ClassVar[str] = "rod"
+    moving: ClassVar[tuple[str, ...]] = ()
     weight: Array
     reference: Array
 

@@ -32,10 +32,11 @@ def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
 
 @dataclass(slots=True)
 class FixedFrame:
-    """Small rotations: displacements are differences of positions."""
+    """Small rotations: displacements are differences of positions; it never turns."""
 
     reference: Array
     angle: ClassVar[float] = 0.0
+    work: Array = field(default_factory=lambda: np.zeros(2))
 
     def localise(self, x: Array, d: Array) -> None:
         """Set ``d`` to the displacements of ``x``."""

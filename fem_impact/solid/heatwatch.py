@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +44,7 @@ class HeatWatch:
     power, patch, speed : W, m2, m/s
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("table", "taken", "pushed", "surface.window")
     model: Model
     every: int = 1
     t: list[float] = field(default_factory=lambda: [0.0])
@@ -59,6 +61,16 @@ class HeatWatch:
             self.surface = PairSurface(contact, self.model)
         elif isinstance(contact, PlaneContact):
             self.surface = PlaneSurface(contact, self.model)
+
+    @property
+    def table(self) -> Array:
+        """Return the windows as rows (k, 4): end, power, patch, speed."""
+        return np.array([self.t[1:], self.power, self.patch, self.speed]).T
+
+    @table.setter
+    def table(self, rows: Array) -> None:
+        end, self.power, self.patch, self.speed = ([float(a) for a in column] for column in rows.T)
+        self.t = [0.0, *end]
 
     def observe(self, state: State) -> bool:
         """Add the last step; close the window when it is full."""
@@ -89,6 +101,15 @@ class PlaneSurface:
         self.area = areas[node[self.rows]]
         self.sum, self.steps = 0.0, 0
 
+    @property
+    def window(self) -> Array:
+        """Return the sums of the open window."""
+        return np.array([self.sum, self.steps])
+
+    @window.setter
+    def window(self, sums: Array) -> None:
+        self.sum, self.steps = float(sums[0]), int(sums[1])
+
     def add(self, state: State) -> None:
         """Add the skin at the height of the plane."""
         self.sum += float(self.area[state.x[self.rows] < 1e-9].sum())
@@ -109,6 +130,15 @@ class PairSurface:
         patches = (contact.rod, contact.barrier)
         self.areas = [np.maximum(tributary_areas(x, p.places, p.quads), 1e-18) for p in patches]
         self.load = np.zeros(len(self.memory))
+
+    @property
+    def window(self) -> Array:
+        """Return the sums of the open window."""
+        return self.load
+
+    @window.setter
+    def window(self, sums: Array) -> None:
+        self.load[:] = sums
 
     def add(self, state: State) -> None:
         """Add the normal impulses of the last step."""

@@ -5,7 +5,7 @@ The loop holds two lists of these, and observers, and nothing else. An effect th
 
 from __future__ import annotations
 
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from fem_impact.solid.state import State
 
@@ -13,7 +13,12 @@ Accounts = dict[str, float]
 
 
 class Account(Protocol):
-    """Anything that holds energy or has taken energy away."""
+    """Anything that holds energy or has taken energy away.
+
+    ``moving`` names what a checkpoint must keep, see :mod:`~fem_impact.solid.moving`.
+    """
+
+    moving: ClassVar[tuple[str, ...]]
 
     def accounts(self, state: State) -> Accounts:
         """Return half-model energies by ledger name, J."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time as clock
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,8 @@ from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 
+GROWTH = 1e-2  # of E_0, made from nothing: the run is unstable and stops
+
 TAKEN = {"friction", "closing", "radiated", "damping"}
 COLUMNS = {name: f"{'W' if name in TAKEN else 'E'}_{name}_J" for name in ACCOUNTS} | {
     "residual": "residual_J"
@@ -28,16 +31,27 @@ COLUMNS = {name: f"{'W' if name in TAKEN else 'E'}_{name}_J" for name in ACCOUNT
 
 @dataclass(slots=True)
 class Watch:
-    """Samples the ledger; keeps the last accounts. The one place where energies are computed in a run."""
+    """Samples the ledger; keeps the last accounts; stops a run that makes energy.
 
+    The one place where energies are computed in a run.
+    """
+
+    moving: ClassVar[tuple[str, ...]] = ("ledger.start", "ledger.worst")
     ledger: Ledger
     every: int
     accounts: dict[str, float] = field(default_factory=dict)
+    reason: str = ""
 
     def observe(self, state: State) -> bool:
         """Sample."""
         self.accounts = self.ledger.sample(state)
-        return False
+        if self.drift >= -GROWTH:
+            return False
+        self.reason = (
+            f"The energy has grown by {-self.drift:.1e} of E_0 at {state.time * 1e6:.2f} us, step "
+            f"{state.step}: the steps are too long. Use a coarser accuracy.tip_size or a lower speed."
+        )
+        return True
 
     @property
     def drift(self) -> float:
@@ -49,6 +63,7 @@ class Watch:
 class History:
     """Writes energies, contact force and rigid motion; stands after the watch and shares its rhythm."""
 
+    moving: ClassVar[tuple[str, ...]] = ("last_time", "last_impulse", "writer.size")
     model: Model
     view: RodView
     watch: Watch
@@ -80,6 +95,7 @@ class History:
 class Frames:
     """Appends a frame of the fields at even times."""
 
+    moving: ClassVar[tuple[str, ...]] = ("due", "writer.frames")
     fields: Fields
     writer: FieldWriter
     interval: float
@@ -98,19 +114,26 @@ class Frames:
 class Meter:
     """Tells how far the run is; the end is not known beforehand, so it gives the latest time."""
 
+    moving: ClassVar[tuple[str, ...]] = ()
     show: Callable[[Progress], None]
     watch: Watch
     model: Model
     end: float
     note: str
     every: int = 200
-    begun: float = field(default_factory=clock.monotonic)
+    begun: tuple[float, float] | None = None
 
     def observe(self, state: State) -> bool:
         """Report."""
-        spent = clock.monotonic() - self.begun
-        eta = spent * (self.end / state.time - 1) if state.time > 0.02 * self.end else None
+        eta = self._eta(state.time)
         nodes = int(self.model.book.step[ACTIVE])
         words = f"{nodes} nodes touch" if nodes else "no contact"
         self.show(Progress(state.time, self.end, state.step, self.watch.drift, words, eta, self.note))
         return False
+
+    def _eta(self, time: float) -> float | None:
+        """Return s of wall time to the latest time; None until it can be told."""
+        # a resumed run begins late
+        self.begun = self.begun or (clock.monotonic(), time)
+        spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
+        return spent * (self.end - time) / done if done > 0.02 * self.end else None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 from fem_impact.solid.contact import ContactBook
 from fem_impact.solid.state import State
@@ -17,6 +18,7 @@ class PeakForce:
     ``largest`` is its largest mean over `WINDOW`, N.
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("largest", "_time", "_impulse")
     book: ContactBook
     every: int = 1
     largest: float = 0.0

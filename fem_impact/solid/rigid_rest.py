@@ -45,6 +45,7 @@ class ElasticNose:
     """The linear part of a nose that ends in a rigid rest."""
 
     body: ClassVar[str] = "rod"
+    moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
     nose: NodeProduct
     frame: FixedFrame | TurningFrame
     d: Array
@@ -72,6 +73,7 @@ class RigidRest:
     places : (k, 3) int64, unknowns of the nodes; mass : (k,) kg
     """
 
+    moving: ClassVar[tuple[str, ...]] = ()
     places: Ints
     mass: Array
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import resource
 import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,29 +12,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.effects import specify
-from fem_impact.estimates import contact_estimate
 from fem_impact.modes import Flight, RigidMotion
-from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.progress import Progress
 from fem_impact.solid.build import build
-from fem_impact.solid.doubts import SkinWatch, doubts
-from fem_impact.solid.fields import Fields
+from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL, Checkpoint
+from fem_impact.solid.doubts import doubts
 from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.kernels import compiled_before
-from fem_impact.solid.march import Observer, evaluate, march
+from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import Frames, History, Meter, Watch
-from fem_impact.solid.peak import PeakForce
+from fem_impact.solid.observers import Meter, Watch
 from fem_impact.solid.rodview import RodView
-from fem_impact.solid.separation import Separation
 from fem_impact.solid.shares import run_time_shares
 from fem_impact.solid.state import State
-from fem_impact.solid.stepguard import StepGuard
+from fem_impact.solid.watchers import Stopwatch, Watchers
+from fem_impact.sources import stamp
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
-
-FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,32 +79,62 @@ class SolidResult:
 
 
 def solve(
-    scene: Scene, out: Path | None = None, progress: Callable[[Progress], None] | None = None
+    scene: Scene,
+    out: Path | None = None,
+    progress: Callable[[Progress], None] | None = None,
+    resume: bool = False,
+    interval: float = INTERVAL,
+    model: Model | None = None,
 ) -> SolidResult:
-    """Run a scene; histories and fields go to ``out`` while it runs."""
+    """Run a scene; histories, fields and checkpoints go to ``out`` while it runs.
+
+    Parameters
+    ----------
+    resume : go on from the checkpoint in ``out``, bit for bit as if the run had never stopped
+    interval : s of wall time between checkpoints
+    model : a prepared model of the scene instead of a built one
+
+    Raises
+    ------
+    ResultError
+        If the checkpoint is missing, damaged, or of another scene or program.
+    RunError
+        If the motion is no longer finite.
+    """
     spec = specify(scene)
-    model = build(scene, spec)
+    model = model or build(scene, spec)
     view = RodView.of(model)
-    state, watch = model.initial_state(), Watch(model.ledger(), scene.save.history_every)
-    guard, stop = StepGuard(model), Separation(model, view, scene.accuracy.max_time)
-    frames = _frames(scene, model, view, out)
-    history = _history(scene, model, view, watch, out)
-    skin, peak = SkinWatch(model), PeakForce(model.book)
-    heat = HeatWatch(model) if spec.heat else None
-    observers: list[Observer] = [guard, watch, *history, *frames, skin, peak, *([heat] if heat else []), stop]
+    state = model.initial_state()
+    looking = Watchers.of(scene, spec, model, view, out, resume)
+    observers: list[Observer] = [*looking.all]
     if progress is not None:
-        observers.append(Meter(progress, watch, model, scene.accuracy.max_time, scene.id))
-    if progress is not None and not compiled_before():
-        progress(Progress(0.0, scene.accuracy.max_time, 0, 0.0, "compiling the kernels, once, about 20 s"))
+        observers.append(_meter(progress, scene, model, looking.watch))
     _warm_up(model)
-    wall, cpu = time.perf_counter(), time.process_time()
+    clock = Stopwatch()
+    if out is not None:
+        saved = Checkpoint(out / CHECKPOINT, stamp(scene), looking.holders(model, state, clock), interval)
+        observers.append(saved)
+        if resume:
+            saved.restore()
+            advance(model, state)  # the forces of the checkpoint's step are known
     try:
         march(model, state, observers)
     finally:
-        for h in history:
-            h.writer.flush()
-    watch.observe(state)
-    cost = Cost(time.perf_counter() - wall, time.process_time() - cpu, _peak_memory(), guard.smallest)
+        looking.flush()
+    looking.watch.observe(state)
+    return _result(scene, model, view, state, looking, clock)
+
+
+def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch) -> Meter:
+    if not compiled_before():
+        progress(Progress(0.0, scene.accuracy.max_time, 0, 0.0, "compiling the kernels, once, about 20 s"))
+    return Meter(progress, watch, model, scene.accuracy.max_time, scene.id)
+
+
+def _result(
+    scene: Scene, model: Model, view: RodView, state: State, looking: Watchers, clock: Stopwatch
+) -> SolidResult:
+    ledger, stop = looking.watch.ledger, looking.stop
     # the coasting below moves the state on: everything else is taken now
     result = SolidResult(
         scene=scene,
@@ -118,22 +142,22 @@ def solve(
         view=view,
         time=state.time,
         steps=state.step,
-        accounts=watch.accounts,
-        E_0=watch.ledger.start,
-        worst=watch.ledger.worst,
+        accounts=looking.watch.accounts,
+        E_0=ledger.start,
+        worst=ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
-        peak_force=peak.largest,
+        peak_force=looking.peak.largest,
         vibration_check=None,
         finished=stop.finished,
-        reason=stop.reason,
-        cost=cost,
-        warnings=tuple(w for f in frames for w in f.writer.warnings) + doubts(model, skin),
-        heat=heat,
+        reason=looking.reason,
+        cost=Cost(clock.wall, clock.cpu, _peak_memory(), looking.guard.smallest),
+        warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
+        heat=looking.heat,
     )
     if stop.finished and model.rod_stiffness is not None:
         result = replace(result, vibration_check=coast(model, view, state))
-    return replace(result, shares=run_time_shares(scene, model, state, cost.wall / max(state.step, 1)))
+    return replace(result, shares=run_time_shares(scene, model, state, result.cost.wall / max(state.step, 1)))
 
 
 def _warm_up(model: Model) -> None:
@@ -167,22 +191,6 @@ class VibrationProbe:
         v = state.v[self.view.places]
         self.energies.append(float(self.view.mass @ (v**2).sum(axis=1)) - self.view.rigid(state).kinetic)
         return state.time >= self.end
-
-
-def _frames(scene: Scene, model: Model, view: RodView, out: Path | None) -> list[Frames]:
-    if out is None or scene.save.frames == 0:
-        return []
-    bodies = [scene.projectile.material, scene.barrier.material]
-    fields = Fields.of(model, view, [(m.E, m.nu) for m in bodies])
-    writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, {"body": fields.body})
-    return [Frames(fields, writer, FRAMES_SPAN * contact_estimate(scene).duration / scene.save.frames)]
-
-
-def _history(scene: Scene, model: Model, view: RodView, watch: Watch, out: Path | None) -> list[History]:
-    if out is None:
-        return []
-    writer = HistoryWriter(out / "history.csv")
-    return [History(model, view, watch, writer, scene.save.history_every)]
 
 
 def _peak_memory() -> float:

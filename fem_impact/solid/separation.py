@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,7 @@ class Separation:
     barrier's surface, crater and all, node by node.
     """
 
+    moving: ClassVar[tuple[str, ...]] = ()
     model: Model
     view: RodView
     limit: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ class State:
     kick : time over which the present forces act on the velocities, s
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("x", "v", "force", "time", "step", "dt", "dt_next", "kick")
     x: Array
     v: Array
     force: Array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from fem_impact.solid.state import State
 Array = NDArray[np.float64]
 
 SMALLEST = 0.02  # of the first step: below it the elements are crushed beyond use
+REMEDY = "Use a coarser accuracy.tip_size or a lower speed."
 
 
 @dataclass(slots=True)
@@ -28,12 +30,14 @@ class StepGuard:
     smallest : smallest step so far, s
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("smallest",)
     model: Model
     every: int = 100
     places: NDArray[np.int64] = field(init=False)
     limit: Array = field(init=False)
     square: Array = field(init=False)
     smallest: float = field(init=False)
+    reason: str = ""
 
     def __post_init__(self) -> None:
         zones = [zone.places() for zone in self.model.zones]
@@ -44,27 +48,39 @@ class StepGuard:
         self.smallest = self.model.step
 
     def observe(self, state: State) -> bool:
-        """Shorten or restore the step; refuse to go on with a folded element."""
+        """Shorten or restore the step; stop at a folded or crushed element."""
         if not np.isfinite(state.v @ state.v):
-            raise RunError(f"The motion is not finite at {state.time * 1e6:.2f} us, step {state.step}.")
+            raise RunError(self._not_finite(state))
         if len(self.places):
             self._follow(state)
-        return False
+        return bool(self.reason)
 
     def _follow(self, state: State) -> None:
         now = gradient_squares(state.x, self.places)
-        if not np.isfinite(now).all():
-            worst = state.x[self.places[int(np.flatnonzero(~np.isfinite(now))[0])]].mean(axis=0) * 1e3
-            raise RunError(
-                f"An element folded at {state.time * 1e6:.2f} us, step {state.step}, near t, b, n = "
-                f"{worst[0]:.2f}, {worst[1]:.2f}, {worst[2]:.2f} mm. "
-                "Use a coarser accuracy.tip_size or a lower speed."
-            )
+        folded = ~np.isfinite(now)
+        if folded.any():
+            self.reason = f"An element folded {self._where(state, int(np.argmax(folded)))} {REMEDY}"
+            return
         # as if the whole body were squeezed like the element: no element alone does worse
         allowed = float((self.limit * np.sqrt(self.square / now)).min())
         state.dt_next = min(self.model.step, allowed)
         self.smallest = min(self.smallest, state.dt_next)
         if state.dt_next < SMALLEST * self.model.step:
-            raise RunError(
-                f"Elements are crushed to under {SMALLEST:g} of their step at {state.time * 1e6:.2f} us."
-            )
+            place = self._where(state, int(np.argmax(now)))
+            self.reason = f"An element was crushed to under {SMALLEST:g} of its step {place} {REMEDY}"
+
+    def _where(self, state: State, element: int) -> str:
+        return when_and_where(state, state.x[self.places[element]].mean(axis=0))
+
+    def _not_finite(self, state: State) -> str:
+        layout = self.model.layout
+        nodes = np.concatenate([layout.rod, layout.barrier])
+        first = int(np.argmax(~np.isfinite(state.v[nodes]).all(axis=1)))
+        place = when_and_where(state, self.model.start[0][nodes[first]])
+        return f"The motion is not finite {place} What was computed before is kept. {REMEDY}"
+
+
+def when_and_where(state: State, place: Array) -> str:
+    """Return words for the present time and a place (t, b, n), m."""
+    t, b, n = place * 1e3
+    return f"at {state.time * 1e6:.2f} us, step {state.step}, near t, b, n = {t:.2f}, {b:.2f}, {n:.2f} mm."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,7 @@ class YieldingZone:
     rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("blocks.stress", "blocks.strain", "blocks.flow", "blocks.work")
     body: str
     count: int
     blocks: Blocks

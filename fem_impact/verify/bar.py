@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from math import pi
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +47,7 @@ def _model(p: Values, slices: int, gap: float, across: int) -> Model:
 class Ceiling:
     """A second rigid wall at n = height: the solver's plane contact, seen upside down."""
 
+    moving: ClassVar[tuple[str, ...]] = ("record", "bounces")
     nodes: NDArray[np.int64]
     inverse_mass: Array
     height: float

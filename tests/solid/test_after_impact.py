@@ -15,8 +15,9 @@ from fem_impact.modes import RigidMotion
 from fem_impact.reduce import reduce
 from fem_impact.solid.build import START_GAP
 from fem_impact.solid.march import advance, evaluate
+from fem_impact.solid.run import solve
 from fem_impact.solid.separation import Separation, flight_heights, flown
-from fem_impact.solid.stable import gradient_squares
+from fem_impact.solid.stable import SAFETY, gradient_squares
 from fem_impact.solid.stepguard import StepGuard
 
 PLANE = ("vibration", "barrier-rigid", "large-rotation")
@@ -124,14 +125,35 @@ def test_step_follows_a_squeezed_element_and_folded_ones_stop_the_run():
     guard.observe(state)
     assert state.dt_next == model.step
     state.x[element] = middle - 0.1 * (base - middle)
-    with pytest.raises(RunError, match="folded at"):
-        guard.observe(state)
+    assert guard.observe(state) is True
+    assert told(guard.reason, "An element folded", middle)
     state.x[element] = middle + 0.005 * (base - middle)
-    with pytest.raises(RunError, match=r"crushed|folded"):
+    assert guard.observe(state) is True
+    assert told(guard.reason, "An element was crushed to under 0.02 of its step", middle)
+    state.v[model.layout.rod[7, 0]] = np.nan
+    with pytest.raises(RunError) as stop:
         guard.observe(state)
-    state.v[0] = np.nan
-    with pytest.raises(RunError, match="not finite"):
-        guard.observe(state)
+    assert told(str(stop.value), "The motion is not finite", model.start[0][model.layout.rod[7]])
+    assert "What was computed before is kept." in str(stop.value)
+
+
+def told(words, cause, place):
+    """Say whether the words hold cause, time, step, place and remedy."""
+    t, b, n = place * 1e3
+    when = f"{cause} at 0.00 us, step 0, near t, b, n = {t:.2f}, {b:.2f}, {n:.2f} mm."
+    return words.startswith(when) and words.endswith("Use a coarser accuracy.tip_size or a lower speed.")
+
+
+def test_a_run_that_makes_energy_stops_and_keeps_its_answer():
+    """At 1.1 times the stable step the highest mode of the rod grows: it is seen and stopped."""
+    scene = scenes.scene("vibration", "barrier-rigid", length=0.08)
+    model = scenes.model("vibration", "barrier-rigid", length=0.08)
+    result = solve(scene, model=replace(model, steps={"rod": 1.1 / SAFETY * model.step}))
+    assert not result.finished
+    assert result.steps < 400
+    assert result.reason.startswith("The energy has grown by ")
+    assert "the steps are too long" in result.reason
+    assert reduce(scene, result)["finished"] is False
 
 
 def test_gradients_of_a_cube():

@@ -18,6 +18,21 @@ MERGE_GAP = 10e-6
 # below this share of the largest impulse of a step, a touch neither starts nor prolongs a contact
 FAINT = 1e-3
 
+# what a checkpoint keeps of a contact
+MOVING = tuple(
+    f"book.{name}"
+    for name in (
+        "step",
+        "friction",
+        "closing",
+        "impulse",
+        "largest",
+        "last_touch",
+        "outside",
+        "table",
+    )
+)
+
 
 @dataclass(slots=True)
 class Interval:
@@ -48,6 +63,16 @@ class ContactBook:
     largest: float = 0.0
     last_touch: float = -np.inf
     outside: int = 0
+
+    @property
+    def table(self) -> Array:
+        """Return the intervals as rows (k, 4): start, end, impulses."""
+        rows = [(i.start, i.end, i.impulse_n, i.impulse_t) for i in self.intervals]
+        return np.array(rows, dtype=np.float64).reshape(-1, 4)
+
+    @table.setter
+    def table(self, rows: Array) -> None:
+        self.intervals = [Interval(*map(float, row)) for row in rows]
 
     @property
     def touching(self) -> bool:

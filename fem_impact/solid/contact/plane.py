@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from fem_impact.solid.contact.book import (
     FRICTION,
     IMPULSE_N,
     IMPULSE_T,
+    MOVING,
     ContactBook,
 )
 from fem_impact.solid.items import Accounts
@@ -32,6 +34,7 @@ class PlaneContact:
     arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1397-0, with the predicted gap).
     """
 
+    moving: ClassVar[tuple[str, ...]] = MOVING
     nodes: Ints
     inverse_mass: Array
     f: float

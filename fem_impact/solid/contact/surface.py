@@ -8,11 +8,12 @@ over quad edges; with the quads' own normals every edge is a small step that act
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.contact.book import SWEEPS, ContactBook
+from fem_impact.solid.contact.book import MOVING, SWEEPS, ContactBook
 from fem_impact.solid.contact.impulses import solve
 from fem_impact.solid.contact.patch import Patch, nearest_quads
 from fem_impact.solid.contact.points import (
@@ -42,6 +43,7 @@ class SurfaceContact:
     last : (rod nodes + barrier nodes,) last quad found for each node
     """
 
+    moving: ClassVar[tuple[str, ...]] = ("last", "points.memory", *MOVING)
     rod: Patch
     barrier: Patch
     inverse_mass: Array

@@ -1,0 +1,116 @@
+"""Checkpoints: everything that moves in a run, in one file that is whole or not there.
+
+The file is a mark of 8 bytes, the SHA-256 of the rest, and an archive of plain arrays (npz, never objects).
+Saved after the forces of a step are known, so a run goes on with the kick of that step.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import time as clock
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from io import BytesIO
+from pathlib import Path
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.output import write_bytes
+from fem_impact.solid.moving import Moving, put_back, take_out
+from fem_impact.solid.state import State
+
+__all__ = ["CHECKPOINT", "INTERVAL", "Checkpoint"]
+
+CHECKPOINT = "run.checkpoint"
+INTERVAL = 30.0  # s of wall time between checkpoints
+_MARK = b"fem-ckp1"
+_START = len(_MARK) + hashlib.sha256().digest_size
+_STAMP = "stamp"
+_ROOM = 2**28  # bytes a checkpoint may be larger than that of a new run: tables grow
+
+# what an archive of arrays can raise when its bytes are not one
+_BROKEN = (
+    ValueError,
+    TypeError,
+    OSError,
+    KeyError,
+    EOFError,
+    RuntimeError,
+    MemoryError,
+    zipfile.BadZipFile,
+    zlib.error,
+)
+
+
+@dataclass(slots=True)
+class Checkpoint:
+    """Writes a checkpoint when so many seconds have passed; stands last among the observers.
+
+    Attributes
+    ----------
+    path : the file, replaced as a whole
+    stamp : scene and sources that a run must have to go on from it
+    holders : everything that moves, by name
+    interval : s of wall time
+    """
+
+    path: Path
+    stamp: str
+    holders: Mapping[str, Moving]
+    interval: float
+    every: int = 100
+    due: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.due = clock.monotonic() + self.interval
+
+    def observe(self, state: State) -> bool:
+        """Save when it is due."""
+        if clock.monotonic() >= self.due:
+            self.save()
+            self.due = clock.monotonic() + self.interval
+        return False
+
+    def save(self) -> None:
+        """Write now. Raises OutputPathError."""
+        archive = BytesIO()
+        np.savez(archive, **{_STAMP: np.array(self.stamp)}, **take_out(self.holders))  # type: ignore[arg-type]
+        data = archive.getvalue()
+        write_bytes(self.path, _MARK + hashlib.sha256(data).digest() + data)
+
+    def restore(self) -> None:
+        """Put the file's contents back.
+
+        Raises
+        ------
+        ResultError
+            If it is damaged, of another scene or of other sources.
+        """
+        try:
+            largest = sum(a.nbytes for a in take_out(self.holders).values()) + _ROOM
+            stored = _read(self.path, largest)
+            _check_stamp(str(stored.pop(_STAMP, "")), self.stamp)
+            put_back(self.holders, stored)
+        except _BROKEN as error:
+            raise ResultError(f"{self.path}: {error} Run again without --resume to start anew.") from error
+
+
+def _read(path: Path, largest: int) -> dict[str, np.ndarray]:
+    with path.open("rb") as file:
+        data = file.read(largest + 1)
+    body = data[_START:]
+    if data[:_START] != _MARK + hashlib.sha256(body).digest() or len(data) > largest:
+        raise ValueError("is damaged, or no checkpoint of this run.")
+    with np.load(BytesIO(body), allow_pickle=False) as archive:
+        return {name: archive[name] for name in archive.files}
+
+
+def _check_stamp(found: str, wanted: str) -> None:
+    other = [line.partition(" ")[0] for line in wanted.splitlines() if line not in found.splitlines()]
+    if other:
+        raise ValueError(
+            f"was written with another {' and other '.join(other)}; the run cannot go on from it."
+        )

@@ -1,0 +1,121 @@
+"""The observers of one run, and the files that they write."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar, Protocol
+
+from fem_impact.estimates import contact_estimate
+from fem_impact.output import FieldWriter, HistoryWriter
+from fem_impact.solid.doubts import SkinWatch
+from fem_impact.solid.fields import Fields
+from fem_impact.solid.heatwatch import HeatWatch
+from fem_impact.solid.march import Observer
+from fem_impact.solid.model import Model
+from fem_impact.solid.moving import Moving
+from fem_impact.solid.observers import Frames, History, Watch
+from fem_impact.solid.peak import PeakForce
+from fem_impact.solid.rodview import RodView
+from fem_impact.solid.separation import Separation
+from fem_impact.solid.state import State
+from fem_impact.solid.stepguard import StepGuard
+
+if TYPE_CHECKING:
+    from fem_impact.effects import ModelSpec
+    from fem_impact.scene import Scene
+
+FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
+
+
+class Saved(Observer, Moving, Protocol):
+    """An observer whose moving part a checkpoint keeps."""
+
+
+@dataclass(slots=True)
+class Stopwatch:
+    """Wall and processor time of a run, also of its parts before a checkpoint, s."""
+
+    moving: ClassVar[tuple[str, ...]] = ("wall", "cpu")
+    begun_wall: float = field(default_factory=time.perf_counter)
+    begun_cpu: float = field(default_factory=time.process_time)
+
+    @property
+    def wall(self) -> float:
+        """Time on the clock so far."""
+        return time.perf_counter() - self.begun_wall
+
+    @wall.setter
+    def wall(self, before: float) -> None:
+        self.begun_wall = time.perf_counter() - float(before)
+
+    @property
+    def cpu(self) -> float:
+        """Processor time so far."""
+        return time.process_time() - self.begun_cpu
+
+    @cpu.setter
+    def cpu(self, before: float) -> None:
+        self.begun_cpu = time.process_time() - float(before)
+
+
+@dataclass(frozen=True, slots=True)
+class Watchers:
+    """Everything that looks at a run and is kept in its checkpoints."""
+
+    guard: StepGuard
+    watch: Watch
+    history: list[History]
+    frames: list[Frames]
+    skin: SkinWatch
+    peak: PeakForce
+    heat: HeatWatch | None
+    stop: Separation
+
+    @classmethod
+    def of(
+        cls, scene: Scene, spec: ModelSpec, model: Model, view: RodView, out: Path | None, go_on: bool
+    ) -> Watchers:
+        """Make them; ``go_on`` keeps the files of the part of the run that a checkpoint ended."""
+        watch = Watch(model.ledger(), scene.save.history_every)
+        history, frames = [], []
+        if out is not None:
+            writer = HistoryWriter(out / "history.csv", go_on=go_on)
+            history = [History(model, view, watch, writer, scene.save.history_every)]
+        if out is not None and scene.save.frames:
+            frames = [_frames(scene, model, view, out, go_on)]
+        stop = Separation(model, view, scene.accuracy.max_time)
+        skin, peak = SkinWatch(model), PeakForce(model.book)
+        heat = HeatWatch(model) if spec.heat else None
+        return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
+
+    @property
+    def all(self) -> list[Saved]:
+        """Return them in the order in which they look."""
+        heat = [self.heat] if self.heat else []
+        first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames]
+        return [*first, self.skin, self.peak, *heat, self.stop]
+
+    @property
+    def reason(self) -> str:
+        """Return why the run ended."""
+        return self.guard.reason or self.watch.reason or self.stop.reason
+
+    def flush(self) -> None:
+        """Write what still waits."""
+        for h in self.history:
+            h.writer.flush()
+
+    def holders(self, model: Model, state: State, clock: Stopwatch) -> dict[str, Moving]:
+        """Return everything that moves, by a name that the scene alone decides."""
+        parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
+        return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
+
+
+def _frames(scene: Scene, model: Model, view: RodView, out: Path, go_on: bool) -> Frames:
+    bodies = [scene.projectile.material, scene.barrier.material]
+    fields = Fields.of(model, view, [(m.E, m.nu) for m in bodies])
+    body = {"body": fields.body}
+    writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
+    return Frames(fields, writer, FRAMES_SPAN * contact_estimate(scene).duration / scene.save.frames)

@@ -1,0 +1,117 @@
+"""Runs killed at random moments leave readable files, and go on to the answer of a run left alone."""
+
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from fem_impact.outcome import Outcome
+from fem_impact.output import read_fields, read_table
+from fem_impact.scene import load, replace_all
+
+OF_THE_CLOCK = {"created_utc", "wall_s", "cpu_s", "peak_memory_MB", "effect_choices"}
+SCENE = replace_all(
+    load("t5b"),
+    {
+        "accuracy.tip_size": "0.8 mm",
+        "accuracy.across": 6,
+        "accuracy.max_time": "60 us",
+        "save.frames": 200,
+        "projectile.length": "60 mm",
+    },
+)
+PROBE = """
+import sys
+from pathlib import Path
+from fem_impact.scene import load
+from fem_impact.simulate import simulate
+print("ready", flush=True)
+simulate(load(sys.argv[1]), out=Path(sys.argv[2]), resume=True, checkpoint_s=float(sys.argv[3]))
+"""
+
+
+@pytest.fixture(scope="module")
+def alone(tmp_path_factory):
+    """The run that is never stopped: its scene file, its directory, and how long it took."""
+    place = tmp_path_factory.mktemp("alone")
+    (place / "scene.toml").write_text(SCENE.to_toml())
+    begun = time.monotonic()
+    child = start(place / "scene.toml", place / "run")
+    assert child.wait() == 0
+    return place / "scene.toml", place / "run", time.monotonic() - begun
+
+
+def start(scene, out):
+    words = [sys.executable, "-c", PROBE, str(scene), str(out), "0.05"]
+    child = subprocess.Popen(words, stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "ready\n"
+    child.stdout.close()
+    return child
+
+
+def numbers(outcome):
+    return {k: v for k, v in outcome.items() if k not in OF_THE_CLOCK}
+
+
+def check_readable(out):
+    """Whatever lies there can be read; return the number of files that were there."""
+    readers = {"history.csv": read_table, "fields.vtkhdf": read_fields, "outcome.json": Outcome.read}
+    found = [read(out / name) for name, read in readers.items() if (out / name).exists()]
+    if (out / "fields.vtkhdf").exists():
+        fields = read_fields(out / "fields.vtkhdf")
+        for frame in range(len(fields.times)):
+            assert fields.point_data("velocity", frame).shape == fields.points.shape
+    return len(found)
+
+
+def kill_until_done(scene, out, chance, longest):
+    """Start, kill and resume until a run gets to its end; return the number of kills."""
+    kills = 0
+    while True:
+        child = start(scene, out)
+        try:
+            if child.wait(timeout=chance.uniform(0.0, longest)) == 0:
+                return kills
+            raise AssertionError("the run failed by itself")
+        except subprocess.TimeoutExpired:
+            child.send_signal(signal.SIGKILL)
+            child.wait()
+            kills += 1
+            check_readable(out)
+            longest *= 1.1  # so that it ends, whatever the machine does
+
+
+def judge(alone, out):
+    _, whole, _ = alone
+    assert numbers(Outcome.read(out / "outcome.json")) == numbers(Outcome.read(whole / "outcome.json"))
+    for name in ("history.csv", "contacts.csv", "scene.toml"):
+        assert (out / name).read_bytes() == (whole / name).read_bytes()
+    assert (
+        read_fields(out / "fields.vtkhdf").times.tolist()
+        == read_fields(whole / "fields.vtkhdf").times.tolist()
+    )
+    left_over = {path.name for path in out.iterdir()} - {path.name for path in whole.iterdir()}
+    assert all(name.startswith(".") for name in left_over)
+
+
+def test_killed_and_resumed_is_never_stopped(alone, tmp_path):
+    scene, _, took = alone
+    kills = kill_until_done(scene, tmp_path / "run", random.Random(2), 0.5 * took)
+    judge(alone, tmp_path / "run")
+    assert kills > 0
+
+
+@pytest.mark.slow
+def test_dozens_of_kills_lose_nothing(alone, tmp_path):
+    scene, _, took = alone
+    chance, kills, runs = random.Random(7), 0, 0
+    while kills < 60:
+        kills += kill_until_done(scene, tmp_path / str(runs), chance, 0.4 * took)
+        judge(alone, tmp_path / str(runs))
+        shutil.rmtree(tmp_path / str(runs))
+        runs += 1
+    print(f"\n{kills} kills in {runs} runs, nothing lost")
