@@ -67,15 +67,23 @@ def extrapolated(fine: float, coarse: float, ratio: float, order: float = PAIR_O
     return float(fine + (fine - coarse) / (ratio**order - 1))
 
 
-def truths(runs: Sequence[Outcome]) -> dict[str, Truth]:
+def truths(runs: Sequence[Outcome], others: Sequence[Outcome] = ()) -> dict[str, Truth]:
     """Return the limit of every quantity from the runs of one family (two or more meshes).
 
     The uncertainty of a limit is what Eca and Hoekstra's band leaves beyond the finest mesh's own
-    distance from it; with two meshes the order is assumed and the safety factor that of a disbelieved fit.
+    distance from it. With two meshes the order is assumed, the safety factor is that of a disbelieved fit,
+    and the uncertainty is at least the range of all meshes, ``others`` too, a mesh: two that agree by
+    chance prove nothing.
     """
     sizes = [run["tip_size_m"] for run in runs]
     finest = runs[sizes.index(min(sizes))]
-    return {q.name: _truth(q, sizes, [_known(q, run) for run in runs], finest) for q in QUANTITIES}
+    found = {}
+    for q in QUANTITIES:
+        values = [_known(q, run) for run in runs]
+        every = values + [_known(q, run) for run in others]
+        spread = (max(every) - min(every)) / (len(every) - 1)
+        found[q.name] = _truth(q, sizes, values, finest, spread)
+    return found
 
 
 def _known(quantity: Quantity, outcome: Mapping[str, Any]) -> float:
@@ -84,7 +92,9 @@ def _known(quantity: Quantity, outcome: Mapping[str, Any]) -> float:
     return value
 
 
-def _truth(quantity: Quantity, sizes: list[float], values: list[float], finest: Outcome) -> Truth:
+def _truth(
+    quantity: Quantity, sizes: list[float], values: list[float], finest: Outcome, spread: float
+) -> Truth:
     last = values[sizes.index(min(sizes))]
     if len(sizes) > 2:
         found = limit(sizes, values)
@@ -92,7 +102,7 @@ def _truth(quantity: Quantity, sizes: list[float], values: list[float], finest: 
     else:
         first = values[sizes.index(max(sizes))]
         value = extrapolated(last, first, max(sizes) / min(sizes))
-        order, band = None, UNSURE * abs(value - last)
+        order, band = None, max(UNSURE * abs(value - last), spread + abs(value - last))
     least = (SURE - 1) * abs(value - last)
     return Truth(value, order, max(band - abs(value - last), least), quantity.scale(value, finest))
 

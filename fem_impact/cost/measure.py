@@ -116,7 +116,7 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results, family
     if len(own) < 2:
         reasons = [r.reason for r in results.values() if isinstance(r, Failure)]
         raise RunError(f"{scene.id}: no two meshes gave a result. {' '.join(reasons)}".strip())
-    truth = truths(own)
+    truth = truths(own, [run for mesh, run in runs.items() if mesh not in family])
     judged = []
     for setting in settings:
         given, whole = _given(setting, results, runs), runs.get(PLAIN)

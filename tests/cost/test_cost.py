@@ -20,11 +20,12 @@ from fem_impact.cost import (
     front,
     ladder,
     measure,
+    on_mesh,
     text_table,
     worst,
     write_cost,
 )
-from fem_impact.cost.judge import extrapolated
+from fem_impact.cost.judge import extrapolated, truths
 from fem_impact.cost.yardsticks import yardsticks
 from fem_impact.errors import RunError, SceneError
 from fem_impact.progress import NullMeter
@@ -143,6 +144,19 @@ def test_two_meshes_assume_an_order_and_say_none(fake, tmp_path):
     found = measure(SCENE, tmp_path, NullMeter(), (Mesh(8, 3), Mesh(16, 3)), Here())
     assert found.truth["e"].order is None
     assert abs(found.truth["e"].value - LIMIT["e_edge"]) <= found.truth["e"].uncertainty
+    finest = SLOPE["e_edge"] * (0.019 / 128 / TIP)
+    assert found.truth["e"].uncertainty == pytest.approx(2 * finest)
+
+
+def test_two_meshes_that_agree_by_chance_prove_nothing():
+    apart = [replace_e(mesh, e) for mesh, e in ((Mesh(8, 3), 0.3), (Mesh(6, 3), 0.3), (Mesh(8, 2), 0.36))]
+    alone, beside = truths(apart[:2]), truths(apart[:2], apart[2:])
+    assert alone["e"].uncertainty == pytest.approx(0, abs=1e-12)
+    assert beside["e"].uncertainty == pytest.approx(0.03)
+
+
+def replace_e(mesh, e):
+    return run(on_mesh(SCENE, mesh)).replace(e_edge=e)
 
 
 def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):

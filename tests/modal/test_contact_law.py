@@ -96,4 +96,6 @@ def test_effects_choose_the_law():
     assert contact_law(rigid).limit == pytest.approx(2.8 * 546e6)
     assert contact_law(rigid).E_star == pytest.approx(219e9 / (1 - 0.29**2))
     assert contact_law(rigid).shear / contact_law(elastic).shear == pytest.approx(2, rel=0.05)
+    mindlin = 2 * (1 - NU) / (2 - NU)  # tangential over normal stiffness
+    assert contact_law(rigid).shear == pytest.approx(mindlin * 2 * contact_law(rigid).E_star)
     assert contact_law(rigid).friction == 0.57
