@@ -153,7 +153,8 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
     """Solve q - 3 G dp = sigma(strain + dp) (1 + C ln(dp / (rate_0 dt))), C and rate_0 in ``rate``.
 
     Returns the increment, the stress and the flow stress at vanishing rate. Newton's method from the
-    increment without the rate factor, which is too large; a step that would overshoot zero is cut.
+    increment without the rate factor, which is too large: the first step lands on the safe (left) side, but
+    not below rate_0 dt, where the factor has its kink and the method would go to and fro.
     """
     dp, new = _plastic_increment(q, flow, strain, G3, law)
     slow = rate[1] * dt
@@ -163,12 +164,12 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
     for _ in range(60):
         base = 1.0 + law[1] * (strain + dp)
         new = law[0] * base ** law[2]
-        factor = 1.0 + rate[0] * np.log(max(dp / slow, 1.0))
+        factor = 1.0 + rate[0] * np.log(dp / slow)
         miss = q - G3 * dp - new * factor
         if abs(miss) < 1e-12 * q:
             break
-        steep = law[2] * law[1] * new / base * factor + (new * rate[0] / dp if dp > slow else 0.0)
-        dp = max(dp + miss / (G3 + steep), 0.1 * dp)
+        steep = law[2] * law[1] * new / base * factor + new * rate[0] / dp
+        dp = max(dp + miss / (G3 + steep), slow)
     return dp, new * factor, new
 
 

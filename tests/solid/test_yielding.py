@@ -11,6 +11,7 @@ from fem_impact.solid.hardening import RateFactor, linear_hardening, power_harde
 from fem_impact.solid.hexmodes import LANES
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
+from fem_impact.solid.yielding_kernel import _hardened_increment
 
 E, NU = shapes.E, shapes.NU
 LAME, G = lame_constants(E, NU)
@@ -189,6 +190,17 @@ def test_strip_pulled_at_a_constant_rate():
     top, side = np.isclose(start[:, 2], h), np.isclose(start[:, 0], h)
     assert force[top, 2].sum() == pytest.approx(sigma * h**2 * np.exp(-e), rel=1e-3)
     assert abs(force[side, 0].sum()) < 1e-3 * sigma * h**2
+
+
+@pytest.mark.parametrize("over", np.logspace(-9, -1, 17))
+def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over):
+    """The stress returned is that of the trial less 3 G dp, and that of the law at the rate dp/dt."""
+    law, flow, dt = np.array([320e6, 640.0, 0.1]), 400e6, 2.5e-8
+    strain = ((flow / law[0]) ** (1 / law[2]) - 1) / law[1]
+    q, rate = flow * (1 + over), np.array([0.022, 1.0])
+    dp, new, slow = _hardened_increment(q, flow, strain, 3 * G, law, rate, dt)
+    assert new == pytest.approx(q - 3 * G * dp, rel=1e-10)
+    assert new == pytest.approx(slow * (1 + 0.022 * max(np.log(dp / dt), 0.0)), rel=1e-10)
 
 
 def test_below_the_slowest_rate_the_factor_is_one():
