@@ -104,7 +104,8 @@ def _truth(
         value = extrapolated(last, first, max(sizes) / min(sizes))
         order, band = None, max(UNSURE * abs(value - last), spread + abs(value - last))
     least = (SURE - 1) * abs(value - last)
-    return Truth(value, order, max(band - abs(value - last), least), quantity.scale(value, finest))
+    size = max(abs(value), abs(last))  # an extrapolation towards zero must not inflate every error
+    return Truth(value, order, max(band - abs(value - last), least), quantity.scale(size, finest))
 
 
 def judge(
