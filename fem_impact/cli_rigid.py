@@ -65,10 +65,12 @@ def assess(options: Options) -> int:
     """Assess a dropped rod."""
     from fem_impact.paper import Case, assess_text, quantity
     from fem_impact.paper import assess as assessed
+    from fem_impact.paper.rigid_enough import rigid_enough
 
     height = quantity(options.height, "length", "--height")
     case = Case(_rod(options), height, _angle(options), options.surface)
-    _print(assessed(case), assess_text, options)
+    document = assessed(case) | {"rigid_theory": rigid_enough(case, options.fidelity)}
+    _print(document, assess_text, options)
     return 0
 
 

@@ -55,6 +55,8 @@ def _add_assess(commands: Commands, command: Command) -> None:
     parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
     surfaces = ("machined", "contaminated", "cleaned")
     parser.add_argument("--surface", required=True, choices=surfaces, help="state of tip and plate")
+    words = "of the answer whether rigid theory may be used: modal (default, seconds) or solid (minutes)"
+    parser.add_argument("--fidelity", choices=["modal", "solid"], default="modal", help=words)
 
 
 def _add_rod(parser: argparse.ArgumentParser) -> None:

@@ -1,4 +1,4 @@
-"""The paper without finite elements: audit of its tables, its figures, own data, and an assessment."""
+"""The paper by rigid theory: audit of its tables, its figures, own data, and an assessment."""
 
 from fem_impact.paper.assess import ASSUMPTIONS, assess
 from fem_impact.paper.assess_text import assess_text

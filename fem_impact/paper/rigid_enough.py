@@ -1,0 +1,97 @@
+"""May rigid-body theory be used for a rod: a drop that can vibrate beside one that cannot."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin
+from typing import Any
+
+import numpy as np
+
+from fem_impact.outcome import Outcome
+from fem_impact.paper.case import Case
+from fem_impact.scene import Barrier, Impact, Projectile, Scene, materials, surface
+from fem_impact.simulate import simulate
+from fem_impact.verify.reference.beam import bending_modes
+
+__all__ = ["rigid_enough"]
+
+ANGLES = np.radians(np.arange(5.0, 81.0, 5.0))
+FAIR, POOR = 0.02, 0.05
+"""Error of e up to which the answer is yes, and from which it is no."""
+
+EFFECTS = ("friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation")
+SHOWN = {
+    "e": "e_edge",
+    "mu": "mu",
+    "Omega_rad_per_s": "Omega_rad_per_s",
+    "E_r_over_E_0": "E_r_over_E_0",
+    "W_friction_over_E_0": "W_friction_over_E_0",
+}
+
+
+def rigid_enough(case: Case, fidelity: str = "modal") -> dict[str, Any]:
+    """Compute the drop with a rod that vibrates and with one that cannot, on the same contact.
+
+    Parameters
+    ----------
+    case : Case
+        Of the paper's steels: the tip and the plate yield.
+    fidelity : "modal" or "solid"
+        The second takes minutes and looks at the stated angle only.
+
+    Returns
+    -------
+    dict
+        Plain JSON: both results at the stated angle, the share of vibration, T1/tau (first bending period
+        over contact time), the worst angle, the error of e and the answers in words.
+    """
+    free, stiff = _both(case, case.alpha, fidelity)
+    errors = {float(case.alpha): abs(free["e_edge"] - stiff["e_edge"])}
+    if fidelity == "modal":
+        pairs = {float(angle): _both(case, float(angle), fidelity) for angle in ANGLES}
+        errors |= {angle: abs(a["e_edge"] - b["e_edge"]) for angle, (a, b) in pairs.items()}
+    worst = max(errors, key=lambda angle: errors[angle])
+    touch = stiff["contacts"][0]
+    return {
+        "fidelity": fidelity,
+        "with_vibration": {name: free[key] for name, key in SHOWN.items()},
+        "rigid": {name: stiff[key] for name, key in SHOWN.items()},
+        "E_vib_over_E_0": free["E_vib_over_E_0"],
+        "T1_over_tau": _first_period(case) / (touch["end_s"] - touch["start_s"]),
+        "error_of_e": errors[float(case.alpha)],
+        "worst_angle_rad": worst,
+        "worst_error_of_e": errors[worst],
+        "answer": _answer(errors[float(case.alpha)]),
+        "answer_any_angle": _answer(errors[worst]),
+    }
+
+
+def _both(case: Case, angle: float, fidelity: str) -> tuple[Outcome, Outcome]:
+    with_it, without = (_scene(case, angle, names) for names in (("vibration", *EFFECTS), EFFECTS))
+    return simulate(with_it, fidelity), simulate(without, fidelity)
+
+
+def _scene(case: Case, angle: float, effects: tuple[str, ...]) -> Scene:
+    steels, rod = materials(), case.rod
+    tip: Any = rod.tip
+    return Scene(
+        id="assessed-rod",
+        title="a dropped rod that is assessed",
+        projectile=Projectile(rod.length, rod.diameter, tip, rod.tip_radius, steels["rod-steel"]),
+        barrier=Barrier(steels["plate-steel"]),
+        surface=surface(case.surface),
+        impact=Impact(angle, -case.speed * cos(angle), -case.speed * sin(angle)),
+        effects=effects,
+    )
+
+
+def _first_period(case: Case) -> float:
+    steel, rod = materials()["rod-steel"], case.rod
+    modes = bending_modes(steel.E, steel.nu, steel.rho, rod.length, rod.diameter / 2, 1)
+    return 2 * pi / float(modes.omega[0])
+
+
+def _answer(error: float) -> str:
+    if error < FAIR:
+        return "yes"
+    return "yes, if the stated error is allowed" if error < POOR else "no"
