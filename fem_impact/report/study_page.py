@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from fem_impact.output import make_directory
 from fem_impact.report.embed import picture
 from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table, with_band
 from fem_impact.report.page import page, sources
-from fem_impact.report.sections import film_section, has_film, history_figures, notices
+from fem_impact.report.sections import has_film, history_figures, notices
 from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.tables import card, sentences, unknown
 
@@ -159,7 +160,14 @@ def _run(row: Outcome, folder: Path) -> Markup:
     bands = row["bands"] or {}
     e, mu = with_band(row["e_paper"], bands.get("e_paper")), with_band(row["mu"], bands.get("mu"))
     title = f"{row['scene_id']}: {row['scene_title']} (e = {e}, µ = {mu})"
-    return details(title, history_figures(row, place), film_section(place))
+    return details(title, history_figures(row, place), _own_page(place))
+
+
+def _own_page(place: Path) -> Markup:
+    """Return the link to the run's own page, which carries its film: thirteen films make no page to send."""
+    if not (has_film(place) and (place / "report.html").is_file()):
+        return Markup("")
+    return Markup(f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>')
 
 
 def _costs(rows: Sequence[Outcome]) -> Markup:
