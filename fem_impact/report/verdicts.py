@@ -113,7 +113,7 @@ def _heat(rows: Sequence[Outcome], figures: Path) -> Markup:
     ratio = [r / t for r, t in zip(rubbed, tangential, strict=True) if t > 0]
     sentence = (
         "Does not stand: E_lt is not the energy that can heat the contact. Friction takes "
-        f"{min(ratio):.0%} to {max(ratio):.0%} of it; the rest is plastic flow and vibration."
+        f"{min(ratio):.0%} to {max(ratio):.0%} of it; what is left of it is plastic flow and vibration."
     )
     return _told(sentence, Panel("E_lt and friction work", _axis(rows), "% of E_0", series), "heat", figures)
 
