@@ -20,11 +20,8 @@ def coupling(scene: Scene) -> float:
 
 
 def number(scene: Scene) -> float:
-    """Return f times how much it can do: nothing in an axial strike without sliding."""
-    f, impact = scene.surface.friction, scene.impact
-    _, d_d = arms(scene)
-    sliding = abs(impact.v_t - impact.omega * d_d) / max(abs(impact.v_n), 1e-9)
-    return min(coupling(scene) + f * sliding, f)
+    """Return f: even an upright strike spreads under the tip, and friction holds that back."""
+    return scene.surface.friction
 
 
 def harm(scene: Scene) -> Harm:
@@ -42,7 +39,7 @@ EFFECT = Effect(
     "friction",
     "Coulomb friction acts at every contact node, with stick, slip and reversal.",
     "The contact is frictionless.",
-    "f where it can act: min(f, f d_c d_d/(k^2 + d_c^2) + f v_ct/v_n)",
+    "f",
     0.005,
     "Coulomb's law: the impulse ratio is at most f, so mu is off by no more than the threshold",
     number,

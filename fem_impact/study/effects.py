@@ -46,6 +46,7 @@ DESIGNED: Mapping[str, Mapping[str, Any]] = {
     "low-angle": {"impact.angle": "5 deg"},
     "high-angle": {"impact.angle": "75 deg"},
     "axial": {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "projectile.tip": "A"},
+    "slippery": {"surface.friction": 0.0},
     "soft-plate": _yield("barrier", 80.0),
     "hard-steels": {**_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
     "stiff-barrier": {"barrier.material.E": "10000 GPa", **_yield("barrier", 90000.0)},

@@ -170,8 +170,10 @@ def test_each_effect_goes_off_where_its_number_is_small():
     assert {"radiation", "rate-hardening"} <= chosen(base, v_n=-20.0, v_t=-1.0)
     assert "gravity" not in chosen(base)
     upright = chosen(base, angle=0.0, v_t=0.0)
-    assert not {"friction", "large-rotation"} & upright
-    assert "friction" in chosen(base, angle=0.0, v_t=-1.0)
+    assert "large-rotation" not in upright
+    assert "friction" in upright
+    slippery = replace(base.surface, state="custom", friction=0.001, friction_low=0.0)
+    assert "friction" not in chosen(replace(base, surface=slippery))
 
 
 def test_a_hard_stiff_barrier_is_rigid():
