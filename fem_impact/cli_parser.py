@@ -46,6 +46,7 @@ class Options(argparse.Namespace):
     parameters: bool = False
     quick: bool = False
     workers: int | None = None
+    threads: int = 1
     scheduler: str = ""
     target: str = ""
     budget: str = ""
@@ -127,6 +128,7 @@ def _add_run(commands: Commands) -> None:
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
+    parser.add_argument("--threads", type=int, choices=[1, 2], default=1, help="threads (default: 1)")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(
         "--checkpoint",

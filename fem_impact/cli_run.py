@@ -35,6 +35,7 @@ def run(options: Options) -> int:
             progress=meter,
             resume=options.resume,
             checkpoint_s=options.checkpoint,
+            threads=options.threads,
         )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None

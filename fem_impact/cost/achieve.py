@@ -33,6 +33,7 @@ def simulate_to_target(
     progress: Callable[[Progress], None] | None = None,
     resume: bool = False,
     checkpoint_s: float = INTERVAL,
+    threads: int = 1,
 ) -> Outcome:
     """Run the setting that the measured costs choose.
 
@@ -47,13 +48,13 @@ def simulate_to_target(
     chosen = plan(scene, fidelity)
     meshes = chosen.meshes
     if not meshes:
-        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
+        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s, threads)
         return _kept(_stated(alone, chosen), out)
     coarse = None
     if len(meshes) > 1:
         place = out and out / COARSER
-        coarse = simulate(on_mesh(scene, meshes[1]), "solid", place, progress, resume, checkpoint_s)
-    fine = simulate(on_mesh(scene, meshes[0]), "solid", out, progress, resume, checkpoint_s)
+        coarse = simulate(on_mesh(scene, meshes[1]), "solid", place, progress, resume, checkpoint_s, threads)
+    fine = simulate(on_mesh(scene, meshes[0]), "solid", out, progress, resume, checkpoint_s, threads)
     return _kept(_stated(fine, chosen, coarse), out)
 
 

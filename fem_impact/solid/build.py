@@ -289,7 +289,6 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False)
         if law
     ]
-    forces += zones
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
     n, place = layout.rod_size, layout.barrier_slice
@@ -318,7 +317,8 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         mass=mass,
         inverse_mass=inverse_mass,
         drawn=drawn,
-        forces=forces,
+        forces=[*forces, *zones],
+        aside=min(len(zones), 1),
         impulses=impulses,
         hanging=hanging,
         zones=zones,

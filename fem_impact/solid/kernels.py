@@ -47,8 +47,8 @@ def compiled_before() -> bool:
 
 
 def kernel(function: F) -> F:
-    """Compile a hot loop, cached on disk across runs."""
-    return cast(F, numba.njit(cache=True, fastmath=FAST, error_model="numpy")(function))
+    """Compile a hot loop, cached on disk across runs; it lets other threads run beside it."""
+    return cast(F, numba.njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")(function))
 
 
 def inlined(function: F) -> F:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from typing import Protocol
 
+from fem_impact.solid.items import Force
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -34,11 +36,29 @@ def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
         y[i] += a * b[i]
 
 
-def evaluate(model: Model, state: State) -> None:
-    """Set the forces of the present positions."""
+def _sum(items: Sequence[Force], state: State) -> None:
     state.force[:] = 0.0
-    for item in model.forces:
+    for item in items:
         item.add_force(state)
+
+
+def evaluate(model: Model, state: State, helper: Executor | None = None) -> None:
+    """Set the forces of the present positions.
+
+    Both shares are summed apart and then added whether or not a ``helper`` takes one of them, so that
+    results are the same to the last bit.
+    """
+    if not model.aside:
+        _sum(model.forces, state)
+    else:
+        apart, beside = model.forces[-model.aside :], state.beside()
+        done = helper.submit(_sum, apart, beside) if helper else None
+        _sum(model.forces[: -model.aside], state)
+        if done:
+            done.result()
+        else:
+            _sum(apart, beside)
+        state.force += beside.force
     model.hanging.collect(state.force)
 
 
@@ -55,14 +75,14 @@ def advance(model: Model, state: State) -> None:
     state.step += 1
 
 
-def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
+def march(model: Model, state: State, observers: Sequence[Observer], helper: Executor | None = None) -> None:
     """Step until an observer says stop.
 
     Velocities stand half a step behind positions, so the first kick from the given start velocity is
     a half one (no step has led to the start).
     """
     while True:
-        evaluate(model, state)
+        evaluate(model, state, helper)
         if any([o.observe(state) for o in observers if state.step % o.every == 0]):
             return
         advance(model, state)

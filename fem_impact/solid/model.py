@@ -33,6 +33,7 @@ class Model:
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
+    aside : how many of the last forces are summed apart from the others, so that a second thread may do it
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
@@ -55,6 +56,7 @@ class Model:
     rod_stiffness: sp.csr_matrix | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
+    aside: int = 0
 
     @property
     def step(self) -> float:
@@ -77,7 +79,7 @@ class Model:
     def coasting(self) -> Model:
         """Return the rod alone, for free flight after the last contact."""
         rod_forces = [f for f in self.forces if f.body == "rod"]
-        return replace(self, forces=rod_forces, impulses=())
+        return replace(self, forces=rod_forces, impulses=(), aside=0)
 
     def ledger(self) -> Ledger:
         """Return an empty ledger over all items."""
