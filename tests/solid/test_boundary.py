@@ -92,6 +92,7 @@ class Column:
         self.pots = Dashpots(held, damping[held], inverse[held])
         self.model = SimpleNamespace(
             forces=[self.block],
+            aside=0,
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
             hanging=Hanging.of([(mesh.tie, places)]),
