@@ -60,6 +60,9 @@ INPUTS = (
     ),
     Input("yield", f"yield and ultimate stress of both steels times {STRONGER:g}", _stronger),
     Input(
+        "rate", "no hardening with the strain rate", lambda s: {"effects": [*s.effects, "-rate-hardening"]}
+    ),
+    Input(
         "block",
         f"barrier block with {WIDER:g} times the margin around the fine zone",
         lambda s: {"accuracy.block_margin": f"{WIDER * s.accuracy.block_margin * 1e3:.9g} mm"},

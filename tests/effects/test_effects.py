@@ -112,7 +112,7 @@ def test_every_effect_of_the_scenes_is_told():
         stated = load(set_id)
         for choice in choices(stated):
             told = choice.told()
-            assert told["on"] == (told["name"] in stated.effects)
+            assert told["on"] == (told["name"] in stated.active)
             assert told["forced"]
             effect = EFFECTS[told["name"]]
             assert told["sentence"] == (effect.sentence if told["on"] else effect.absence)

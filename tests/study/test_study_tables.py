@@ -75,7 +75,9 @@ def test_shares_are_percent_with_their_bands():
 
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     jobs = jobs_of("t3-contaminated", False, tmp_path)
-    assert list(jobs) == ["fine", "coarse", "friction-low", "friction-high", "yield", "block"]
+    changed = ["friction-low", "friction-high", "yield", "rate", "block"]
+    assert list(jobs) == ["fine", "coarse", *changed]
+    assert "rate-hardening" not in jobs["rate"].scene.active
     base = jobs["coarse"].scene
     assert jobs["friction-low"].scene.surface.friction == base.surface.friction_low
     assert jobs["friction-high"].scene.surface.friction == base.surface.friction_high
@@ -83,7 +85,7 @@ def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     assert stronger.projectile.material.yield_stress == pytest.approx(1.5 * 546e6)
     assert stronger.barrier.material.ultimate_stress == pytest.approx(1.5 * 446e6)
     assert jobs["block"].scene.accuracy.block_margin == pytest.approx(9e-3)
-    assert len({job.out for job in jobs.values()}) == 6
+    assert len({job.out for job in jobs.values()}) == 7
     assert list(jobs_of("t3-contaminated", True, tmp_path)) == ["fine", "coarse"]
 
 
