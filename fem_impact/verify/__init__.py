@@ -23,6 +23,7 @@ PROBLEMS = {
     "thornton": ("thornton_tip", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),
     "wall-bar": ("wall_bar", "PROBLEM"),
+    "tilted-bar": ("tilted_bar", "PROBLEM"),
     "modes": ("free_modes", "PROBLEM"),
     "waves": ("bloch", "PROBLEM"),
     "free-spin": ("free_flight", "SPIN"),

@@ -11,21 +11,20 @@ from dataclasses import replace
 
 import numpy as np
 
-import meshes
 from fem_impact.solid.elements import Kind
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Body, body_model, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Problem, Solved, Values
 from fem_impact.verify.reference.bar import bar_speed
+from fem_impact.verify.square_bar import KINDS, LENGTH, NU, RHO, SIDE, E, element, square_bar
 
 __all__ = ["PROBLEM"]
 
-SIDE, LENGTH, E, NU, RHO, STEP = 0.019, 0.24, 206e9, 0.29, 7850.0, 7e-8
+STEP = 7e-8  # s
 CELLS = (12, 144)  # across and along
-KINDS: tuple[Kind, ...] = ("full", "bbar", "incompatible")
 PRINTED = (120.576703e6, 120.5744e6, 120.5780e6)  # Pa at 3 m/s, of these kinds
 TOLERANCE = (1e-6, 1e-4, 1e-4)
 PRINTED_SPEED = 3.0
@@ -57,20 +56,13 @@ class _WallStress:
 
 
 def _model(kind: Kind, speed: float) -> Model:
-    across, along = CELLS
-    # the block's cells are as cubic as its size says: build it as such and scale it to the bar
-    block = meshes.block([-across / 2, 0.0, -float(along)], [across / 2, across / 2, 0.0], 1.0)
-    points = block.points * np.array([SIDE / across, SIDE / across, LENGTH / along])
-    points[:, 2] += LENGTH
-    points[np.abs(points[:, 2]) < 1e-12, 2] = 0.0
-    held = np.zeros(points.shape, dtype=bool)
-    held[points[:, 2] == 0.0, 2] = True
-    velocity = np.zeros_like(points)
+    mesh = square_bar(*CELLS)
+    held = np.zeros(mesh.points.shape, dtype=bool)
+    held[mesh.points[:, 2] == 0.0, 2] = True
+    velocity = np.zeros_like(mesh.points)
     velocity[:, 2] = -speed
-    mesh = unsliced(replace(block, points=points))
-    return replace(
-        body_model(Body(mesh, points, velocity, E, NU, RHO, kind=kind, held=held)), steps={"rod": STEP}
-    )
+    body = Body(unsliced(mesh), mesh.points, velocity, E, NU, RHO, kind=kind, held=held)
+    return replace(body_model(body), steps={"rod": STEP})
 
 
 def solve(p: Values) -> Solved:
@@ -91,7 +83,7 @@ PROBLEM = Problem(
     "a square bar whose end stops dead, beside five public codes",
     (
         steel.speed("speed", "speed of the bar", PRINTED_SPEED),
-        Parameter("element", "0: plain 8-point, 1: mean dilatation, 2: incompatible", 2, 0, 2, multiple=1),
+        element(2),
     ),
     solve,
 )
