@@ -21,7 +21,7 @@ from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
 from fem_impact.verify.reference.beam import bending_modes
 from fem_impact.verify.reference.cylinder import Frequencies, cylinder_frequencies
 
-__all__ = ["PROBLEM"]
+__all__ = ["PROBLEM", "Probe", "bar_of", "frequencies"]
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,8 @@ PLUCK = 0.01  # m/s, of the ringing bar
 EVERY = 5  # steps between samples
 
 
-def _model(p: Values, velocity: Array | None = None) -> Model:
+def bar_of(p: Values, velocity: Array | None = None) -> Model:
+    """Return the free bar, at rest or with nodal velocities (n, 3), m/s."""
     radius = p["diameter"] / 2
     flat = np.array([[0.0, 0.0], [radius, 0.0]])
     slab = p["diameter"] / p["across"]
@@ -40,7 +41,7 @@ def _model(p: Values, velocity: Array | None = None) -> Model:
     return body_model(Body(bar, bar.mesh.points, speed, p["E"], p["nu"], p["rho"]))
 
 
-def _classes(model: Model) -> dict[str, Array]:
+def frequencies(model: Model) -> dict[str, Array]:
     """Return bending and longitudinal frequencies, Hz, told apart by what the axis does."""
     points, places = model.geometry.rod_points, model.layout.rod
     n = model.layout.rod_size
@@ -71,14 +72,14 @@ def _torsion(model: Model, p: Values) -> float:
 def _ring(p: Values) -> tuple[float, float, int]:
     """Return the first bending and longitudinal frequency, Hz, of a plucked bar, and the steps."""
     beam = bending_modes(p["E"], p["nu"], p["rho"], p["length"], p["diameter"] / 2, 1)
-    points = _model(p).geometry.rod_points
+    points = bar_of(p).geometry.rod_points
     s = 2 * points[:, 2] / p["length"] - 1
     w = np.polynomial.legendre.legval(s, beam.deflection[0])
     theta = np.polynomial.legendre.legval(s, beam.angle[0])
     bend = np.stack([w, 0 * w, -points[:, 0] * theta], axis=1)
     stretch = np.stack([0 * w, 0 * w, -np.sin(0.5 * pi * s)], axis=1)
     speed = PLUCK * (bend / abs(w).max() + stretch)
-    model = _model(p, speed)
+    model = bar_of(p, speed)
     probes = [Probe(model, bend, 4 / float(beam.frequency[0])), Probe(model, stretch, 0.0)]
     march(model, state := model.initial_state(), probes)
     return probes[0].frequency(), probes[1].frequency(), state.step
@@ -124,8 +125,8 @@ def _eigen_checks(found: dict[str, Array], exact: Frequencies) -> list[Check]:
 def solve(p: Values) -> Solved:
     """Compare both ways of finding frequencies with Rayleigh-Ritz in three dimensions."""
     exact = cylinder_frequencies(p["E"], p["nu"], p["rho"], p["length"], p["diameter"] / 2)
-    model = _model(p)
-    checks = _eigen_checks(_classes(model), exact)
+    model = bar_of(p)
+    checks = _eigen_checks(frequencies(model), exact)
     bend, stretch, steps = _ring(p)
     checks += [
         Check("torsion 1", "Hz", _torsion(model, p), float(exact.torsion[0]), TOLERANCE),
