@@ -44,6 +44,7 @@ class Options(argparse.Namespace):
     out: Path | None = None
     problem: str | None = None
     parameters: bool = False
+    readme: str = ""
     quick: bool = False
     workers: int | None = None
     threads: int = 1
@@ -209,6 +210,7 @@ def _add_verify(commands: Commands) -> None:
         "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
     )
     parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
+    parser.add_argument("--readme", metavar="FILE", help="run all problems and write the results into a page")
 
 
 def _add_scene_words(parser: argparse.ArgumentParser) -> None:

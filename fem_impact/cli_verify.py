@@ -16,6 +16,8 @@ def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""
     if options.parameters:
         return _show_parameters(options)
+    if options.readme:
+        return _write_page(options)
     changes = dict(_change(text) for text in options.changes)
     if changes and not options.problem:
         raise SceneError(
@@ -30,6 +32,25 @@ def verify(options: Options) -> int:
     if options.json:
         documents = [found.document() for found in done]
         print_json(documents[0] if options.problem else documents)
+    return 0 if all(found.passed for found in done) else RunError.exit_code
+
+
+def _write_page(options: Options) -> int:
+    """Run all problems at their defaults and put the results between the marks of a file."""
+    from fem_impact.outcome import utc_now
+    from fem_impact.output.atomic import read_text, write_text
+    from fem_impact.verify.page import page, put_page
+
+    if options.problem or options.changes:
+        raise SceneError("takes all problems at their defaults.", key="--readme")
+    put_page(read_text(options.readme), "")  # before any work
+    done = []
+    for name in PROBLEMS:
+        done.append(problem(name).run())
+        sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
+    write_text(options.readme, put_page(read_text(options.readme), page(done, utc_now()[:10])))
+    if options.json:
+        print_json([found.document() for found in done])
     return 0 if all(found.passed for found in done) else RunError.exit_code
 
 

@@ -1,16 +1,4 @@
-"""Whole runs on coarse meshes, held to reference problems, balances and closed forms.
-
-The mutants of the reference problems, and the tests that were seen to kill them:
-
-- contact work with velocities after the update: test_booked_work..., test_ledger_closes
-- vibration energy from raw strain energy: test_locked_in_stress_is_not_vibration
-- sign of Omega: test_stiff_short_rod_is_rigid_theory, test_sign_of_omega_follows_the_impulse
-- energies of the half model not doubled: test_energies_are_those_of_the_whole_rod
-- friction on facet noise: test_sliding_rod_has_the_impulse_ratio_of_its_friction
-- stopping at the first separation: test_elastic_frictionless_long_rod_touches_twice
-- plain full integration at the tip: test_small_increments..., test_body_and_tip_operators...
-- a search that drops the nodes on the symmetry plane: test_first_contact_comes_at_gap_over_speed
-"""
+"""Whole runs on coarse meshes, held to reference problems, balances and closed forms."""
 
 from dataclasses import replace
 from math import pi

@@ -1,0 +1,159 @@
+"""Faults that the tests must notice, each with a test that does.
+
+Run ``python tests/mutants.py`` to put each fault into a copy of the sources, run the test and print the table
+of README; ``python -m pytest -m slow tests/test_mutants.py`` does the same one by one.
+"""
+
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+ROOT = Path(__file__).parents[1]
+COPIED = ("fem_impact", "meshes", "rigid", "tests", "pyproject.toml", "README.md")
+FAILED = 1  # pytest's exit code when a test failed
+
+
+@dataclass(frozen=True, slots=True)
+class Mutant:
+    """A fault: ``old`` stands once in ``file`` and becomes ``new``; ``test`` must fail."""
+
+    fault: str
+    file: str
+    old: str
+    new: str
+    test: str
+
+
+FACET = """\
+        p0, p1 = barrier.places[barrier.quads[q, 0]], barrier.places[barrier.quads[q, 1]]
+        p2, p3 = barrier.places[barrier.quads[q, 2]], barrier.places[barrier.quads[q, 3]]
+        u_t, u_b, u_n = x[p2[0]] - x[p0[0]], x[p2[1]] - x[p0[1]], x[p2[2]] - x[p0[2]]
+        w_t, w_b, w_n = x[p3[0]] - x[p1[0]], x[p3[1]] - x[p1[1]], x[p3[2]] - x[p1[2]]
+        normal[0], normal[1] = u_b * w_n - u_n * w_b, u_n * w_t - u_t * w_n
+        normal[2] = u_t * w_b - u_b * w_t
+"""
+GAUSS_PRESSURE = """\
+            for l in range(LANES):
+                J = w[DET * LANES + l] / weight[l]
+                z.pressure[b, l] = K * np.log(J) / J
+"""
+RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
+UNIT = "        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)\n"
+FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
+MUTANTS = (
+    Mutant(
+        "contact work with velocities after the update, rigid plane",
+        "fem_impact/solid/contact/plane.py",
+        "record[CLOSING] -= 0.5 * p * (old_n + v[n])",
+        "record[CLOSING] -= p * v[n]",
+        "tests/solid/test_plane_contact.py::test_booked_work_is_the_energy_that_is_missing",
+    ),
+    Mutant(
+        "contact work with velocities after the update, meshed barrier",
+        "fem_impact/solid/contact/points.py",
+        "m_t, m_b, m_n = 0.5 * (c.before[k, 0] + t), 0.5 * (c.before[k, 1] + b), 0.5 * (c.before[k, 2] + n)",
+        "m_t, m_b, m_n = t, b, n",
+        f"{RUNS}::test_ledger_closes",
+    ),
+    Mutant(
+        "vibration from raw strain energy",
+        "fem_impact/reduce.py",
+        "vibration, floor = result.flight.energy, result.worst",
+        'vibration, floor = 2 * result.accounts["strain_rod"], result.worst',
+        f"{RUNS}::test_locked_in_stress_is_not_vibration",
+    ),
+    Mutant(
+        "sign of Omega",
+        "fem_impact/modes/motion.py",
+        "float(V[2]), float(V[0]), spin / inertia)",
+        "float(V[2]), float(V[0]), -spin / inertia)",
+        "tests/modes/test_modes.py::test_rigid_sums",
+    ),
+    Mutant(
+        "energies of the half model not doubled",
+        "fem_impact/solid/ledger.py",
+        "HALVES = 2.0",
+        "HALVES = 1.0",
+        f"{RUNS}::test_energies_are_those_of_the_whole_rod",
+    ),
+    Mutant(
+        "friction on the quads' own normals",
+        "fem_impact/solid/contact/points.py",
+        UNIT,
+        FACET + UNIT,
+        f"{RUNS}::test_sliding_rod_has_the_impulse_ratio_of_its_friction",
+    ),
+    Mutant(
+        "stopping at the first separation",
+        "fem_impact/solid/separation.py",
+        "        if not self._stays_away(state):\n            return False\n",
+        "",
+        f"{RUNS}::test_elastic_frictionless_long_rod_touches_twice",
+    ),
+    Mutant(
+        "Table 1's right-hand side as printed",
+        "rigid/general.py",
+        "return table[..., :3], table[..., 3]",
+        "return table[..., :3], -table[..., 3]",
+        "tests/rigid/test_general.py::test_the_general_system_reduces_to_the_massive_barrier",
+    ),
+    Mutant(
+        "plain full integration where the tip yields",
+        "fem_impact/solid/yielding_kernel.py",
+        FORCE,
+        GAUSS_PRESSURE + FORCE,
+        f"{YIELDING}::test_small_increments_see_the_bbar_stiffness",
+    ),
+    Mutant(
+        "a search that drops the nodes on the symmetry plane",
+        "fem_impact/solid/contact/search.py",
+        "SLACK = 1e-6",
+        "SLACK = -1e-6",
+        f"{RUNS}::test_first_contact_comes_at_gap_over_speed",
+    ),
+    Mutant(
+        "masses at the nodes of a section, its polar moment 5 % too high",
+        "fem_impact/solid/masspoints.py",
+        "np.sqrt(round_moment / moment)",
+        "np.sqrt(moment / moment)",
+        "tests/verify/test_verify_modes.py::test_modes_of_the_short_rod",
+    ),
+)
+
+
+def survives(mutant: Mutant, folder: Path) -> str:
+    """Return what pytest said if the fault went unnoticed in a copy at ``folder``, else nothing."""
+    for name in COPIED:
+        source = ROOT / name
+        if source.is_dir():
+            shutil.copytree(source, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+        else:
+            shutil.copy(source, folder / name)
+    target = folder / mutant.file
+    text = target.read_text(encoding="utf-8")
+    if text.count(mutant.old) != 1:
+        return f"{mutant.file} holds the text to change {text.count(mutant.old)} times, not once"
+    target.write_text(text.replace(mutant.old, mutant.new), encoding="utf-8")
+    line = [sys.executable, "-m", "pytest", "-x", "-p", "no:cacheprovider", mutant.test]
+    done = subprocess.run(line, cwd=folder, capture_output=True, text=True, check=False)
+    return "" if done.returncode == FAILED else done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def table() -> str:
+    """Return the faults and the tests that notice them as a Markdown table."""
+    rows = [f"| {m.fault} | `{m.test.partition('::')[2]}` |" for m in MUTANTS]
+    return "\n".join(["| fault | noticed by |", "| --- | --- |", *rows])
+
+
+if __name__ == "__main__":
+    alive = []
+    for one in MUTANTS:
+        with TemporaryDirectory() as place:
+            left = survives(one, Path(place))
+        sys.stderr.write(f"{'SURVIVES' if left else 'dies    '} {one.fault}\n{left}")
+        alive += [one] if left else []
+    sys.stdout.write(table() + "\n")
+    sys.exit(len(alive))

@@ -1,0 +1,61 @@
+"""The page of results: what it says of a run, where it is put, and that README's is such a page."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from fem_impact.cli import main
+from fem_impact.errors import SceneError
+from fem_impact.verify import PROBLEMS, Check, Cost, Verification
+from fem_impact.verify.page import HEAD, MARKS, page, put_page
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+def found(name, *checks):
+    return Verification(name, {}, checks, Cost(30.0, 25.4, 10, 20))
+
+
+EASY = Check("length", "m", 1.001, 1.0, 0.1)
+CLOSE = Check("force", "N", 109.0, 100.0, 0.1)
+WRONG = Check("touches", "1", 2, 1, 0.0, "absolute")
+
+
+def test_a_row_shows_the_check_nearest_to_its_limit():
+    text = page([found("a", EASY, CLOSE), found("b", EASY, CLOSE, WRONG)], "2026-01-02")
+    first, _, *rows = text.splitlines()
+    assert first == "2026-01-02, all parameters at their defaults: 4 of 5 checks passed, 1.0 minutes."
+    assert rows[2] == "| `a` | 2 of 2 | force | 109 N | 100 N | +9.0e-02 | 0.1 relative | 25 |"
+    assert rows[3] == "| `b` | 2 of 3 | touches | 2 | 1 | +1.0e+00 | 0 absolute | 25 |"
+
+
+def test_the_page_goes_between_its_marks_and_nowhere_else():
+    text = f"before\n{MARKS[0]}\nold\nold\n{MARKS[1]}\nafter\n"
+    assert put_page(text, "new \\1") == f"before\n{MARKS[0]}\nnew \\1\n{MARKS[1]}\nafter\n"
+    with pytest.raises(SceneError, match="no place"):
+        put_page("before\nafter\n", "new")
+
+
+def test_the_command_refuses_a_file_without_a_place_before_any_work(tmp_path, capsys):
+    target = tmp_path / "page.md"
+    target.write_text("nothing here\n")
+    assert main(["verify", "--readme", str(target)]) == 3
+    assert main(["verify", "modes", "--readme", str(target)]) == 3
+    assert main(["verify", "--readme", str(tmp_path / "none.md")]) == 5
+    assert target.read_text() == "nothing here\n"
+
+
+def test_the_readme_has_a_row_for_every_problem_in_the_form_of_the_command():
+    text = README.read_text(encoding="utf-8")
+    body = text.partition(MARKS[0] + "\n")[2].partition(MARKS[1])[0]
+    line, empty, head, rule, *rows = body.rstrip("\n").split("\n")
+    assert re.fullmatch(
+        r"20\d\d-\d\d-\d\d, all parameters at their defaults: (\d+) of \1 checks passed, [\d.]+ minutes\.",
+        line,
+    )
+    assert empty == "" and rule.count("---") == len(HEAD)
+    assert [cell.strip() for cell in head.strip("|").split("|")] == HEAD
+    names = [re.match(r"\| `([\w-]+)` \| (\d+) of \2 \| ", row)[1] for row in rows]
+    assert names == list(PROBLEMS)
+    assert all(row.count("|") == len(HEAD) + 1 for row in rows)
