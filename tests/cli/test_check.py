@@ -33,7 +33,7 @@ def test_check_as_json_gives_a_scene_that_reads_back(cli):
     scene = Scene.from_dict(statement["scene"])
     assert statement["digest"] == scene.digest()
     assert any("angle 80 deg" in sentence for sentence in statement["validity"])
-    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(scene.effects)
+    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(scene.active)
 
 
 def test_check_refuses_a_bad_file_by_name(cli, tmp_path):

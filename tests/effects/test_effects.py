@@ -113,7 +113,7 @@ def test_every_effect_of_the_scenes_is_told():
         for choice in choices(stated):
             told = choice.told()
             assert told["on"] == (told["name"] in stated.active)
-            assert told["forced"]
+            assert told["forced"] == ("auto" not in stated.effects)
             effect = EFFECTS[told["name"]]
             assert told["sentence"] == (effect.sentence if told["on"] else effect.absence)
             assert told["change_of_e"] >= 0
