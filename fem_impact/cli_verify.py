@@ -95,7 +95,8 @@ def _text(found: Verification) -> str:
     cost = f"{found.cost.cpu_s:.1f} s of CPU, {found.cost.steps} steps, {found.cost.elements} elements"
     lines = [f"{found.name}: {verdict} ({cost})"]
     for c in found.checks:
-        mark = "ok  " if c.passed else "FAIL"
+        mark = "FAIL" if not c.passed else "    " if c.kind == "shown" else "ok  "
+        allowed = f"not judged: {c.note}" if c.kind == "shown" else f"allowed {c.tolerance:g} {c.kind}"
         values = f"{c.computed:.6g} {c.unit}, reference {c.reference:.6g}"
-        lines.append(f"  {mark} {c.name}: {values}, error {c.error:+.2e}, allowed {c.tolerance:g} {c.kind}")
+        lines.append(f"  {mark} {c.name}: {values}, error {c.error:+.2e}, {allowed}")
     return "\n".join(lines) + "\n"

@@ -32,7 +32,7 @@ EFFECT = Effect(
     "Waves stay in the barrier block.",
     "1.127 (v_n/c0)^0.6, radiated share of an elastic strike",
     0.01,
-    "Hunter 1957, doi:10.1016/0022-5096(57)90002-9; a share w of the normal energy changes e by about w",
+    "Hunter 1957, J. Mech. Phys. Solids 5, 162; a share w of the normal energy changes e by about w",
     number,
     harm,
     fill,

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 NORMAL_SPRING, TANGENTIAL_SPRING = 4 / 3, 2 / 3
 # 2 pi G c_s times the radiated power over (dF/dt)^2, a polynomial of nu (highest power first) within 0.25 %
-# of Lamb's integral (Miller & Pursey 1955, doi:10.1098/rspa.1955.0245)
+# of Lamb's integral (Miller & Pursey 1955, Proc. R. Soc. A)
 RADIATION = (0.72091, 0.54936, -1.83562, 1.34367)
 
 

@@ -6,7 +6,7 @@ operators, contact, ledger and the march are the solver's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,6 +70,7 @@ class Body:
     mesh : RodMesh, with or without slices; points : (n, 3) positions in (t, b, n), m
     velocity : (n, 3) at the start, m/s
     E, nu, rho : material; law : hardening of the cells that ``yields`` (m,) names
+    denser : (m,) or (1,) density of each cell over rho
     held : (n, 3) unknowns that cannot move besides those of the symmetry plane
     friction : Coulomb's coefficient, or None for no contact at all
     block : what it strikes, or None for the rigid plane n = 0
@@ -82,6 +83,7 @@ class Body:
     E: float
     nu: float
     rho: float
+    denser: Array = field(default_factory=lambda: np.ones(1))
     kind: Kind = "incompatible"
     law: Hardening | None = None
     yields: Bools | None = None
@@ -163,7 +165,7 @@ def _part(body: Body, layout: Layout) -> build.Body:
     mesh = body.mesh.mesh
     yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
     K = element_stiffness(body.points, mesh.cells, isotropic_stiffness(body.E, body.nu), body.kind)
-    mass = lumped_mass(body.points, mesh.cells, body.rho)
+    mass = lumped_mass(body.points, mesh.cells, body.rho) * body.denser[:, None]
     return build.Body("rod", mesh, body.points, layout.rod, body, yields, K, mass)
 
 

@@ -1,8 +1,7 @@
 """``hertz``: an elastic sphere strikes a frictionless barrier, rigid or a block of its own kind.
 
 Hertz' law is the limit of a small contact; a sphere of finite size is stiffer by a share of about .6 a / R on
-a rigid plane and half of it on its like. Both references are shown. The finite sphere decides; the closed
-form is allowed to miss by that difference more.
+a rigid plane and half of it on its like. The finite sphere decides; the closed form is shown beside it.
 """
 
 from __future__ import annotations
@@ -38,12 +37,12 @@ def solve(p: Values) -> Solved:
     exact = ball_impact(modulus(p), own, p["nu"], p["radius"], ball_mass(p), v)
     model = sphere_model(p, plain, v)
     found = run_strike(model, AFTER * plain.duration, plain.duration)
-    stiffer, shorter = exact.force / plain.force - 1, 1 - exact.duration / plain.duration
+    note = f"for a / R far below 1, here {plain.radius / p['radius']:.3f}"
     checks = (
         Check("largest force", "N", found.force, exact.force, TOLERANCE),
         Check("contact time", "s", found.duration, exact.duration, TOLERANCE),
-        Check("largest force, Hertz", "N", found.force, plain.force, TOLERANCE + stiffer),
-        Check("contact time, Hertz", "s", found.duration, plain.duration, TOLERANCE + shorter),
+        Check.shown("largest force, Hertz", "N", found.force, plain.force, note),
+        Check.shown("contact time, Hertz", "s", found.duration, plain.duration, note),
         _radiated(p, found, exact),
         Check("rebound + radiated energy / E_0", "1", found.kept(v), 1.0, ENERGY, "absolute"),
         Check("largest energy / E_0", "1", found.most, 1.0, ENERGY, "at most"),

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
-from math import isfinite
+from math import inf, isfinite
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError
@@ -15,7 +15,7 @@ from fem_impact.scene.units import DIMENSIONS, parse_quantity
 __all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification"]
 
 Values = Mapping[str, float]
-Kind = Literal["relative", "absolute", "at most"]
+Kind = Literal["relative", "absolute", "at most", "shown"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,8 @@ class Check:
     """A computed value beside its reference.
 
     ``relative`` and ``absolute`` bound the difference; ``at most`` bounds the excess of ``computed`` over
-    ``reference``.
+    ``reference``; ``shown`` gives the relative difference as information and judges nothing, ``note`` says
+    why.
     """
 
     name: str
@@ -83,18 +84,24 @@ class Check:
     reference: float
     tolerance: float
     kind: Kind = "relative"
+    note: str = ""
+
+    @classmethod
+    def shown(cls, name: str, unit: str, computed: float, reference: float, note: str) -> Check:
+        """Return a comparison that bears no verdict, for the reason in ``note``."""
+        return cls(name, unit, computed, reference, inf, "shown", note)
 
     @property
     def error(self) -> float:
         """Return the signed error in the sense of ``kind``."""
         difference = self.computed - self.reference
-        if self.kind == "relative":
+        if self.kind in ("relative", "shown"):
             return difference / abs(self.reference)
         return max(0.0, difference) if self.kind == "at most" else difference
 
     @property
     def passed(self) -> bool:
-        """Return whether the error is finite and within the tolerance."""
+        """Return whether the error is finite and within the tolerance, which what is only shown has not."""
         return isfinite(self.error) and abs(self.error) <= self.tolerance
 
     def document(self) -> dict[str, Any]:
@@ -105,9 +112,10 @@ class Check:
             "computed": self.computed,
             "reference": self.reference,
             "error": self.error,
-            "tolerance": self.tolerance,
+            "tolerance": None if self.kind == "shown" else self.tolerance,
             "kind": self.kind,
             "passed": self.passed,
+            "note": self.note,
         }
 
 

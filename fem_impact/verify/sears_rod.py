@@ -1,19 +1,26 @@
 """``sears``: a rod with a rounded end strikes along its axis: force, contact time, vibration that stays.
 
-The reference is Sears' delay equation: Hertz' contact before a one-dimensional rod. It is the limit of a
-contact small against the rod's radius; the end of a real rod is stiffer than Hertz' half-space by about as
-much as a sphere's is (see ``hertz``), and the vibration left depends steeply on the contact time. It is
-therefore held to the delay equation with the one E* that has the computed contact time; the plain
-equation is shown as well and allowed to miss by the difference of the two more.
+Sears' delay equation puts Hertz' half-space before a one-dimensional rod, the limit of a contact much smaller
+than the rod. The round end of a real rod is stiffer, by about 0.6 a / R of the approach on a rigid plane (R
+radius of the rod) and half of it on its like: `rod_end` computes it from the shape alone, and the delay
+equation with that end decides here. The plain equation is shown beside it. Contact time, us, and vibration
+over E_0 for 0.24 m rods with a 7 mm tip:
+
+=====================  =====  ==============  ==============  ==============
+case                   a / R  plain           round end       solver
+=====================  =====  ==============  ==============  ==============
+block, 2 m/s           0.098  218.5, 0.00245  215.7, 0.00342  216.5, 0.00310
+rigid plane, 2 m/s     0.082  175.5, 0.02709  171.4, 0.02678  171.1, 0.02668
+rigid plane, 0.02 m/s  0.014  381.5, 0.00043  380.0, 0.00044  381.1, 0.00047
+=====================  =====  ==============  ==============  ==============
 """
 
 from __future__ import annotations
 
-from math import pi
+from math import inf, pi
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 import meshes
 from fem_impact.modes import flight, rod_modes
@@ -24,14 +31,15 @@ from fem_impact.verify import steel
 from fem_impact.verify.bodies import Block, Body, body_model, placed
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
 from fem_impact.verify.reference.hertz import contact_modulus
-from fem_impact.verify.reference.sears import AxialImpact, sears
+from fem_impact.verify.reference.rod_end import end_law
+from fem_impact.verify.reference.sears import AxialImpact, rod_impact, sears
 from fem_impact.verify.tips import block_under, contact_zone, levels_for_radius, run_strike
 
 __all__ = ["PROBLEM"]
 
 FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4
 AFTER = 1.1  # contact times that are followed
-STIFFER = (0.5, 2.0)  # range of the contact stiffness over Hertz'
+LARGEST = 1.3  # contact radii over the plain one's that the law of the round end covers
 PARABOLA = 200  # points of the meridian
 
 
@@ -67,33 +75,34 @@ def _vibration(model: Model, state: State) -> float:
     return flight(modes, state.v[:n], state.force[:n]).energy
 
 
-def _timed(rod: tuple[float, float, float, float], E_star: float, p: Values, duration: float) -> AxialImpact:
-    """Return the delay equation's impact of the given contact time, s, by another contact stiffness."""
+def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
+    """Return the delay equation's impact with the stiffness of the round end."""
+    R, tip = p["diameter"] / 2, p["tip_radius"]
+    force, approach = end_law(E_star, contact_modulus(p["E"], p["nu"]), p["nu"], R, tip, LARGEST * touch)
 
-    def late(factor: float) -> float:
-        return sears(*rod, factor * E_star, p["tip_radius"], p["speed"]).duration - duration
+    def law(d: float) -> float:
+        return float(np.interp(d, approach, force))
 
-    factor = float(brentq(late, *STIFFER, xtol=1e-3))
-    return sears(*rod, factor * E_star, p["tip_radius"], p["speed"])
+    return rod_impact(p["E"], p["rho"], p["length"], R, law, p["speed"])
 
 
 def solve(p: Values) -> Solved:
-    """Compare force, time, restitution and vibration with the delay equation."""
-    E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["block"] else float("inf"), p["nu"])
-    rod = (p["E"], p["rho"], p["length"], p["diameter"] / 2)
-    exact = sears(*rod, E_star, p["tip_radius"], p["speed"])
-    touch = (3 * exact.force * p["tip_radius"] / (4 * E_star)) ** (1 / 3)
+    """Compare force, time and vibration with the delay equation of the round end, and with Sears' own."""
+    E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["block"] else inf, p["nu"])
+    plain = sears(p["E"], p["rho"], p["length"], p["diameter"] / 2, E_star, p["tip_radius"], p["speed"])
+    touch = (3 * plain.force * p["tip_radius"] / (4 * E_star)) ** (1 / 3)
+    exact = _round_end(p, E_star, touch)
     model = _model(p, touch)
-    found = run_strike(model, AFTER * exact.duration, exact.duration)
-    E_0 = 0.5 * found.motion.mass * p["speed"] ** 2
-    same = _timed(rod, E_star, p, found.duration)
-    vibration, shift = _vibration(model, found.state) / E_0, abs(same.vibration - exact.vibration)
+    found = run_strike(model, AFTER * plain.duration, plain.duration)
+    vibration = _vibration(model, found.state) / (0.5 * found.motion.mass * p["speed"] ** 2)
+    note = f"for a / R far below 1, here {2 * touch / p['diameter']:.3f}"
     checks = (
         Check("largest force", "N", found.force, exact.force, FORCE),
         Check("contact time", "s", found.duration, exact.duration, TIME),
-        Check("force, same contact time", "N", found.force, same.force, FORCE),
-        Check("vibration / E_0, same contact time", "1", vibration, same.vibration, VIBRATION, "absolute"),
-        Check("vibration / E_0", "1", vibration, exact.vibration, VIBRATION + shift, "absolute"),
+        Check("vibration / E_0", "1", vibration, exact.vibration, VIBRATION, "absolute"),
+        Check.shown("force, plain Sears", "N", found.force, plain.force, note),
+        Check.shown("contact time, plain Sears", "s", found.duration, plain.duration, note),
+        Check.shown("vibration / E_0, plain Sears", "1", vibration, plain.vibration, note),
         Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
     )
     return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))

@@ -5,8 +5,10 @@ from __future__ import annotations
 from math import inf, pi
 
 import numpy as np
+from numpy.typing import NDArray
 
 import meshes
+from fem_impact.solid.elements import lumped_mass
 from fem_impact.solid.model import Model
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Block, Body, body_model, placed, unsliced
@@ -53,12 +55,28 @@ def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f:
     points = placed(mesh.mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 0], velocity[:, 2] = -v_t, -v_n
-    # flat cells inside the round skin lack volume: the true mass is what strikes
-    rho = ball_mass(p) / (2 * float(np.sum(meshes.volume(mesh.mesh))))
     block = None
     if p["block"]:
         under = block_under(touch.radius, base, levels, v_t * touch.duration)
         block = Block(under, base / 2**levels, p["E"], p["nu"], p["rho"])
+    denser = _denser(points, mesh.mesh.cells, p)
+    E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(
-        Body(mesh, points, velocity, p["E"], p["nu"], rho, friction=f, block=block, turning=f > 0)
+        Body(mesh, points, velocity, E, nu, rho, denser, friction=f, block=block, turning=f > 0)
     )
+
+
+def _denser(points: NDArray[np.float64], cells: NDArray[np.int64], p: Values) -> NDArray[np.float64]:
+    """Return densities (cells,) over rho with which half the ball has a ball's mass and moment of inertia.
+
+    Flat cells inside the round skin lack volume, and masses at their corners lie too far out: the moment is
+    1.8 % too high with 8 cells across, which takes 0.01 of a sticking ball's tangential restitution. Both are
+    mended by a density that is linear in the square of the distance from the centre.
+    """
+    R, mass = p["radius"], lumped_mass(points, cells, p["rho"])
+    arm = (points[cells] - np.array([0.0, 0.0, R])) / R
+    out = (arm.mean(axis=1) ** 2).sum(axis=1)
+    masses, moments = mass.sum(axis=1), (mass * (arm[:, :, 0] ** 2 + arm[:, :, 2] ** 2)).sum(axis=1)
+    sums = [[masses.sum(), masses @ out], [moments.sum(), moments @ out]]
+    inner, slope = np.linalg.solve(sums, 0.5 * ball_mass(p) * np.array([1.0, 0.4]))
+    return np.asarray(inner + slope * out)

@@ -1,6 +1,8 @@
 """``thornton``: an elastic sphere that yields strikes a rigid frictionless plane at several speeds.
 
-While the contact is fully plastic and still small, restitution falls as speed to the power -1/4.
+While the contact is fully plastic and still small, restitution falls as speed to the power -1/4. Below, part
+of the contact is elastic and e falls more slowly; above, the tip is no longer a sphere and e falls faster.
+The slope is judged only if all speeds lie between; otherwise it is shown with the reason.
 """
 
 from __future__ import annotations
@@ -18,17 +20,22 @@ from fem_impact.verify import steel
 from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
 from fem_impact.verify.reference.hertz import contact_modulus
-from fem_impact.verify.reference.thornton import fitted_restitution, thornton_restitution, yield_speed
+from fem_impact.verify.reference.thornton import (
+    MEAN,
+    fitted_restitution,
+    plastic_radius,
+    plastic_speeds,
+    thornton_restitution,
+    yield_speed,
+)
 from fem_impact.verify.tips import contact_zone
 from fem_impact.verify.watch import Until
 
-__all__ = ["PROBLEM"]
+__all__ = ["PROBLEM", "judged_slope"]
 
-SLOPE, SLOPE_TOLERANCE, CONVERGED, FIT = -0.25, 0.05, 0.03, 0.25
-MEAN, FIRST = (
-    2.8,
-    1.6,
-)  # mean pressure of a full plastic contact, peak pressure of first yield, over yield stress
+SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
+FIRST = 1.6  # peak pressure of first yield over yield stress
+NAME = "slope of ln e over ln v"
 SPEEDS = 4
 ACROSS = 8  # least cells over the diameter
 FINER = 1.5
@@ -39,7 +46,7 @@ LONGEST, APART = 6.0, 0.1  # over the time of the indentation: when a run ends, 
 def _indentation(p: Values, v: float) -> tuple[float, float]:
     """Return contact radius, m, and duration, s, of a rigid plane pressed in by a constant pressure."""
     mass, pressure = _mass(p), MEAN * p["yield_stress"]
-    radius = (2 * mass * v**2 * p["radius"] / (pi * pressure)) ** 0.25
+    radius = plastic_radius(p["yield_stress"], p["radius"], mass, v)
     return radius, pi / 2 * sqrt(mass / (2 * pi * p["radius"] * pressure))
 
 
@@ -76,8 +83,20 @@ def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, 
     return rigid_of(model, state).V_n / v, worst, state.step, len(model.geometry.rod.mesh.cells)
 
 
+def judged_slope(p: Values, slope: float) -> Check:
+    """Judge the slope where the contact is fully plastic and small at all speeds, else show it."""
+    E_star = contact_modulus(p["E"], p["nu"])
+    low, high = plastic_speeds(p["yield_stress"], E_star, p["radius"], _mass(p))
+    if low <= p["slowest"] and p["fastest"] <= high:
+        return Check(NAME, "1", slope, SLOPE, SLOPE_TOLERANCE, "absolute")
+    if low > high:
+        return Check.shown(NAME, "1", slope, SLOPE, "this material is never fully plastic in a small contact")
+    note = f"fully plastic and small only from {low:.3g} to {high:.3g} m/s; set slowest and fastest within"
+    return Check.shown(NAME, "1", slope, SLOPE, note)
+
+
 def solve(p: Values) -> Solved:
-    """Compare the slope of ln e over ln v, its convergence, and e beside two published fits."""
+    """Compare the slope of ln e over ln v and its convergence; show e beside two published laws."""
     low, high = log(p["slowest"]), log(p["fastest"])
     speeds = [exp(low + (high - low) * i / (SPEEDS - 1)) for i in range(SPEEDS)]
     runs = [_restitution(p, v, p["cells"]) for v in speeds]
@@ -86,11 +105,12 @@ def solve(p: Values) -> Solved:
     fine = _restitution(p, middle, FINER * p["cells"])
     E_star, mass = contact_modulus(p["E"], p["nu"]), _mass(p)
     full, first = (yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (MEAN, FIRST))
+    law, fit = thornton_restitution(middle, full), fitted_restitution(middle, first)
     checks = (
-        Check("slope of ln e over ln v", "1", slope, SLOPE, SLOPE_TOLERANCE, "absolute"),
+        judged_slope(p, slope),
         Check("e, and with finer cells", "1", runs[SPEEDS // 2][0], fine[0], CONVERGED),
-        Check("e beside Thornton", "1", fine[0], thornton_restitution(middle, full), FIT),
-        Check("e beside the finite-element fit", "1", fine[0], fitted_restitution(middle, first), FIT),
+        Check.shown("e beside Thornton", "1", fine[0], law, "pressure cut off at 2.8 Y, elastic recovery"),
+        Check.shown("e beside the finite-element fit", "1", fine[0], fit, "ascribed, not checked in print"),
         Check("energy ledger / E_0", "1", max(run[1] for run in (*runs, fine)), 0.0, 1e-3, "at most"),
     )
     return Solved(checks, fine[2], fine[3])
@@ -101,8 +121,8 @@ PROBLEM = Problem(
     "a yielding sphere on a rigid plane: restitution falls as speed to the power -1/4",
     (
         Parameter("radius", "radius of the sphere", 9.5e-3, 1e-4, 1.0, "length"),
-        steel.speed("slowest", "lowest approach speed", 1.0),
-        steel.speed("fastest", "highest approach speed", 8.0),
+        steel.speed("slowest", "lowest approach speed", 2.5),
+        steel.speed("fastest", "highest approach speed", 10.0),
         *steel.elastic(),
         Parameter("yield_stress", "yield stress", 546e6, 1e5, 1e10, "stress"),
         Parameter("hardening", "plastic modulus", 0.0, 0.0, 1e11, "stress"),

@@ -59,6 +59,14 @@ def test_a_check_judges(kind, computed, passed, error):
         assert check.error == pytest.approx(error)
 
 
+def test_what_is_only_shown_judges_nothing_and_says_why():
+    check = Check.shown("x", "1", 2.0, 1.0, "far too large")
+    assert check.passed
+    assert check.error == pytest.approx(1.0)
+    assert (check.document()["tolerance"], check.document()["note"]) == (None, "far too large")
+    assert not Check.shown("x", "1", float("nan"), 1.0, "").passed
+
+
 def test_a_run_has_values_verdict_and_cost():
     good, bad = TWICE.run(), TWICE.run({"length": "1 m"})
     assert good.passed and not bad.passed

@@ -8,6 +8,8 @@ import pytest
 from fem_impact.verify.reference.finite_sphere import ball_excess, ball_impact, bounce, local_law
 from fem_impact.verify.reference.hertz import contact_modulus, hertz, radiated_share
 from fem_impact.verify.reference.radiation import radiated_energy
+from fem_impact.verify.reference.rod_end import end_excess, end_law
+from fem_impact.verify.reference.sears import rod_impact, sears
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9
 MASS = 4 / 3 * pi * R**3 * RHO
@@ -42,3 +44,33 @@ def test_a_small_contact_is_hertz():
     found = ball_impact(E_star, E_star, 0.29, R, MASS, 1e-3)
     assert found.force == pytest.approx(plain.force, rel=2e-3)
     assert found.duration == pytest.approx(plain.duration, rel=2e-3)
+
+
+def test_a_small_contact_on_a_flat_end_has_a_constant_excess():
+    """So the half-space comes out: 3 / (5 a) is 60 at the smallest contact, 6 at the largest."""
+    found = end_excess(np.array([0.01, 0.03, 0.1]), 0.29, 1e3)
+    assert found == pytest.approx(found[0], abs=0.01)
+    assert -0.7 < found[0] < -0.6  # a rod end alone is stiffer than a half-space with a bar in it
+
+
+def axial(speed, barrier):
+    """Return plain Sears and the round end for a 0.24 m rod with a 7 mm tip."""
+    rod, tip, own = (219e9, RHO, 0.24, R), 7e-3, contact_modulus(219e9, 0.29)
+    E_star = contact_modulus(219e9, 0.29, barrier, 0.29)
+    plain = sears(*rod, E_star, tip, speed)
+    largest = 1.3 * (3 * plain.force * tip / (4 * E_star)) ** (1 / 3)
+    force, approach = end_law(E_star, own, 0.29, R, tip, largest)
+    return plain, rod_impact(*rod, lambda d: float(np.interp(d, approach, force)), speed)
+
+
+def test_the_round_end_of_a_slow_rod_is_sears():
+    plain, found = axial(0.001, 206e9)
+    assert found.force == pytest.approx(plain.force, rel=1e-3)
+    assert found.duration == pytest.approx(plain.duration, rel=1e-3)
+    assert found.vibration == pytest.approx(plain.vibration, abs=1e-5)
+
+
+def test_the_round_end_shortens_the_contact_of_a_fast_rod():
+    plain, found = axial(2.0, np.inf)
+    assert found.duration / plain.duration == pytest.approx(0.977, abs=2e-3)
+    assert found.force / plain.force == pytest.approx(1.018, abs=2e-3)

@@ -3,7 +3,8 @@
 import pytest
 
 from fem_impact.verify import problem, verify
-from fem_impact.verify.spheres import plain_hertz, sphere_model
+from fem_impact.verify.bodies import rigid_of
+from fem_impact.verify.spheres import ball_mass, plain_hertz, sphere_model
 from fem_impact.verify.tips import run_strike
 
 
@@ -25,6 +26,14 @@ def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
     assert abs(found["contact time"]) < 0.02
     assert abs(found["radiated energy / E_0"]) < 0.15
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
+
+
+def test_a_coarse_ball_has_the_mass_and_moment_of_a_ball():
+    p = problem("oblique-sphere").values({"across": 8, "cells": 2, "block": 0})
+    model = sphere_model(p, plain_hertz(p, p["speed"]), 1.0)
+    found, mass = rigid_of(model, model.initial_state()), ball_mass(p)
+    assert found.mass == pytest.approx(mass, rel=1e-9)
+    assert found.inertia == pytest.approx(0.4 * mass * p["radius"] ** 2, rel=4e-3)
 
 
 def test_the_closing_loss_shrinks_with_the_cells():

@@ -8,8 +8,7 @@ approach under that pressure over the force, is
 
     C(a) = 3 / (5 E* a) + chi(a / R) / (E_1* R),    E_1* = E_1 / (1 - nu_1^2).
 
-The first term is Hertz'. chi has a logarithm because the stress of a point load on a ball has one
-(Sternberg & Rosenthal 1952, doi:10.1115/1.4010533).
+The first term is Hertz'. chi has a logarithm of a / R that goes with 1 - 2 nu.
 """
 
 from __future__ import annotations

@@ -1,8 +1,9 @@
 """Energy that a slow normal force sends as waves into an elastic half-space.
 
 Lamb's problem: a force F(t) on a spot much smaller than the waves radiates the power D (dF/dt)^2, half of it
-and more in Rayleigh waves (Miller & Pursey 1955, doi:10.1098/rspa.1955.0245; for impact Hunter 1957,
-doi:10.1016/0022-5096(57)90002-9, who has 1.127 (v / c0)^0.6 of the kinetic energy at one Poisson's ratio).
+and more in Rayleigh waves (Miller & Pursey 1955, On the partition of energy between elastic waves in a
+semi-infinite solid, Proc. R. Soc. A; for impact Hunter 1957, J. Mech. Phys. Solids 5, 162, after whom it is
+1.127 (v / c0)^0.6 of the kinetic energy at nu = 0.29).
 """
 
 from __future__ import annotations

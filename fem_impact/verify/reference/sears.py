@@ -1,11 +1,13 @@
 """A rod with a rounded end striking a plane along its axis: Sears' delay equation.
 
 The approach d of the end follows d' = v - [F(t) + 2 sum_n F(t - n 2 L / c0)] / (rho c0 A) with the
-Hertz force F = (4/3) E* sqrt(R) d^1.5 (Sears 1908, Goldsmith, Impact, 1960, section 3.1).
+Hertz force F = (4/3) E* sqrt(R) d^1.5 (Sears 1908, Goldsmith, Impact, 1960, section 3.1), or with another
+law of the contact.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import pi, sqrt
 
@@ -28,25 +30,39 @@ class AxialImpact:
     vibration: float
 
 
-def _history(stiffness: float, impedance: float, speed: float, dt: float, delay: int) -> NDArray[np.float64]:
+def _history(
+    law: Callable[[float], float], impedance: float, speed: float, dt: float, delay: int
+) -> NDArray[np.float64]:
     """Return the contact force at times k dt until the end leaves, by Heun's rule."""
     force, d = [0.0], 0.0
     while True:
         k = len(force)
         past = [sum(force[j - n * delay] for n in range(1, j // delay + 1)) for j in (k - 1, k)]
         first = speed - (force[-1] + 2 * past[0]) / impedance
-        guess = stiffness * max(d + dt * first, 0.0) ** 1.5
+        guess = law(max(d + dt * first, 0.0))
         second = speed - (guess + 2 * past[1]) / impedance
         d += 0.5 * dt * (first + second)
         if d <= 0.0:
             return np.array([*force, 0.0])
-        force.append(stiffness * d**1.5)
+        force.append(law(d))
+
+
+def rod_impact(
+    E: float, rho: float, length: float, radius: float, law: Callable[[float], float], speed: float
+) -> AxialImpact:
+    """Return the impact of a rod whose end pushes with the force ``law`` (m to N) of its approach."""
+    c0, area = sqrt(E / rho), pi * radius**2
+    dt = 2 * length / c0 / STEPS
+    F = _history(law, rho * c0 * area, speed, dt, STEPS)
+    rebound = float(F.sum()) * dt / (rho * area * length) - speed
+    e = rebound / speed
+    return AxialImpact(float(F.max()), dt * int(F.argmax()), dt * (len(F) - 1), e, 1 - e**2)
 
 
 def sears(
     E: float, rho: float, length: float, radius: float, E_star: float, tip_radius: float, speed: float
 ) -> AxialImpact:
-    """Return the impact of a rod (length, radius in m) with a tip of ``tip_radius``.
+    """Return the impact of a rod (length, radius in m) with a tip of ``tip_radius`` by Hertz' law.
 
     Examples
     --------
@@ -54,9 +70,5 @@ def sears(
     >>> round(rod.force, -1), round(rod.duration * 1e6), round(rod.vibration, 4)
     (17780.0, 219, 0.0024)
     """
-    c0, area = sqrt(E / rho), pi * radius**2
-    dt = 2 * length / c0 / STEPS
-    F = _history(4 / 3 * E_star * sqrt(tip_radius), rho * c0 * area, speed, dt, STEPS)
-    rebound = float(F.sum()) * dt / (rho * area * length) - speed
-    e = rebound / speed
-    return AxialImpact(float(F.max()), dt * int(F.argmax()), dt * (len(F) - 1), e, 1 - e**2)
+    k = 4 / 3 * E_star * sqrt(tip_radius)
+    return rod_impact(E, rho, length, radius, lambda d: k * d**1.5, speed)

@@ -1,10 +1,35 @@
-"""Restitution of an elastic, perfectly plastic sphere: Thornton (1997), doi:10.1115/1.2787319, and a fit."""
+"""Restitution of an elastic, perfectly plastic sphere: Thornton (1997, J. Appl. Mech. 64, 383), and a fit.
+
+Also the speeds between which a contact is fully plastic and small, where restitution goes as v^(-1/4).
+"""
 
 from __future__ import annotations
 
 from math import pi, sqrt
 
-__all__ = ["fitted_restitution", "thornton_restitution", "yield_speed"]
+__all__ = ["fitted_restitution", "plastic_radius", "plastic_speeds", "thornton_restitution", "yield_speed"]
+
+# mean pressure of a fully plastic contact over yield stress, the E* a / (Y R) from which it has stopped
+# rising (Johnson, Contact Mechanics, 1985, section 6.3), and the a / R up to which the contact is small
+MEAN, FULL, SMALL = 2.8, 40.0, 0.2
+
+
+def plastic_radius(yield_stress: float, radius: float, mass: float, speed: float) -> float:
+    """Return the contact radius, m, at which a constant mean pressure of 2.8 Y has stopped a sphere."""
+    return float((2 * mass * speed**2 * radius / (pi * MEAN * yield_stress)) ** 0.25)
+
+
+def plastic_speeds(yield_stress: float, E_star: float, radius: float, mass: float) -> tuple[float, float]:
+    """Return the speeds, m/s, from which the contact is fully plastic and up to which it is small.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> [round(v, 2) for v in plastic_speeds(546e6, 239e9, 9.5e-3, 4 / 3 * pi * 9.5e-3**3 * 7850)]
+    [2.26, 10.81]
+    """
+    unit = plastic_radius(yield_stress, radius, mass, 1.0)  # goes as the root of the speed
+    return (FULL * yield_stress * radius / (E_star * unit)) ** 2, (SMALL * radius / unit) ** 2
 
 
 def yield_speed(limit: float, E_star: float, radius: float, mass: float) -> float:
@@ -31,7 +56,8 @@ def fitted_restitution(speed: float, first_yield: float) -> float:
     """Return e of finite-element runs of elastic, perfectly plastic spheres, 2.08 (v_y / v)^(1/4).
 
     v_y is the speed of first yield, peak pressure 1.6 times the yield stress; the fit holds for contacts that
-    are fully plastic and small (Wu, Li & Thornton 2003, doi:10.1016/S0734-743X(03)00014-9).
+    are fully plastic and small. It is ascribed to Wu, Li & Thornton (Int. J. Impact Eng. 28, 2003); the
+    paper was not at hand, so nothing is judged by it.
 
     Examples
     --------
