@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import inf, pi, sqrt
+from math import inf, pi, sin, sqrt
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
 from fem_impact.verify import steel
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
-from fem_impact.verify.reference.hertz import contact_modulus, hertz
+from fem_impact.verify.reference.hertz import contact_modulus, equivalent_radius, hertz
 from fem_impact.verify.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
 from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
 from fem_impact.verify.rod_scene import rod_scene
@@ -40,7 +40,7 @@ def _reference(p: Values, scene: Scene) -> ObliqueRebound:
         (rho, z),
     )
     E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"])
-    tip = sqrt(p["tip_radius"] * rho / np.sin(p["angle"]))
+    tip = equivalent_radius(p["tip_radius"], rho / sin(p["angle"]))
     reach = 1.1 * hertz(E_star, tip, body.mass, p["v_n"]).radius
     row = SpringRow(E_star, tangential_ratio(p["nu"]) * E_star, tip, p["f"], reach)
     return oblique_drop(rod, row, -p["v_n"], -p["v_t"], p["max_time"])
@@ -98,7 +98,7 @@ PARAMETERS = (
     *steel.elastic(),
     Parameter("elastic_barrier", "1: an elastic block, 0: a rigid plane", 1, 0, 1, multiple=1),
     Parameter("barrier_E", "Young's modulus of the block", 206e9, 1e6, 2e12, "stress"),
-    Parameter("tip_size", "cell edge at the contact", 0.35e-3, 1e-5, 5e-3, "length"),
+    Parameter("tip_size", "cell edge at the contact", 0.2e-3, 1e-5, 5e-3, "length"),
     steel.across(),
     Parameter("max_time", "time after which a run stops", 2e-3, 1e-5, 1e-2, "time"),
 )
