@@ -56,7 +56,7 @@ def test_the_ladder_has_every_kind_of_setting():
     assert len(set(names)) == len(names)
     assert names[:3] == ["rigid", "modal", "solid 0.792 mm"]
     assert "solid 0.396 and 0.237 mm extrapolated" in names
-    for effect in ("vibration", "friction", "rod-plasticity", "gravity", "large-rotation"):
+    for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening", "large-rotation"):
         assert f"solid 0.594 mm without {effect}" in names
     assert "solid 0.594 mm with an elastic barrier" in names
     for setting in ladder(SCENE):
@@ -99,7 +99,7 @@ def test_a_pair_costs_both_meshes_and_assumes_first_order(cost):
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):
     without = by_name(cost, "without friction")
     assert without.error["mu"] == pytest.approx(1.0, rel=1e-3)
-    assert by_name(cost, "without gravity").error["mu"] == 0.0
+    assert by_name(cost, "without rate-hardening").error["mu"] == 0.0
     assert all(one.kind != "effect" for one in front(cost.settings, ["mu"]))
     assert without.front == []
 
