@@ -167,7 +167,7 @@ def test_energy_and_momentum(v_n, v_t, omega, f, frequency, along, plastic):
         patch.setattr(impact, "modal_rod", lambda _: base)
         found = solve(scene)
     assert abs(found.residual) < 1e-4 * found.E_0
-    assert found.friction > -1e-6 * found.E_0
+    assert found.friction > -1e-5 * found.E_0  # springs give back what they took, but for the step
     assert found.vibration <= found.E_0 - found.kinetic - found.plastic - found.friction + 1e-4 * found.E_0
     impulse = found.contacts[:, 2:].sum(axis=0)
     gained = 0.178 * np.array([found.V_n + v_n, found.V_t + v_t])
