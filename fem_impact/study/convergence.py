@@ -25,7 +25,8 @@ Row = dict[str, Any]
 SCHEMA = "fem-impact/convergence/1"
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
 # cells over the diameter of the body; every one is split as often, so all meshes of a set are alike
-ACROSS, QUICK_ACROSS, LEVELS = (6, 8, 10, 12), (4, 6, 8), 3
+ACROSS, LEVELS = (6, 8, 10, 12), 3
+QUICK_ACROSS, QUICK_LEVELS = (6, 8, 10), 2
 QUANTITIES = {
     "e": "e_paper",
     "mu": "mu",
@@ -38,7 +39,7 @@ QUANTITIES = {
 }
 
 
-def family(scene: Scene, across: Iterable[int]) -> list[Scene]:
+def family(scene: Scene, across: Iterable[int], levels: int) -> list[Scene]:
     """Return the scene on meshes that differ in the size of all cells and in nothing else."""
     d = scene.projectile.diameter
     return [
@@ -46,7 +47,7 @@ def family(scene: Scene, across: Iterable[int]) -> list[Scene]:
             scene,
             {
                 "accuracy.across": cells,
-                "accuracy.tip_size": f"{d / cells / 2**LEVELS * 1e3:.9g} mm",
+                "accuracy.tip_size": f"{d / cells / 2**levels * 1e3:.9g} mm",
                 "save.frames": 0,
             },
         )
@@ -56,7 +57,7 @@ def family(scene: Scene, across: Iterable[int]) -> list[Scene]:
 
 def jobs_of(name: str, quick: bool) -> list[Job]:
     """Return the jobs of a set, one a mesh, from coarse to fine."""
-    scenes = family(load(name), QUICK_ACROSS if quick else ACROSS)
+    scenes = family(load(name), *((QUICK_ACROSS, QUICK_LEVELS) if quick else (ACROSS, LEVELS)))
     return [Job(f"{name}-{scene.accuracy.across}", scene) for scene in scenes]
 
 

@@ -33,7 +33,7 @@ def study(out, broken=()):
 
 
 def test_all_meshes_of_a_family_are_split_as_often():
-    scenes = family(load("t5b"), (6, 8, 12))
+    scenes = family(load("t5b"), (6, 8, 12), LEVELS)
     assert [levels_of(scene) for scene in scenes] == [LEVELS] * 3
     sizes = [scene.accuracy.tip_size for scene in scenes]
     assert sizes[0] / sizes[2] == pytest.approx(2.0)
