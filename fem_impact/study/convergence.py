@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.figures.convergence import convergence_figure
+from fem_impact.figures.lines import Panel, Series
 from fem_impact.outcome import Outcome
-from fem_impact.output import write_text
+from fem_impact.output.tables import Cell
 from fem_impact.scale import Job, Results
 from fem_impact.scene import load, replace_all
-from fem_impact.study.markdown import table
-from fem_impact.study.request import Request, StudyResult, failures_of
+from fem_impact.study.document import Paper, Picture, Sheet, publish
+from fem_impact.study.request import Request, StudyResult
 from fem_impact.study.richardson import limit
 
 if TYPE_CHECKING:
@@ -22,11 +20,13 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-SCHEMA = "fem-impact/convergence/1"
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
 # cells over the diameter of the body; every one is split as often, so all meshes of a set are alike
 ACROSS, LEVELS = (6, 8, 10, 12), 3
 QUICK_ACROSS, QUICK_LEVELS = (6, 8, 10), 2
+DEFAULT = 0.019 / 8 / 2**3  # m, tip of the measured sets at their own accuracy
+TOLD = ("e", "mu", "vibration/E_0")
+CAPTION = "Each quantity against the size of the elements; rings: limits for vanishing elements."
 QUANTITIES = {
     "e": "e_paper",
     "mu": "mu",
@@ -72,7 +72,15 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
     for name in request.ids or SETS:
         runs = [results[job.name] for job in jobs_of(name, request.quick)]
         rows += convergence_rows(name, [run for run in runs if isinstance(run, Outcome)])
-    return _write(rows, failures_of(results), request.out)
+    paper = Paper(
+        "convergence",
+        "What vanishing elements would give",
+        [_sentence(row) for row in rows if row["quantity"] in TOLD],
+        (Picture("convergence", CAPTION, tuple(_panels(rows))),) if rows else (),
+        (_sheet(rows),),
+        ("Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",),
+    )
+    return publish(paper, request, results)
 
 
 def convergence_rows(name: str, runs: Sequence[Outcome]) -> list[Row]:
@@ -98,24 +106,59 @@ def _limit(sizes: list[float], values: list[float]) -> Row:
     }
 
 
-def _write(rows: list[Row], failures: list[dict[str, str]], out: Path) -> StudyResult:
-    text = convergence_table(rows)
-    document = {"schema": SCHEMA, "rows": rows, "failures": failures}
-    write_text(out / "convergence.json", json.dumps(document, indent=1, allow_nan=False))
-    write_text(out / "summary.md", text)
-    convergence_figure(rows, out / "convergence.svg")
-    return StudyResult(document, text)
+def _sentence(row: Row) -> str:
+    size, value = row["tip_size_m"][-1] * 1e3, row["values"][-1]
+    order = "no clear order" if row["order"] is None else f"order {row['order']:.1f}"
+    return (
+        f"{row['set']}, {row['quantity']}: {value:.4g} ± {row['band']:.2g} at {size:.3g} mm, "
+        f"limit {row['limit']:.4g} ({order}); at {DEFAULT * 1e3:.3g} mm, the usual mesh, "
+        f"{_usual(row) - row['limit']:+.2g} off the limit."
+    )
 
 
-def convergence_table(rows: list[Row]) -> str:
-    """Return Markdown: a line a set and quantity, its value on each mesh, limit, order and band."""
+def _usual(row: Row) -> float:
+    """Return the value on the mesh nearest to the usual one."""
+    nearest = min(range(len(row["values"])), key=lambda i: abs(row["tip_size_m"][i] - DEFAULT))
+    return float(row["values"][nearest])
+
+
+def _sheet(rows: list[Row]) -> Sheet:
+    """Return a line a set and quantity: its value on each mesh, limit, order, band and scatter."""
     sizes = sorted({size for row in rows for size in row["tip_size_m"]}, reverse=True)
-    head = ["set", "quantity", *(f"{size * 1e3:.3g} mm" for size in sizes), "limit", "order", "band"]
-    return table(head, [_line(row, sizes) for row in rows]) + "\n"
+    columns = (
+        "set",
+        "quantity",
+        *(f"{size * 1e3:.3g} mm" for size in sizes),
+        "limit",
+        "order",
+        "band",
+        "scatter",
+    )
+    return Sheet(
+        "convergence",
+        "Values by the element at the tip; order – is none",
+        columns,
+        [_line(r, sizes) for r in rows],
+    )
 
 
-def _line(row: Row, sizes: list[float]) -> list[str]:
+def _line(row: Row, sizes: list[float]) -> list[Cell]:
     values = dict(zip(row["tip_size_m"], row["values"], strict=True))
-    cells = [f"{values[size]:.4g}" if size in values else "" for size in sizes]
-    order = "-" if row["order"] is None else f"{row['order']:.1f}"
-    return [row["set"], row["quantity"], *cells, f"{row['limit']:.4g}", order, f"{row['band']:.2g}"]
+    found = (row[key] for key in ("limit", "order", "band", "scatter"))
+    return [row["set"], row["quantity"], *(values.get(size) for size in sizes), *found]
+
+
+def _panels(rows: list[Row]) -> list[Panel]:
+    """Return a panel a quantity: a line a set, and its limit at element size 0."""
+    return [_panel(name, [row for row in rows if row["quantity"] == name]) for name in QUANTITIES]
+
+
+def _panel(name: str, rows: list[Row]) -> Panel:
+    lines = [
+        Series(row["set"], [1e3 * size for size in row["tip_size_m"]], row["values"], colour=at)
+        for at, row in enumerate(rows)
+    ]
+    limits = [
+        Series(f"{row['set']}, limit", [0.0], [row["limit"]], "rings", at) for at, row in enumerate(rows)
+    ]
+    return Panel(name, "element at the tip, mm", name, (*lines, *limits))
