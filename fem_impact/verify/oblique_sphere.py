@@ -1,8 +1,13 @@
 """``oblique-sphere``: an elastic sphere strikes obliquely with Coulomb friction.
 
-The reference is Maw, Barber & Fawcett's incremental contact of two bodies of like material, which is what the
-block is. On a rigid plane (block = 0) a normal load also shifts the skin sideways, so blows that stick for
-most of the contact differ from it: seen were 0.19 in tangential restitution at 5 degrees, f = 0.092.
+Maw, Barber & Fawcett's incremental contact holds for a contact much smaller than the sphere. A ball of finite
+size is stiffer along the normal and softer tangentially, which takes 0.020 of the tangential restitution of
+the alumina case at 5 degrees and 3.9 m/s (a / R = 0.065), 0.006 at 0.1 m/s and nothing once the contact
+slides; the same incremental contact with the ball's own two stiffnesses decides, the plain one is shown.
+
+Both bodies must be of like material, which the block is. On a rigid plane (block = 0) a normal load also
+shifts the skin sideways, so blows that stick for most of the contact differ: seen were 0.19 in tangential
+restitution at 5 degrees, f = 0.092, nu = 0.23. With nu near 0.5 that coupling vanishes.
 """
 
 from __future__ import annotations
@@ -11,7 +16,8 @@ from math import cos, pi, sin
 
 from fem_impact.verify import steel
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
-from fem_impact.verify.reference.sphere import oblique_sphere
+from fem_impact.verify.reference.hertz import contact_modulus
+from fem_impact.verify.reference.sphere import oblique_ball, oblique_sphere
 from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, sphere_model
 from fem_impact.verify.tips import run_strike
 
@@ -25,14 +31,18 @@ def solve(p: Values) -> Solved:
     """Compare tangential restitution of the centre, spin and impulse ratio."""
     v_n, v_t = p["speed"] * cos(p["angle"]), p["speed"] * sin(p["angle"])
     R, normal = p["radius"], plain_hertz(p, v_n)
-    exact = oblique_sphere(modulus(p), p["nu"], R, ball_mass(p), p["f"], v_n, v_t)
+    blow = (p["nu"], R, ball_mass(p), p["f"], v_n, v_t)
+    plain = oblique_sphere(modulus(p), *blow)
+    exact = oblique_ball(modulus(p), contact_modulus(p["E"], p["nu"]), *blow)
     model = sphere_model(p, normal, v_n, v_t, p["f"])
     found = run_strike(model, AFTER * normal.duration, normal.duration)
     m = found.motion
     mu = (m.V_t + v_t) / (m.V_n + v_n)
     slides = exact.ratio > 0.999 * p["f"]
+    back, note = -m.V_t / v_t, f"for a / R far below 1, here {normal.radius / R:.3f}"
     checks = (
-        Check("tangential restitution", "1", -m.V_t / v_t, exact.centre_t / v_t, RESTITUTION, "absolute"),
+        Check("tangential restitution", "1", back, exact.centre_t / v_t, RESTITUTION, "absolute"),
+        Check.shown("tangential restitution, plain", "1", back, plain.centre_t / v_t, note),
         Check("spin R Omega / v_t", "1", -R * m.Omega / v_t, exact.spin / v_t, SLIPPED, "absolute"),
         Check("impulse ratio mu / f", "1", mu / p["f"], exact.ratio / p["f"], RATIO if slides else SLIPPED),
         Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),

@@ -126,7 +126,7 @@ PROBLEM = Problem(
         *steel.elastic(),
         Parameter("yield_stress", "yield stress", 546e6, 1e5, 1e10, "stress"),
         Parameter("hardening", "plastic modulus", 0.0, 0.0, 1e11, "stress"),
-        Parameter("cells", "cells over the contact radius", 5, 2, 20),
+        Parameter("cells", "cells over the contact radius", 7, 2, 20),
     ),
     solve,
 )

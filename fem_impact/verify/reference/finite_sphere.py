@@ -13,6 +13,7 @@ The first term is Hertz'. chi has a logarithm of a / R that goes with 1 - 2 nu.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from math import ceil, log, pi
 
@@ -22,7 +23,17 @@ from scipy.integrate import cumulative_simpson
 
 from fem_impact.verify.reference.hertz import HertzImpact, hertz
 
-__all__ = ["ball_excess", "ball_impact", "bounce", "local_law"]
+__all__ = [
+    "ball_excess",
+    "ball_impact",
+    "bounce",
+    "braked",
+    "fitted",
+    "legendre",
+    "local_law",
+    "pressure_rings",
+    "surface_shape",
+]
 
 Array = NDArray[np.float64]
 
@@ -32,7 +43,7 @@ SMALLEST, LARGEST = 5e-3, 0.4  # a / R: below, the excess is under 0.5 % of the 
 RESOLUTION = 40.0  # last order of the series times a / R
 
 
-def _legendre(theta: Array, orders: int) -> tuple[Array, Array]:
+def legendre(theta: Array, orders: int) -> tuple[Array, Array]:
     """Return P_n(cos theta) and its derivative by theta, both (orders, points)."""
     x = np.cos(theta)
     P = np.ones((orders, len(x)))
@@ -44,23 +55,28 @@ def _legendre(theta: Array, orders: int) -> tuple[Array, Array]:
     return P, slope
 
 
+def pressure_rings(a: float) -> tuple[Array, Array]:
+    """Return angles (k,) from the pole and p rho d(rho) (k,) of Hertz' pressure of a unit force."""
+    node, weight = np.polynomial.legendre.leggauss(GAUSS)
+    s = pi / 4 * (node + 1)  # rho = a sin(s) makes the pressure's edge smooth
+    ring = 3 / (2 * pi) * np.sin(s) * np.cos(s) ** 2 * pi / 4 * weight
+    return np.arcsin(a * np.sin(s)), ring
+
+
 def _load(a: float, orders: int) -> tuple[Array, Array]:
     """Return the series (orders,) of radial and polar traction of Hertz' pressure on a unit ball.
 
     A unit force pushes along the axis, as a flattened cap is pushed, against the pole theta = 0.
     """
-    node, weight = np.polynomial.legendre.leggauss(GAUSS)
-    s = pi / 4 * (node + 1)  # rho = a sin(s) makes the pressure's edge smooth
-    theta = np.arcsin(a * np.sin(s))
-    ring = 3 / (2 * pi) * np.sin(s) * np.cos(s) ** 2 * pi / 4 * weight  # p rho d(rho)
-    P, slope = _legendre(theta, orders)
+    theta, ring = pressure_rings(a)
+    P, slope = legendre(theta, orders)
     n = np.arange(orders)
     radial = -(2 * n + 1) / 2 * (P @ (ring * np.cos(theta)))
     polar = (2 * n + 1) / (2 * np.maximum(n * (n + 1), 1)) * (slope @ (ring * np.sin(theta)))
     return radial, polar
 
 
-def _shape(nu: float, radial: Array, polar: Array) -> tuple[Array, Array]:
+def surface_shape(nu: float, radial: Array, polar: Array) -> tuple[Array, Array]:
     """Return the displacement series of the skin of a unit ball with 2 G = 1, without order 1."""
     n = np.arange(len(radial), dtype=float)
     # tractions of Lur'e's amplitudes A and B
@@ -75,7 +91,7 @@ def _shape(nu: float, radial: Array, polar: Array) -> tuple[Array, Array]:
     return out, along
 
 
-def _braked(nu: float, polar: float) -> tuple[float, float]:
+def braked(nu: float, polar: float) -> tuple[float, float]:
     """Return the displacement of order 1: the body force against a unit force, the mass centre at rest.
 
     c r^2 e_z balances the body force 3 / (4 pi); Lur'e's A of order 1 sets the traction right.
@@ -97,8 +113,8 @@ def ball_excess(a: float, nu: float) -> float:
     """
     orders = ceil(RESOLUTION / a)
     radial, polar = _load(a, orders)
-    out, along = _shape(nu, radial, polar)
-    out[1], along[1] = _braked(nu, float(polar[1]))
+    out, along = surface_shape(nu, radial, polar)
+    out[1], along[1] = braked(nu, float(polar[1]))
     n = np.arange(orders)
     work = 4 * pi / (2 * n + 1) * (radial * out + n * (n + 1) * polar * along)
     stiffness = 1 / (1 - nu)  # E / (1 - nu^2) with 2 G = 1
@@ -131,16 +147,20 @@ def ball_impact(
     """
     plain = hertz(E_star, radius, mass, speed)
     a = plain.radius * np.linspace(0.0, 1.3, POINTS)[1:]
-    chi: Array = np.polyval(_excess_series(nu), np.log(a / radius)).astype(np.float64)
-    force, approach = local_law(E_star, radius, a, chi / (E_ball * radius))
+    force, approach = local_law(E_star, radius, a, fitted(ball_excess, nu, a / radius) / (E_ball * radius))
     return bounce(force, approach, a, mass, speed)
 
 
+def fitted(excess: Callable[[float, float], float], nu: float, a: Array) -> Array:
+    """Return ``excess(a, nu)`` at many contact radii (k,), in ball radii, by a polynomial in log(a)."""
+    return np.asarray(np.polyval(_excess_series(excess, nu), np.log(a)))
+
+
 @cache
-def _excess_series(nu: float) -> Array:
-    """Return chi as a polynomial (5,) of the logarithm of a / R, fitted over contacts of some size."""
+def _excess_series(excess: Callable[[float, float], float], nu: float) -> Array:
+    """Return the polynomial (5,), fitted over contacts of some size."""
     reach = np.exp(np.linspace(log(SMALLEST), log(LARGEST), 9))
-    return np.polyfit(np.log(reach), [ball_excess(float(a), nu) for a in reach], 4)
+    return np.polyfit(np.log(reach), [excess(float(a), nu) for a in reach], 4)
 
 
 def bounce(force: Array, approach: Array, a: Array, mass: float, speed: float) -> HertzImpact:
