@@ -15,13 +15,15 @@ def test_a_coarse_tip_on_a_rigid_plane():
 
 @pytest.mark.validation
 @pytest.mark.parametrize(
-    ("f", "e", "bending"), [(0.0, 0.853, 0.058), (0.34, 0.396, 0.114), (0.55, 0.733, 0.036)]
+    ("f", "e", "away", "bending"),
+    [(0.0, 0.853, 0.04, 0.058), (0.34, 0.396, 0.04, 0.114), (0.55, 0.733, 0.08, 0.036)],
 )
-def test_the_long_rod_on_an_elastic_block(f, e, bending):
+def test_the_long_rod_on_an_elastic_block(f, e, away, bending):
+    """The modal reference, to which e must be within .04, is itself .04 from the last printed e."""
     found = verify("oblique-rod", {"f": f})
     assert found.passed
     values = {c.name: c.computed for c in found.checks}
-    assert values["restitution e"] == pytest.approx(e, abs=0.06)
+    assert values["restitution e"] == pytest.approx(e, abs=away)
     assert values["bending energy / E_0"] == pytest.approx(bending, rel=0.25)
 
 
