@@ -58,7 +58,8 @@ def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
     -----
     L. Eca and M. Hoekstra, J. Comput. Phys. 262 (2014) 104-130, doi:10.1016/j.jcp.2014.01.006: q_0 + a h^p
     where .5 <= p <= 2, else fixed orders with a larger safety factor; the scatter of noisy data widens
-    the band. With three meshes nothing is left over to tell scatter from trend, so it reads 0.
+    the band. Their fit of two terms is left out: with four meshes it follows the scatter. With three meshes
+    nothing is left over to tell scatter from trend, so it reads 0.
 
     Examples
     --------
@@ -80,10 +81,7 @@ def _best(h: Array, q: Array) -> tuple[float | None, _Fit]:
     p = float(minimize_scalar(lambda p: _misfit(h, q, (p,)), bounds=(0.1, 4.0), method="bounded").x)
     if LOWEST <= p <= HIGHEST + 0.1:
         return p, _least_squares(h, q, (p,), 3)
-    fixed: list[tuple[float, ...]] = [(1.0,), (2.0,)]
-    if p < LOWEST and len(h) > 3:
-        fixed.append((1.0, 2.0))
-    fits = (_least_squares(h, q, powers, 1 + len(powers)) for powers in fixed)
+    fits = (_least_squares(h, q, (fixed,), 2) for fixed in (1.0, 2.0))
     return None, min(fits, key=lambda fit: fit.scatter)
 
 
