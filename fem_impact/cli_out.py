@@ -11,7 +11,7 @@ __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
 _OF_STUDIES = ("store.sqlite", "ledger.csv")
-_OF_RUNS = ("scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf")
+_OF_RUNS = ("scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf", "row.json")
 _OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *_OF_RUNS)
 
 

@@ -43,6 +43,7 @@ class Options(argparse.Namespace):
     name: str = ""
     out: Path | None = None
     problem: str | None = None
+    only: str = ""
     parameters: bool = False
     readme: str = ""
     quick: bool = False
@@ -91,6 +92,7 @@ def build_parser() -> argparse.ArgumentParser:
         _add_check,
         _add_cost,
         _add_verify,
+        _add_stress,
     ):
         add(commands)
     add_rigid_commands(commands, _command)
@@ -211,6 +213,18 @@ def _add_verify(commands: Commands) -> None:
     )
     parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
     parser.add_argument("--readme", metavar="FILE", help="run all problems and write the results into a page")
+
+
+def _add_stress(commands: Commands) -> None:
+    words = "run hard cases and show that each closes its balances, is refused or detected"
+    parser = _command(commands, "stress", words, "fem_impact.cli_stress:stress")
+    parser.add_argument("--only", default="", metavar="NAME", help="one case (default: all of them)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/stress)")
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="cases at a time (default: one a core)"
+    )
+    parser.add_argument("--readme", metavar="FILE", help="run all cases and write the table into a page")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_scene_words(parser: argparse.ArgumentParser) -> None:

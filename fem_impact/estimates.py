@@ -15,6 +15,8 @@ from dataclasses import dataclass
 from math import pi, sin, sqrt
 from typing import TYPE_CHECKING
 
+from fem_impact.errors import SceneError
+
 if TYPE_CHECKING:
     from fem_impact.scene import Material, Scene
     from rigid import Projectile
@@ -110,3 +112,29 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     return ContactEstimate(
         depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit
     )
+
+
+def require_shallow(scene: Scene) -> None:
+    """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
+    depth, radius = contact_estimate(scene).depth, scene.projectile.diameter / 2
+    if depth > radius:
+        raise SceneError(
+            f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
+            f"({radius * 1e3:g} mm): the whole end would flow and break, which the model does not hold.",
+            key="impact.v_n",
+            value=f"{scene.impact.v_n:g} m/s",
+            remedy="Give a lower speed or stronger materials.",
+        )
+
+
+def require_approach(scene: Scene) -> None:
+    """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
+    d_c, _ = projectile(scene).arms(scene.impact.angle)
+    speed = scene.impact.v_n + scene.impact.omega * float(d_c)
+    if speed >= 0:
+        raise SceneError(
+            f"lifts the contact point off the barrier at {speed:.3g} m/s: another part would strike.",
+            key="impact.omega",
+            value=f"{scene.impact.omega:g} rad/s",
+            remedy=f"Keep it under {abs(scene.impact.v_n / float(d_c)):.4g} rad/s, or turn it round.",
+        )

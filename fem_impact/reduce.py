@@ -8,6 +8,7 @@ import numpy as np
 
 import rigid
 from fem_impact.effects import choices, neglected
+from fem_impact.errors import RunError
 from fem_impact.heating import flash, halves, heat_keys
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
@@ -29,7 +30,16 @@ RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 
 
 def reduce(scene: Scene, result: SolidResult) -> Outcome:
-    """Return the Outcome of a run; what cannot be known is null with its reason."""
+    """Return the Outcome of a run; what cannot be known is null with its reason.
+
+    Raises
+    ------
+    RunError
+        If the run ended before the rod touched the barrier: there is no impact to reduce.
+    """
+    if not result.model.book.intervals:
+        past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
+        raise RunError(f"There was no contact in {past}. {result.reason}")
     open_ledger = _open_ledger(result)
     finished = result.finished and not open_ledger
     values = provenance(

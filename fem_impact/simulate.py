@@ -100,9 +100,15 @@ def _begin(scene: Scene, out: Path) -> None:
 
 def require_runnable(scene: Scene, fidelity: str) -> None:
     """Refuse what the fidelity cannot compute (SceneError)."""
+    from fem_impact.estimates import require_approach
+
+    require_approach(scene)
     if fidelity == "solid":
         from fem_impact.effects import specify
+        from fem_impact.estimates import require_shallow
         from fem_impact.solid.build import require_fine_zone
+
+        require_shallow(scene)
 
         require_fine_zone(scene, specify(scene))
 

@@ -63,6 +63,8 @@ def _checked(value: Any, field: Field) -> float | int:
         raise SceneError("must be a finite number.", key=field.key, value=value)
     if field.whole and number != int(number):
         raise SceneError(f"({field.meaning}) must be a whole number.", key=field.key, value=value)
+    if field.even and number % 2:
+        raise SceneError(f"({field.meaning}) must be an even number.", key=field.key, value=value)
     if not field.allows(number):
         shown = field.write(number) if not field.whole else value
         problem = f"({field.meaning}) must be {field.bounds}."

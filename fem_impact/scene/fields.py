@@ -35,6 +35,7 @@ class Field:
     low_open: bool = False
     high_open: bool = False
     whole: bool = False
+    even: bool = False
     default: float | None = None
     source: str = ""
     remedy: str = ""
@@ -120,9 +121,10 @@ ACCURACY = (
         "across",
         "cells over the diameter of the body",
         "",
-        2,
+        6,
         64,
         whole=True,
+        even=True,
         default=8,
         source="chosen for this package; check its cost with a second value",
     ),

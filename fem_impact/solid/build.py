@@ -262,8 +262,10 @@ def assembled(body: Body, size: int, shift: int = 0) -> sp.csr_matrix:
     return assemble(body.stiffness, body.mesh.cells, T)
 
 
-def build(scene: Scene, spec: ModelSpec) -> Model:
+def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
+
+    ``gap`` is the height of the lowest point over the barrier at time 0, m; below 0 bodies overlap.
 
     Raises
     ------
@@ -271,7 +273,7 @@ def build(scene: Scene, spec: ModelSpec) -> Model:
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
     require_fine_zone(scene, spec)
-    geometry = build_geometry(scene, START_GAP, spec.meshed_barrier, spec.vibrating)
+    geometry = build_geometry(scene, gap, spec.meshed_barrier, spec.vibrating)
     layout = number(geometry.rod, geometry.barrier)
     bodies = _bodies(scene, spec, geometry, layout)
     mass = assemble_masses(bodies, layout)

@@ -9,29 +9,46 @@ import numpy as np
 from fem_impact.solid.contact import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+from fem_impact.solid.stepguard import when_and_where
 from fem_impact.solid.yielding import YieldingZone
 from meshes import SKIN
 
+DEEP = 0.25  # of the tip size
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
 class SkinWatch:
-    """Watches the rod's skin outside the contact patch: it must never come down to a meshed barrier."""
+    """Watches the rod's skin outside the contact patch: it must never come down to a meshed barrier.
+
+    A little, as the barrier's surface sinks around the contact, is doubted; more than `DEEP` of the tip size
+    stops the run, for nothing holds the rod there.
+    """
 
     every = 100
     moving: ClassVar[tuple[str, ...]] = ("lowest",)
 
     def __init__(self, model: Model) -> None:
         contact, mesh = model.impulses[-1], model.geometry.rod.mesh
-        heights = model.layout.rod[np.unique(mesh.faces_with(SKIN)), 2]
-        touching = contact.rod.places[:, 2] if isinstance(contact, SurfaceContact) else heights
-        self.rows = heights[~np.isin(heights, touching)]
+        skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
+        touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
+        self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]
+        self.rows = self.places[:, 2]
         self.lowest = np.inf
+        self.deepest = -DEEP * model.geometry.tip_size
+        self.reason = ""
 
     def observe(self, state: State) -> bool:
-        """Keep the lowest height so far."""
-        self.lowest = min(self.lowest, float(np.min(state.x[self.rows], initial=np.inf)))
-        return False
+        """Keep the lowest height so far; stop when it is deep."""
+        heights = state.x[self.rows]
+        self.lowest = min(self.lowest, float(np.min(heights, initial=np.inf)))
+        if self.lowest >= self.deepest:
+            return False
+        place = self.places[int(np.argmin(heights))]
+        self.reason = (
+            "The rod came down on the barrier outside the meshed contact "
+            f"{when_and_where(state, state.x[place])} Use the barrier-rigid effect, or another angle."
+        )
+        return True
 
     def doubt(self) -> str:
         """Return a sentence when skin went below the barrier's surface."""

@@ -24,6 +24,8 @@ Array = NDArray[np.float64]
 ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha)
 SLIDE = 5.0
+# a flat face whose middle is no higher than this many depths may touch as a whole
+FLAT = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,21 +72,33 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     rho, z = body.contact_point(alpha)
     turn = to_barrier_frame(alpha)
     lowest = np.array([float(rho), 0.0, float(z)])
-    zone = Zone(lowest, turn, np.array([-t, 0.0, -h]), np.array([t, b, n]))
+    reach = face_reach(scene, float(rho))
+    b = max(b, float(rho)) if reach > 0 else b
+    zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
     rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
     if not vibrating:
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap - points[:, 2].min()
-    barrier = _block(scene, h * 2**levels, levels, (t, b, n)) if meshed_barrier else None
+    barrier = _block(scene, h * 2**levels, levels, (t, b, n), reach) if meshed_barrier else None
     return Geometry(rod, points, barrier, h, levels)
 
 
-def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, float]) -> HexMesh:
+def face_reach(scene: Scene, rho: float) -> float:
+    """Return how far the fine zone must follow the flat face, m: 0 unless the face nearly lies flat.
+
+    The face rises from the contact by tan(alpha); if its middle stands no higher than `FLAT` depths of the
+    estimated indentation, all of it may touch.
+    """
+    depth, alpha = contact_estimate(scene).depth, scene.impact.angle
+    return 2 * rho * cos(alpha) if rho * sin(alpha) <= FLAT * depth else 0.0
+
+
+def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, float], reach: float) -> HexMesh:
     t, b, n = zone
     slide = SLIDE * contact_estimate(scene).depth * abs(scene.impact.v_t) / max(abs(scene.impact.v_n), 1e-6)
-    box = Zone(np.zeros(3), np.eye(3), np.array([-t - slide, 0.0, -n]), np.array([t, b, 0.0]))
+    box = Zone(np.zeros(3), np.eye(3), np.array([-t - reach - slide, 0.0, -n]), np.array([t, b, 0.0]))
     margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
-    low = np.array([-t - slide - margin, 0.0, -n - margin])
+    low = np.array([-t - reach - slide - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
     return meshes.block(low, high, base, zone=box, levels=levels)

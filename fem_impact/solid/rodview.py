@@ -15,8 +15,6 @@ from fem_impact.solid.state import State
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-TIP_NODES = 60
-
 
 @dataclass(frozen=True, slots=True)
 class RodView:
@@ -26,26 +24,26 @@ class RodView:
     ----------
     places : (n, 3) unknowns of the rod's free nodes; mass : (n,) kg of the half rod
     size : length of the rod's part of the flat vectors
-    tip : (k, 3) unknowns of the skin nodes that may touch
+    rim : (k, 3) unknowns of the skin nodes in the symmetry plane: the lowest point is always among them
     modes : free-free modes of the undeformed rod, none of one that cannot vibrate
     """
 
     places: Ints
     mass: Array
     size: int
-    tip: Ints
+    rim: Ints
     modes: RodModes
 
     @classmethod
     def of(cls, model: Model) -> RodView:
-        """Compute the modes and pick the tip nodes."""
+        """Compute the modes and pick the rim."""
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
         K, mass = model.rod_stiffness, model.mass[:n]
         modes = no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0)
         skin = mesh.free_skin
-        low = skin[np.argsort(model.geometry.rod_points[skin, 2])[:TIP_NODES]]
-        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[low], modes)
+        rim = skin[np.abs(model.geometry.rod_points[skin, 1]) < 1e-12]
+        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[rim], modes)
 
     def rigid(self, state: State) -> RigidMotion:
         """Return the rigid part of the present motion."""

@@ -25,7 +25,7 @@ QUIET = 20e-6  # s without touch before it is worth asking: waves cross the bloc
 class Separation:
     """Stops the run at the last separation.
 
-    The free flight, rigid drift plus all modes, must keep every node of the tip above the barrier for the
+    The free flight, rigid drift plus all modes, must keep the rod above the barrier for the
     horizon. As long as some are lower than the barrier's highest node, the flown tip is held against the
     barrier's surface, crater and all, node by node.
     """
@@ -57,7 +57,7 @@ class Separation:
     def _stays_away(self, state: State) -> bool:
         motion, ahead = self.view.rigid(state), self.view.flight(state, self.model)
         contact, t = self.model.impulses[-1], np.linspace(0.0, HORIZON, SAMPLES)
-        lowest = flight_heights(state.x[self.view.tip], self.view.tip[:, 2], motion, ahead, t).min(axis=0)
+        lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > 0.0)
         surface = contact.barrier.places[:, 2]

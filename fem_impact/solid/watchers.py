@@ -100,7 +100,7 @@ class Watchers:
     @property
     def reason(self) -> str:
         """Return why the run ended."""
-        return self.guard.reason or self.watch.reason or self.stop.reason
+        return self.guard.reason or self.watch.reason or self.skin.reason or self.stop.reason
 
     def flush(self) -> None:
         """Write what still waits."""

@@ -47,17 +47,17 @@ def page(done: Sequence[Verification], date: str) -> str:
     return f"{line}\n\n{table(HEAD, [_row(found) for found in done])}"
 
 
-def put_page(text: str, new: str) -> str:
-    """Return ``text`` with the page between its marks replaced.
+def put_page(text: str, new: str, marks: tuple[str, str] = MARKS) -> str:
+    """Return ``text`` with the page between the marks replaced.
 
     Raises
     ------
     SceneError
         If the marks are missing.
     """
-    between = re.compile(f"({re.escape(MARKS[0])}\n).*?({re.escape(MARKS[1])})", re.DOTALL)
+    between = re.compile(f"({re.escape(marks[0])}\n).*?({re.escape(marks[1])})", re.DOTALL)
     if not between.search(text):
         raise SceneError(
-            "has no place for the page.", key="--readme", remedy=f"Add the lines {MARKS[0]} and {MARKS[1]}."
+            "has no place for the page.", key="--readme", remedy=f"Add the lines {marks[0]} and {marks[1]}."
         )
     return between.sub(lambda found: f"{found[1]}{new}\n{found[2]}", text)

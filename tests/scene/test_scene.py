@@ -49,7 +49,7 @@ def scenes(draw):
         impact=Impact(angle, draw(speed), draw(speed), draw(st.floats(-100, 100))),
         effects=effects,
         accuracy=Accuracy(
-            draw(st.floats(1e-4, 1e-3)), draw(st.integers(2, 64)), 6e-3, draw(st.floats(1e-5, 1e-1))
+            draw(st.floats(1e-4, 1e-3)), 2 * draw(st.integers(3, 32)), 6e-3, draw(st.floats(1e-5, 1e-1))
         ),
         save=Save(draw(st.integers(0, 1000)), draw(st.integers(1, 1000))),
         measured=draw(st.sampled_from([None, "t4"])),

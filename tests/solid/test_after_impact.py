@@ -69,7 +69,7 @@ class Stop:
             return np.tile(swing * (np.cos(2 * pi * 1e4 * t) - 1), (len(rows), 1))
 
         view = SimpleNamespace(
-            tip=low, rigid=lambda s: motion, flight=lambda s, m: SimpleNamespace(displacement=displacement)
+            rim=low, rigid=lambda s: motion, flight=lambda s, m: SimpleNamespace(displacement=displacement)
         )
         self.rule = Separation(model, view, limit=1e-3)
 
@@ -192,7 +192,7 @@ def _in_crater(V_n, V_t, swing=0.0):
 
     ahead = SimpleNamespace(displacement=displacement)
     tip = contact.rod.places[np.argsort(state.x[contact.rod.places[:, 2]])[:20]]
-    view = SimpleNamespace(tip=tip, rigid=lambda s: motion, flight=lambda s, m: ahead)
+    view = SimpleNamespace(rim=tip, rigid=lambda s: motion, flight=lambda s, m: ahead)
     return model, state, Separation(model, view, limit=1e-3)
 
 
@@ -216,7 +216,7 @@ def test_flown_nodes_are_at_the_heights_of_the_flight():
     _, state, rule = _in_crater(0.5, -2.0)
     motion = replace(rule.view.rigid(state), Omega=30.0)
     still = SimpleNamespace(displacement=lambda rows, t: np.full((len(rows), len(t)), 3e-6 * t[0]))
-    x, tip, t = state.x, rule.view.tip, 1e-3
+    x, tip, t = state.x, rule.view.rim, 1e-3
     moved = flown(x, tip, motion, still, t)
     heights = flight_heights(x[tip], tip[:, 2], motion, still, np.array([t]))[:, 0]
     assert moved[tip][:, 2] == pytest.approx(heights, abs=1e-8)
@@ -247,7 +247,7 @@ def test_camera_reads_vibration_as_a_difference_over_its_window(result):
     assert (
         0
         < abs(shaken.V_cn - still.V_cn)
-        < 2 * result.flight.amplitude(result.view.tip.ravel()).max() / WINDOW
+        < 2 * result.flight.amplitude(result.view.rim.ravel()).max() / WINDOW
     )
 
 
@@ -355,3 +355,10 @@ def test_a_step_changes_momentum_by_the_contact_impulse_alone():
         advance(model, state)
         after = (model.mass[:n] * state.v[:n])[places].sum(axis=0)
         assert (after - before)[[0, 2]] == pytest.approx((model.book.impulse - book)[:2], rel=1e-6, abs=1e-12)
+
+
+def test_a_run_that_ends_before_it_touches_has_no_outcome():
+    result = solve(scenes.scene(*PLANE, length=0.08, max_time=1e-6, v_n=-0.1))
+    assert result.model.book.intervals == []
+    with pytest.raises(RunError, match=r"There was no contact in .* us, 100 steps. Reached max_time"):
+        reduce(result.scene, result)

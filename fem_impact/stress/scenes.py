@@ -1,0 +1,197 @@
+"""The hard cases, each a scene on a coarse mesh, some with a start that no scene file can state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from fem_impact.scene import Scene, load, replace_all
+
+__all__ = ["CASES", "Case"]
+
+Expected = Literal["closed", "refused", "detected"]
+Changes = Mapping[str, Any]
+
+# a short rod, a coarse tip, both bodies yield
+BASE: Changes = {
+    "accuracy.tip_size": "0.8 mm",
+    "accuracy.across": 6,
+    "accuracy.max_time": "0.4 ms",
+    "projectile.length": "60 mm",
+    "save.frames": 0,
+    "effects": ["vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation"],
+}
+ELASTIC = ["vibration", "friction", "barrier-elastic", "large-rotation"]
+PLANE = ["vibration", "friction", "barrier-rigid", "large-rotation"]
+YIELDING_PLANE = ["vibration", "friction", "rod-plasticity", "barrier-rigid", "large-rotation"]
+HEAVY = [*PLANE, "gravity"]
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One hard case.
+
+    Attributes
+    ----------
+    words : what is hard about it
+    changes : of the base scene, as ``--set`` takes them
+    expected : ``closed`` run, ``refused`` before the run, or trouble ``detected`` during it
+    gap : height of the lowest point at the start, m
+    shifted : place of the rod along t, m
+    step : share of the stable step
+    bounces : between two walls instead of a scene, 0 for none
+    """
+
+    name: str
+    words: str
+    changes: Changes = field(default_factory=dict)
+    expected: Expected = "closed"
+    gap: float = 2e-6
+    shifted: float = 0.0
+    step: float = 0.9
+    bounces: int = 0
+
+    def scene(self) -> Scene:
+        """Return its scene (SceneError if it is refused already here)."""
+        return replace_all(
+            load("t5b"), {**BASE, **self.changes, "id": f"stress-{self.name.replace('.', '-')}"}
+        )
+
+
+def _angles() -> list[Case]:
+    def at(angle: int) -> Changes:
+        return {"impact.angle": f"{angle} deg"}
+
+    upright: Changes = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
+    sharp: Changes = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
+    flank: Changes = {**at(89), "effects": PLANE}
+    return [
+        *(Case(f"angle-{a}", f"angle {a} degrees", at(a)) for a in (1, 17, 60, 80, 85)),
+        Case("angle-89", "89 degrees: the rod's side lands on the plane", flank),
+        Case("angle-89-block", "89 degrees: it lands beside the meshed contact", at(89), "detected"),
+        Case("upright-edge", "angle 0, rounded edge, meshed block", upright),
+        Case("upright-round", "angle 0, round nose", {**upright, "projectile.tip": "A"}),
+        Case("flat-on-plane", "flat face on the rigid plane", {**upright, **sharp, "effects": PLANE}),
+        Case("flat-on-block", "flat face on a meshed block", {**upright, **sharp}),
+        Case("sharp-edge", "sharp edge at 45 degrees", sharp),
+    ]
+
+
+def _friction() -> list[Case]:
+    rough: Changes = {"surface.friction": 2.0, "impact.angle": "31 deg", "impact.v_n": "-1e-6 m/s"}
+    return [
+        *(Case(f"friction-{f:g}", f"friction {f:g}", {"surface.friction": f}) for f in (0.0, 1.5, 3.0)),
+        Case(
+            "painleve",
+            "tip in contact, sliding, no normal speed, f 2, 31 degrees",
+            {**rough, "effects": HEAVY, "accuracy.max_time": "0.3 ms"},
+            gap=0.0,
+        ),
+        Case(
+            "painleve-block",
+            "the same start on an elastic block",
+            {**rough, "effects": [*ELASTIC, "gravity"], "accuracy.max_time": "0.3 ms"},
+            gap=0.0,
+        ),
+    ]
+
+
+def _rods() -> list[Case]:
+    short = {"projectile.length": "165 mm", "projectile.diameter": "162 mm", "accuracy.tip_size": "6 mm"}
+    thin = {"projectile.length": "170 mm", "projectile.diameter": "6 mm", "accuracy.tip_size": "0.25 mm"}
+    few = {"accuracy.across": 6, "accuracy.tip_size": "3 mm", "projectile.length": "19 mm"}
+    return [
+        Case("gamma-2", "gamma 2: as thick as long", {**short, "projectile.tip_radius": "20 mm"}),
+        Case("gamma-200", "gamma 200", {**thin, "projectile.tip_radius": "1 mm"}),
+        Case("long-rod", "rod of 1.5 m", {"projectile.length": "1.5 m", "effects": PLANE}),
+        Case("sharp-tip", "tip radius 0.2 mm", {"projectile.tip_radius": "0.2 mm"}),
+        Case("blunt-tip", "tip radius 9.4 mm", {"projectile.tip_radius": "9.4 mm"}),
+        Case("slivers", "edge of 0.02 mm: sliver elements", {"projectile.tip_radius": "0.02 mm"}),
+        Case("six-elements", "a mesh of 6 elements", {**few, "accuracy.across": 2}, "refused"),
+        Case("few-elements", "the coarsest mesh that has a round section", {**few, "effects": PLANE}),
+        Case(
+            "many-elements",
+            "the finest mesh that the time allows",
+            {"accuracy.tip_size": "0.15 mm", "accuracy.across": 16, "accuracy.max_time": "2 us"},
+        ),
+        Case("spinning", "spin of 1000 rad/s into the barrier", {"impact.omega": "-1000 rad/s"}),
+        Case("spinning-away", "spin that lifts the tip", {"impact.omega": "1000 rad/s"}, "refused"),
+    ]
+
+
+def _both(key: str, value: str | float) -> Changes:
+    return {f"projectile.material.{key}": value, f"barrier.material.{key}": value}
+
+
+def _materials() -> list[Case]:
+    def of(body: str, **values: str | float) -> Changes:
+        return {f"{body}.material.{key}": value for key, value in values.items()}
+
+    soft = {"E": "210 MPa", "yield_stress": "3 MPa", "ultimate_stress": "5 MPa"}
+    weak = {"E": "10 GPa", "yield_stress": "50 MPa", "ultimate_stress": "60 MPa"}
+    perfect = of("projectile", yield_stress="300 MPa", ultimate_stress="300 MPa")
+    perfect = {**perfect, **of("barrier", yield_stress="300 MPa", ultimate_stress="300 MPa")}
+    hard = of("projectile", yield_stress="100 MPa", ultimate_stress="2000 MPa")
+    return [
+        Case("nu-0", "Poisson's ratio 0", _both("nu", 0.0)),
+        Case("nu-0.499", "Poisson's ratio .499", _both("nu", 0.499)),
+        Case("soft-barrier", "barrier 1e-3 as stiff", {**of("barrier", **soft), "accuracy.max_time": "1 ms"}),
+        Case("soft-rod", "rod 1e-3 as stiff", {**of("projectile", **soft), "accuracy.max_time": "2 ms"}),
+        Case(
+            "stiff-barrier",
+            "barrier 1e3 as stiff",
+            {**of("projectile", **weak), **of("barrier", E="1e13 Pa")},
+        ),
+        Case(
+            "light-barrier",
+            "barrier 1e-3 as dense",
+            {**of("projectile", rho="20000 kg/m3"), **of("barrier", rho="20 kg/m3")},
+        ),
+        Case(
+            "light-rod",
+            "rod 1e-3 as dense",
+            {**of("projectile", rho="20 kg/m3"), **of("barrier", rho="20000 kg/m3")},
+        ),
+        Case("perfectly-plastic", "no hardening", perfect),
+        Case("huge-hardening", "ultimate stress 20 times yield", hard),
+    ]
+
+
+def _speeds() -> list[Case]:
+    def at(speed: float, **more: Any) -> Changes:
+        return {"impact.v_n": f"{-speed} m/s", "impact.v_t": f"{-speed} m/s", **more}
+
+    coarse = {"accuracy.tip_size": "1.6 mm", "accuracy.max_time": "0.2 ms"}
+    slow = {"accuracy.max_time": "3 ms", "effects": ELASTIC}
+    return [
+        Case("speed-0.001", "1 mm/s", {**at(0.001), **slow}),
+        Case("speed-0.01", "10 mm/s", {**at(0.01), **slow}),
+        Case("speed-20", "20 m/s", at(20.0)),
+        Case("speed-100", "100 m/s", {**at(100.0), **coarse}),
+        Case("speed-300", "300 m/s", {**at(300.0), **coarse}, "refused"),
+        Case(
+            "resting",
+            "resting on the plane under gravity",
+            {"impact.v_n": "-1e-4 m/s", "impact.v_t": "0 m/s", "impact.angle": "0 deg", "effects": HEAVY},
+            gap=0.0,
+        ),
+    ]
+
+
+def _starts() -> list[Case]:
+    return [
+        Case("node-below", "a contact node at the lowest point", {"effects": ELASTIC}),
+        Case("between-nodes", "the lowest point half an element on", {"effects": ELASTIC}, shifted=4e-4),
+        Case("overlap", "20 um inside the plane at the start", {"effects": PLANE}, gap=-2e-5),
+        Case("overlap-block", "20 um inside the block at the start", {"effects": ELASTIC}, gap=-2e-5),
+        Case("step-0.9", "0.9 of the stable step", {"effects": YIELDING_PLANE}),
+        Case("step-1.0", "the stable step itself", {"effects": PLANE}, step=1.0),
+        Case("step-1.1", "1.1 of the stable step", {"effects": PLANE}, "detected", step=1.1),
+        Case("two-walls", "1000 bounces between two walls", bounces=1000),
+    ]
+
+
+CASES: dict[str, Case] = {
+    case.name: case for case in (*_angles(), *_friction(), *_rods(), *_materials(), *_speeds(), *_starts())
+}
