@@ -85,6 +85,6 @@ def _named(path: Path) -> Iterator[None]:
     except sqlite3.OperationalError as error:
         words = f"{path}: cannot be used ({error}). Free some space, or close what uses it."
         raise OutputPathError(words) from error
-    except sqlite3.DatabaseError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # a spoiled name in the words of the library
         words = f"{path}: is damaged ({error}). Move it away; its results are computed again."
         raise ResultError(words) from error

@@ -121,3 +121,26 @@ def test_no_command_shows_the_help(cli):
     code, out, err = cli()
     assert (code, out) == (2, "")
     assert "study" in err
+
+
+def test_resume_and_the_time_between_checkpoints_are_passed_on(cli, stand):
+    assert cli("run", "t5b", "--resume", "--checkpoint", "5", "--quiet")[0] == 0
+    options = stand.calls[0][2]
+    assert options["resume"] is True and options["checkpoint_s"] == 5.0
+    assert cli("run", "t5b", "--quiet")[0] == 0
+    options = stand.calls[1][2]
+    assert options["resume"] is False and options["checkpoint_s"] == 30.0
+    for wrong in ("-1", "nan", "soon", "inf"):
+        code, _, err = cli("run", "t5b", "--checkpoint", wrong)
+        assert code == 2 and "not a time in seconds" in err
+
+
+def test_a_spoiled_checkpoint_is_refused_by_the_command(cli, tmp_path):
+    words = ("--set", "accuracy.tip_size=0.8 mm", "--set", "accuracy.across=6", "--set", "save.frames=0")
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "scene.toml").write_text(load("t5b").to_toml())
+    (tmp_path / "here" / "history.csv").write_text("")
+    (tmp_path / "here" / "run.checkpoint").write_bytes(b"nothing like it")
+    code, out, err = cli("run", "t5b", *words, "--resume", "--quiet", "--out", "here")
+    assert (code, out) == (5, "")
+    assert "is damaged" in err and "Run again without --resume to start anew." in err

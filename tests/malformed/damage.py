@@ -56,6 +56,13 @@ VALUES = st.recursive(
 )
 
 
+class Spoiled(bytes):
+    """Bytes whose picture stays short."""
+
+    def __repr__(self):
+        return f"Spoiled({len(self)} bytes, {bytes(self[:40])!r}...)"
+
+
 @st.composite
 def spoiled_bytes(draw, whole):
     """Bytes of a file: cut off, with flipped bits, with pieces lost, doubled or overwritten, or made up."""
@@ -63,7 +70,7 @@ def spoiled_bytes(draw, whole):
     data = bytearray(whole)
     at = draw(st.integers(0, len(data) - 1))
     if kind == "cut":
-        return bytes(data[:at])
+        return Spoiled(data[:at])
     if kind == "flip":
         for place in draw(st.lists(st.integers(0, len(data) - 1), min_size=1, max_size=6)):
             data[place] ^= 1 << draw(st.integers(0, 7))
@@ -74,7 +81,7 @@ def spoiled_bytes(draw, whole):
         data[at:at] = data[at : at + length]
     if kind == "overwrite":
         data[at : at + length] = draw(st.binary(min_size=1, max_size=200))
-    return bytes(data) if kind not in ("garbage", "nothing like it") else draw(st.binary(max_size=300))
+    return Spoiled(data) if kind not in ("garbage", "nothing like it") else draw(st.binary(max_size=300))
 
 
 @st.composite

@@ -1,0 +1,30 @@
+"""A started run of a study goes on from its checkpoint; one that does not fit is begun anew."""
+
+import pytest
+
+import fem_impact.simulate
+from fem_impact.errors import ResultError
+from fem_impact.scale.job import Job, compute
+from fem_impact.scene import load
+
+
+class Told:
+    """Stands for the outcome of a run."""
+
+    def to_json(self):
+        return "outcome"
+
+
+@pytest.mark.parametrize(("fits", "tries"), [(True, [True]), (False, [True, False])])
+def test_a_started_run_resumes_if_it_fits(fits, tries, tmp_path, monkeypatch):
+    asked = []
+
+    def simulate(scene, fidelity, out, resume=False):
+        asked.append(resume)
+        if resume and not fits:
+            raise ResultError("another program")
+        return Told()
+
+    monkeypatch.setattr(fem_impact.simulate, "simulate", simulate)
+    answer = compute(Job("one", load("t5b"), out=tmp_path))
+    assert (answer.outcome, answer.reason, asked) == ("outcome", "", tries)
