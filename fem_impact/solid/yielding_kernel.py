@@ -150,27 +150,30 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
 
 @inlined
 def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
-    """Solve q - 3 G dp = sigma(strain + dp) (1 + C ln(dp / (rate_0 dt))), C and rate_0 in ``rate``.
+    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u) with u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
 
-    Returns the increment, the stress and the flow stress at vanishing rate. Newton's method from the
-    increment without the rate factor, which is too large: the first step lands on the safe (left) side, but
-    not below rate_0 dt, where the factor has its kink and the method would go to and fro.
+    Returns the increment, the stress and the flow stress at vanishing rate. Below rate_0 dt there is no rate
+    factor. Halley's method in u, in which the miss is a line less an exponential, from the lower of two
+    bounds: all of q - sigma borne by C u, or all by 3 G dp.
     """
-    dp, new = _plastic_increment(q, flow, strain, G3, law)
-    slow = rate[1] * dt
-    if dp <= slow:
+    slow, growth = rate[1] * dt, law[1] / (1.0 + law[1] * strain)
+    over = q - flow * _power(growth * slow, law[2])
+    if over <= G3 * slow:
+        dp, new = _plastic_increment(q, flow, strain, G3, law)
         return dp, new, new
-    factor = 1.0
+    u, dp = min(over / (rate[0] * flow), np.log(over / (G3 * slow))), slow
     for _ in range(60):
-        base = 1.0 + law[1] * (strain + dp)
-        new = law[0] * base ** law[2]
-        factor = 1.0 + rate[0] * np.log(dp / slow)
-        miss = q - G3 * dp - new * factor
-        if abs(miss) < 1e-12 * q:
+        dp, factor = slow * np.exp(u), 1.0 + rate[0] * u
+        new = flow * _power(growth * dp, law[2])
+        bent = (G3 + law[2] * growth * new / (1.0 + growth * dp) * factor) * dp
+        steep = bent + new * rate[0]
+        change = (q - G3 * dp - new * factor) / steep
+        change /= 1.0 + 0.5 * change * bent / steep
+        u += change
+        if abs(change) < 1e-4:
+            dp *= 1.0 + change + 0.5 * change * change  # what one more exponential would give to 1e-12
             break
-        steep = law[2] * law[1] * new / base * factor + new * rate[0] / dp
-        dp = max(dp + miss / (G3 + steep), slow)
-    return dp, new * factor, new
+    return dp, q - G3 * dp, (q - G3 * dp) / (1.0 + rate[0] * u)
 
 
 @inlined
