@@ -150,7 +150,7 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
 
 @inlined
 def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
-    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u) with u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
+    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u), u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
 
     Returns the increment, the stress and the flow stress at vanishing rate. Below rate_0 dt there is no rate
     factor. Halley's method in u, in which the miss is a line less an exponential, from the lower of two
