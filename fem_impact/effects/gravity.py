@@ -8,17 +8,16 @@ from typing import TYPE_CHECKING
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
 from fem_impact.effects.vibration import bending_period, vibration_share
 from fem_impact.estimates import contact_estimate
+from rigid import GRAVITY
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
-
-STANDARD_GRAVITY = 9.80665  # m/s2, CODATA
 
 
 def number(scene: Scene) -> float:
     """Return g (tau + T1) over the impact speed: a second contact comes a bending period later."""
     lasting = contact_estimate(scene).duration + bending_period(scene)
-    return STANDARD_GRAVITY * lasting / hypot(scene.impact.v_n, scene.impact.v_t)
+    return GRAVITY * lasting / hypot(scene.impact.v_n, scene.impact.v_t)
 
 
 def harm(scene: Scene) -> Harm:
@@ -29,7 +28,7 @@ def harm(scene: Scene) -> Harm:
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
     """Set the acceleration."""
-    spec.gravity = STANDARD_GRAVITY
+    spec.gravity = GRAVITY
 
 
 EFFECT = Effect(
