@@ -16,7 +16,7 @@ from fem_impact.estimates import LIMIT_PRESSURE, contact_modulus, principal_radi
 if TYPE_CHECKING:
     from fem_impact.scene import Material, Scene
 
-__all__ = ["ContactLaw", "contact_law", "restitution", "softer"]
+__all__ = ["ContactLaw", "contact_law", "restitution", "softer", "thornton"]
 
 
 class ContactLaw(NamedTuple):
@@ -78,10 +78,13 @@ def restitution(law: ContactLaw, mass: float, speed: float) -> float:
     >>> restitution(law, 0.1, 16.0) / restitution(law, 0.1, 1.0) < 0.6
     True
     """
-    if law.limit == inf:
+    return thornton(speed / sqrt(2 / mass * 0.4 * law.yield_force * law.yield_depth))
+
+
+def thornton(ratio: float) -> float:
+    """Return e of an elastic-perfectly-plastic sphere at a speed over the yield speed, Thornton's eq 41."""
+    if ratio <= 1:
         return 1.0
-    y = sqrt(2 / mass * 0.4 * law.yield_force * law.yield_depth) / speed
-    if y >= 1:
-        return 1.0
+    y = 1 / ratio
     losses = (y / (y + 2 * sqrt(6 / 5 - y**2 / 5))) ** 0.25
     return float(sqrt(6 * sqrt(3) / 5) * sqrt(1 - y**2 / 6) * losses)

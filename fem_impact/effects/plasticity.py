@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
+from fem_impact.contact_law import thornton
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
 from fem_impact.effects.vibration import vibration_share
 from fem_impact.estimates import LIMIT_PRESSURE, contact_estimate
@@ -34,18 +35,6 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
     f = scene.surface.friction if "friction" in scene.active else 0.0
     first = min(DEEP, 1 / (sqrt(3) * f)) if f > 0 else DEEP
     return peak / (first * material.yield_stress)
-
-
-def thornton(ratio: float) -> float:
-    """Return e of an elastic-perfectly-plastic sphere at a speed over the yield speed, ratio of (p/p_y)^2.5.
-
-    Thornton 1997, doi:10.1115/1.2787319, eq 41.
-    """
-    if ratio <= 1:
-        return 1.0
-    r = 1 / ratio
-    slope = sqrt(6 * sqrt(3) / 5 * (1 - r * r / 6))
-    return float(slope * (r / (r + 2 * sqrt(1.2 - 0.2 * r * r))) ** 0.25)
 
 
 def harm_of(ratio: float, scene: Scene) -> Harm:

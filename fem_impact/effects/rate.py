@@ -13,9 +13,9 @@ from dataclasses import replace
 from math import log, sqrt
 from typing import TYPE_CHECKING
 
+from fem_impact.contact_law import thornton
 from fem_impact.effects.barrier import yield_ratio
 from fem_impact.effects.plasticity import number as rod_ratio
-from fem_impact.effects.plasticity import thornton
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
 from fem_impact.effects.vibration import vibration_share
 from fem_impact.estimates import contact_estimate, principal_radii

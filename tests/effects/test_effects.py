@@ -6,8 +6,8 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
+from fem_impact.contact_law import thornton
 from fem_impact.effects import EFFECTS, choices, neglected, specify
-from fem_impact.effects.plasticity import thornton
 from fem_impact.effects.vibration import bending_period
 from fem_impact.estimates import contact_estimate, contact_modulus, effective_mass, principal_radii
 from fem_impact.scene import Scene, load
