@@ -36,6 +36,12 @@ class RigidMotion:
         """Return the kinetic energy of the rigid part, J."""
         return 0.5 * (self.mass * (self.V_n**2 + self.V_t**2) + self.inertia * self.Omega**2)
 
+    @property
+    def spin(self) -> float:
+        """Return the angular momentum about the origin, kg m2/s."""
+        orbit = self.mass * (self.centre[2] * self.V_t - self.centre[0] * self.V_n)
+        return float(self.inertia * self.Omega + orbit)
+
 
 def rigid_motion(x: Array, v: Array, mass: Array) -> RigidMotion:
     """Return the rigid part of nodes x, v (n, 3) in (t, b, n) with half-model masses (n,)."""

@@ -75,9 +75,7 @@ def _momenta(result: SolidResult) -> tuple[float, float]:
     gained = m * (np.array([motion.V_t - impact.v_t, motion.V_n - impact.v_n]) - down)
     size = m * float(np.hypot(impact.v_t, impact.v_n)) + float(np.abs(p[:2]).sum())
     before = motion.inertia * impact.omega + m * (centre[2] * impact.v_t - centre[0] * impact.v_n)
-    after = motion.inertia * motion.Omega
-    after += m * (motion.centre[2] * motion.V_t - motion.centre[0] * motion.V_n)
-    turned = after - before + p[2] - _moment_of_weight(result, centre, down)
+    turned = motion.spin - before + p[2] - _moment_of_weight(result, centre, down)
     arm = float(np.linalg.norm(centre))
     return float(np.linalg.norm(gained - p[:2])) / size, abs(float(turned)) / (size * arm)
 

@@ -55,8 +55,7 @@ def solve(p: Values) -> Solved:
     start = rigid_of(model, state)
     march(model, state, [watch])
     end, book = rigid_of(model, state), model.book
-    turned = end.inertia * end.Omega + end.mass * (end.centre[2] * end.V_t - end.centre[0] * end.V_n)
-    turned -= end.mass * (start.centre[2] * start.V_t - start.centre[0] * start.V_n)
+    turned = end.spin - start.spin
     allowed = 1e-4 * end.inertia * abs(end.Omega)
     checks = [
         *_printed(p, end.V_n),
