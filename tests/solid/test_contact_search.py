@@ -36,11 +36,12 @@ def _at(x, patch, q, xi, eta):
     return np.array(bilinear(xi, eta)) @ x[patch.places[patch.quads[q]]]
 
 
-def _find(x, patch, start, target):
+def _foot(x, patch, start, target):
+    """Return the place on the patch that is found under a target."""
     found, a, b = locate(x, patch.places, patch.quads, patch.neighbours, start, *target[:2])
     assert found >= 0
     assert max(abs(a), abs(b)) <= 1.0
-    assert _at(x, patch, found, a, b) == pytest.approx(target, abs=1e-9 * H)
+    return _at(x, patch, found, a, b)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -49,7 +50,8 @@ def test_points_inside_are_found_from_anywhere(seed):
     patch, x = patch_of(*sheet(seed))
     for _ in range(20):
         q, xi, eta = rng.integers(len(patch.quads)), *rng.uniform(-1, 1, 2)
-        _find(x, patch, rng.integers(len(patch.quads)), _at(x, patch, q, xi, eta))
+        start, target = rng.integers(len(patch.quads)), _at(x, patch, q, xi, eta)
+        assert _foot(x, patch, start, target) == pytest.approx(target, abs=1e-9 * H)
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -60,7 +62,7 @@ def test_points_are_found_from_next_door(seed):
     for q in range(len(patch.quads)):
         target = _at(x, patch, q, *rng.uniform(-1, 1, 2))
         for start in patch.neighbours[q][patch.neighbours[q] >= 0]:
-            _find(x, patch, start, target)
+            assert _foot(x, patch, start, target) == pytest.approx(target, abs=1e-9 * H)
 
 
 @pytest.mark.parametrize("seed", range(25))

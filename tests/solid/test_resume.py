@@ -112,24 +112,25 @@ def stopped(tmp_path_factory):
     return scene, interrupted(scene, tmp_path_factory.mktemp("stopped") / "run", 400)
 
 
-def refused(scene, place, words):
-    """The run is refused with these words, and the files stay as they were."""
+def refusal(scene, place):
+    """The words with which the run is refused; the files stay as they were."""
     before = {path.name: path.read_bytes() for path in place.iterdir()}
-    with pytest.raises(ResultError, match=words) as refusal:
+    with pytest.raises(ResultError, match=r"Run again without --resume to start anew\.") as refused:
         solve(scene, place, resume=True)
-    assert "Run again without --resume to start anew." in str(refusal.value)
     assert {path.name: path.read_bytes() for path in place.iterdir()} == before
+    return str(refused.value)
 
 
 def test_a_checkpoint_of_another_scene_is_refused(stopped):
     scene, place = stopped
-    refused(replace(scene, impact=replace(scene.impact, v_n=-2.9)), place, "written with another scene;")
+    other = replace(scene, impact=replace(scene.impact, v_n=-2.9))
+    assert "written with another scene;" in refusal(other, place)
 
 
 def test_a_checkpoint_of_another_program_is_refused(stopped, monkeypatch):
     scene, place = stopped
     monkeypatch.setattr("fem_impact.sources.source_digest", lambda: "0" * 64)
-    refused(scene, place, "written with another sources;")
+    assert "written with another sources;" in refusal(scene, place)
 
 
 def test_a_damaged_checkpoint_is_refused(stopped):
@@ -139,7 +140,7 @@ def test_a_damaged_checkpoint_is_refused(stopped):
     try:
         for harm in (b"", whole[:-1], whole[:100], whole + b"x", whole[:-9] + b"!" + whole[-8:], b"{}"):
             path.write_bytes(harm)
-            refused(scene, place, "is damaged")
+            assert "is damaged" in refusal(scene, place)
     finally:
         path.write_bytes(whole)
 
@@ -151,8 +152,8 @@ def test_files_that_lost_what_was_written_before_are_refused(stopped, name):
     whole = path.read_bytes()
     try:
         path.write_bytes(whole[:50])
-        refused(scene, place, name)
+        assert name in refusal(scene, place)
         path.unlink()
-        refused(scene, place, name)
+        assert name in refusal(scene, place)
     finally:
         path.write_bytes(whole)
