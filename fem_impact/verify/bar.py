@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from math import pi
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 import meshes
-from fem_impact.solid.contact.book import RECORD
-from fem_impact.solid.contact.plane import touch_plane
+from fem_impact.solid.contact import PlaneContact
+from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
@@ -23,8 +22,6 @@ from fem_impact.verify.reference.bar import Strike, strike
 from fem_impact.verify.watch import Force, Until
 
 __all__ = ["PROBLEM"]
-
-Array = NDArray[np.float64]
 
 PLATEAU, DURATION, GROWTH, CLOSING = 0.005, 0.01, 1e-3, 1e-6
 WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
@@ -47,32 +44,19 @@ def _model(p: Values, slices: int, gap: float, across: int) -> Model:
 class Ceiling:
     """A second rigid wall at n = height: the solver's plane contact, seen upside down."""
 
-    moving: ClassVar[tuple[str, ...]] = ("record", "bounces")
-    nodes: NDArray[np.int64]
-    inverse_mass: Array
+    moving: ClassVar[tuple[str, ...]] = ()
+    wall: PlaneContact
     height: float
-    record: Array = field(default_factory=lambda: np.zeros(RECORD))
     bounces: int = 0
 
     def resolve(self, state: State) -> None:
         """Turn the wall's own nodes upside down, let them touch, turn them back."""
-        n = self.nodes[:, 2]
+        n, before = self.wall.nodes[:, 2], self.wall.book.step[ACTIVE]
         for vector in (state.v, state.force):
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]
-        before = self.record[5]
-        touch_plane(  # type: ignore[no-untyped-call]
-            self.nodes,
-            state.x,
-            state.v,
-            state.force,
-            self.inverse_mass,
-            state.kick,
-            state.dt_next,
-            0.0,
-            self.record,
-        )
-        self.bounces += int(self.record[5] > 0 and before == 0)
+        self.wall.resolve(state)
+        self.bounces += int(self.wall.book.step[ACTIVE] > 0 and before == 0)
         for vector in (state.v, state.force):
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]
@@ -109,7 +93,7 @@ def _many_strikes(p: Values, exact: Strike) -> list[Check]:
     gap = FLIGHT * exact.duration * p["speed"]
     model = _model(p, slices, gap / 2, 6)
     top = model.geometry.rod_points[:, 2] > gap / 2 + 0.999 * p["length"]
-    ceiling = Ceiling(model.layout.rod[top], model.inverse_mass, p["length"] + gap)
+    ceiling = Ceiling(PlaneContact(model.layout.rod[top], model.inverse_mass, 0.0), p["length"] + gap)
     walled = replace(model, impulses=[*model.impulses, ceiling])
     state = walled.initial_state()
     energy = Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)

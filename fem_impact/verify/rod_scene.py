@@ -10,7 +10,7 @@ from fem_impact.verify.problem import Values
 __all__ = ["rod_scene"]
 
 
-def rod_scene(p: Values, effects: tuple[str, ...], tip: str = "B") -> Scene:
+def rod_scene(p: Values, effects: tuple[str, ...]) -> Scene:
     """Return a scene from parameters; absent ones take the values of a frictionless drop.
 
     Used are length, diameter, tip_radius, E, nu, rho, barrier_E, angle, v_n, v_t (approach speeds above 0),
@@ -29,7 +29,7 @@ def rod_scene(p: Values, effects: tuple[str, ...], tip: str = "B") -> Scene:
             base.projectile,
             length=p["length"],
             diameter=p["diameter"],
-            tip=tip,
+            tip="B",
             tip_radius=p["tip_radius"],
             material=rod,
         ),

@@ -12,9 +12,9 @@ def length(default: float = 0.24) -> Parameter:
     return Parameter("length", "length of the rod", default, 0.02, 2.0, "length")
 
 
-def diameter(default: float = 0.019) -> Parameter:
+def diameter() -> Parameter:
     """Return the rod's diameter."""
-    return Parameter("diameter", "diameter of the rod", default, 1e-3, 0.2, "length")
+    return Parameter("diameter", "diameter of the rod", 0.019, 1e-3, 0.2, "length")
 
 
 def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Parameter, ...]:
@@ -26,9 +26,9 @@ def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Pa
     )
 
 
-def across(default: int = 8, low: int = 6, high: int = 24) -> Parameter:
+def across(default: int = 8) -> Parameter:
     """Return the number of cells over the diameter, even."""
-    return Parameter("across", "cells over the diameter, even", default, low, high, multiple=2)
+    return Parameter("across", "cells over the diameter, even", default, 6, 24, multiple=2)
 
 
 def speed(name: str, words: str, default: float) -> Parameter:

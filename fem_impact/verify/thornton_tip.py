@@ -28,6 +28,7 @@ from fem_impact.verify.reference.thornton import (
     thornton_restitution,
     yield_speed,
 )
+from fem_impact.verify.spheres import ball_mass
 from fem_impact.verify.tips import contact_zone
 from fem_impact.verify.watch import Until
 
@@ -45,13 +46,9 @@ LONGEST, APART = 6.0, 0.1  # over the time of the indentation: when a run ends, 
 
 def _indentation(p: Values, v: float) -> tuple[float, float]:
     """Return contact radius, m, and duration, s, of a rigid plane pressed in by a constant pressure."""
-    mass, pressure = _mass(p), MEAN * p["yield_stress"]
+    mass, pressure = ball_mass(p), MEAN * p["yield_stress"]
     radius = plastic_radius(p["yield_stress"], p["radius"], mass, v)
     return radius, pi / 2 * sqrt(mass / (2 * pi * p["radius"] * pressure))
-
-
-def _mass(p: Values) -> float:
-    return 4 / 3 * pi * p["radius"] ** 3 * p["rho"]
 
 
 def _model(p: Values, v: float, cells: float) -> Model:
@@ -63,7 +60,7 @@ def _model(p: Values, v: float, cells: float) -> Model:
     points = placed(mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 2] = -v
-    rho = _mass(p) / (2 * float(np.sum(meshes.volume(mesh))))
+    rho = ball_mass(p) / (2 * float(np.sum(meshes.volume(mesh))))
     law = linear_hardening(p["yield_stress"], p["hardening"])
     yields = mesh.level == levels
     return body_model(
@@ -86,7 +83,7 @@ def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, 
 def judged_slope(p: Values, slope: float) -> Check:
     """Judge the slope where the contact is fully plastic and small at all speeds, else show it."""
     E_star = contact_modulus(p["E"], p["nu"])
-    low, high = plastic_speeds(p["yield_stress"], E_star, p["radius"], _mass(p))
+    low, high = plastic_speeds(p["yield_stress"], E_star, p["radius"], ball_mass(p))
     if low <= p["slowest"] and p["fastest"] <= high:
         return Check(NAME, "1", slope, SLOPE, SLOPE_TOLERANCE, "absolute")
     if low > high:
@@ -103,7 +100,7 @@ def solve(p: Values) -> Solved:
     slope = float(np.polyfit(np.log(speeds), np.log([run[0] for run in runs]), 1)[0])
     middle = speeds[SPEEDS // 2]
     fine = _restitution(p, middle, FINER * p["cells"])
-    E_star, mass = contact_modulus(p["E"], p["nu"]), _mass(p)
+    E_star, mass = contact_modulus(p["E"], p["nu"]), ball_mass(p)
     full, first = (yield_speed(c * p["yield_stress"], E_star, p["radius"], mass) for c in (MEAN, FIRST))
     law, fit = thornton_restitution(middle, full), fitted_restitution(middle, first)
     checks = (

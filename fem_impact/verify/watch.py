@@ -6,13 +6,13 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fem_impact.solid.contact.book import IMPULSE_N
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
 __all__ = ["Force", "Until"]
 
-IMPULSE_N, ACTIVE = 1, 5
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 
