@@ -58,6 +58,7 @@ class Options(argparse.Namespace):
     resume: bool = False
     checkpoint: float = 30.0
     result: Path
+    results: list[Path]
     set_id: str | None = None
     file: Path
     number: int
@@ -167,7 +168,8 @@ def _add_study(commands: Commands) -> None:
 
 def _add_render(commands: Commands) -> None:
     parser = _command(commands, "render", "make a film of the stress waves", "fem_impact.cli_show:render")
-    parser.add_argument("result", type=Path, metavar="RESULT", help=_RESULT)
+    several = f"{_RESULT}; several make one film side by side"
+    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
     parser.add_argument("--out", type=Path, metavar="FILE", help="film to write (default: beside the fields)")
 
 

@@ -16,7 +16,7 @@ from fem_impact.render.layout import Layout
 from fem_impact.render.motion import Motion, prepare
 from fem_impact.render.probe import require_gl
 
-__all__ = ["RenderResult", "render"]
+__all__ = ["RenderResult", "context", "render", "require_libraries", "target"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +57,8 @@ def render(
         Without it ``film`` in the result folder, in the best format available.
     frames : int, optional
         Draw this many frames, evenly chosen; all when None.
-    field : "mises" or "velocity"
-        The colours: von Mises stress, or speed.
+    field : "mises", "velocity" or "strain"
+        The colours: von Mises stress, speed, or strain along the rod's axis.
     size : tuple of int, px
         Width and height, multiples of 16.
     fps : int, 1/s
@@ -77,11 +77,11 @@ def render(
     fields = read_fields(folder / "fields.vtkhdf")
     chosen = _choose(len(fields.times), frames)
     motion = prepare(fields, field, chosen)
-    _require_libraries()
-    target, notes = _target(folder, out)
-    title, curve, missing = _context(folder, fields)
-    path = encode(_frames(motion, Layout(*size), chosen, title, curve), target, fps)
-    return RenderResult(path, (*notes, *missing), len(chosen))
+    require_libraries()
+    path, notes = target(folder, out)
+    title, curve, missing = context(folder, fields)
+    made = encode(_frames(motion, Layout(*size), chosen, title, curve), path, fps)
+    return RenderResult(made, (*notes, *missing), len(chosen))
 
 
 def _choose(held: int, wanted: int | None) -> Sequence[int]:
@@ -91,7 +91,8 @@ def _choose(held: int, wanted: int | None) -> Sequence[int]:
     return [int(number) for number in np.unique(np.linspace(0, max(held - 1, 0), count).round())]
 
 
-def _require_libraries() -> None:
+def require_libraries() -> None:
+    """Return when a film can be drawn here; raises MissingLibraryError."""
     try:
         import matplotlib  # noqa: F401
         import PIL  # noqa: F401
@@ -100,15 +101,16 @@ def _require_libraries() -> None:
     require_gl()
 
 
-def _target(folder: Path, out: str | Path | None) -> tuple[Path, list[str]]:
+def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Path, list[str]]:
+    """Return the film's place, and a sentence where it is of another format than MP4."""
     if out is not None:
         return Path(out), []
     suffix = best_suffix()
     other = f"The film is {suffix[1:].upper()}, as no MP4 encoder is installed (extra: fem-impact[mp4])."
-    return folder / f"film{suffix}", [] if suffix == ".mp4" else [other]
+    return folder / f"{stem}{suffix}", [] if suffix == ".mp4" else [other]
 
 
-def _context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
+def context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
     """Return title, force curve, and a sentence on each of them that is missing."""
     title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
     try:
@@ -127,10 +129,12 @@ def _frames(
     motion: Motion, layout: Layout, chosen: Sequence[int], title: str, curve: tuple[np.ndarray, np.ndarray]
 ) -> Iterator[np.ndarray]:
     from fem_impact.render.board import Board
-    from fem_impact.render.views import CloseView, RodView
+    from fem_impact.render.views import CloseView, RodView, needed_height
 
     board = Board.make(layout, motion, title, curve)
-    whole, near = RodView(motion, layout.rod.size), CloseView(motion, layout.close.size)
+    size = layout.rod.size
+    whole = RodView(motion, size, needed_height(motion, size))
+    near = CloseView(motion, layout.close.size)
     try:
         for frame in chosen:
             true, shown = motion.positions(frame)

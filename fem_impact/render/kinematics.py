@@ -4,7 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = ["hex_volumes", "magnified", "nice_factor", "nodal_volumes", "rigid_motion", "to_points"]
+__all__ = [
+    "axis_of",
+    "hex_volumes",
+    "magnified",
+    "nice_factor",
+    "nodal_volumes",
+    "rigid_motion",
+    "stretch",
+    "to_points",
+]
 
 _CORNERS = np.array(
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
@@ -14,9 +23,38 @@ _CORNERS = np.array(
 
 def hex_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
     """Return ``(m,) m3`` volumes by the Jacobian at the centre of ``(m, 8)`` hexahedra (one-point rule)."""
-    jacobian = np.einsum("ki,mkj->mij", _CORNERS / 8.0, points[cells])
-    volumes: np.ndarray = 8.0 * np.linalg.det(jacobian)
+    volumes: np.ndarray = 8.0 * np.linalg.det(_jacobian(points, cells))
     return volumes
+
+
+def _jacobian(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    jacobian: np.ndarray = np.einsum("ki,mkj->mij", _CORNERS / 8.0, points[cells])
+    return jacobian
+
+
+def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
+    """Return ``(m,)``: length over first length, |F a|, of a fibre along ``axis`` a at the cell centres.
+
+    With F = dx/dX, whatever rigid motion there is.
+
+    Parameters
+    ----------
+    points, moved : (n, 3) float64, m
+        Reference and present positions.
+    cells : (m, 8) int
+    axis : (3,) float64
+        Unit vector in the reference positions.
+    """
+    along = np.linalg.solve(_jacobian(points, cells).transpose(0, 2, 1), axis[:, None])
+    lengths: np.ndarray = np.linalg.norm(_jacobian(moved, cells).transpose(0, 2, 1) @ along, axis=(1, 2))
+    return lengths
+
+
+def axis_of(points: np.ndarray) -> np.ndarray:
+    """Return the unit vector ``(3,)`` in the plane (t, n) along which a body's points reach farthest."""
+    arm = points[:, [0, 2]] - points[:, [0, 2]].mean(axis=0)
+    t, n = np.linalg.svd(arm, full_matrices=False)[2][0]
+    return np.array([t, 0.0, n])
 
 
 def nodal_volumes(points: np.ndarray, cells: np.ndarray) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Layout", "Rectangle"]
+__all__ = ["Abreast", "Frame", "Layout", "Rectangle"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,8 +28,8 @@ class Rectangle:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
-    """A frame of two views side by side over a strip with the force curve.
+class Frame:
+    """A picture of a film.
 
     Parameters
     ----------
@@ -47,6 +47,16 @@ class Layout:
                 "use multiples of 16, 640 x 480 at least."
             )
 
+    def share(self, left: int, top: int, width: int, height: int) -> tuple[float, float, float, float]:
+        """Return a rectangle as matplotlib wants it: shares of the frame from the lower left corner."""
+        across, down = self.width, self.height
+        return (left / across, 1.0 - (top + height) / down, width / across, height / down)
+
+
+@dataclass(frozen=True, slots=True)
+class Layout(Frame):
+    """Two views side by side over a strip with the force curve."""
+
     @property
     def rod(self) -> Rectangle:
         """The view of the whole rod."""
@@ -60,9 +70,35 @@ class Layout:
     @property
     def strip(self) -> Rectangle:
         """The strip of the force curve."""
-        return Rectangle(24, self.height - 176, self.width - 48, 132)
+        return Rectangle(74, self.height - 176, self.width - 108, 132)
 
-    def share(self, left: int, top: int, width: int, height: int) -> tuple[float, float, float, float]:
-        """Return a rectangle as matplotlib wants it: shares of the frame from the lower left corner."""
-        across, down = self.width, self.height
-        return (left / across, 1.0 - (top + height) / down, width / across, height / down)
+
+@dataclass(frozen=True, slots=True)
+class Abreast(Frame):
+    """Views of several rods side by side, each over its own force curve.
+
+    Parameters
+    ----------
+    count : int
+        Number of rods.
+    """
+
+    count: int
+
+    @property
+    def views(self) -> tuple[Rectangle, ...]:
+        """The views of the rods."""
+        return tuple(Rectangle(left, 74, self._across - 16, self.height - 290) for left in self._lefts)
+
+    @property
+    def strips(self) -> tuple[Rectangle, ...]:
+        """The strips of the force curves."""
+        return tuple(Rectangle(left + 46, self.height - 176, self._across - 66, 132) for left in self._lefts)
+
+    @property
+    def _across(self) -> int:
+        return (self.width - 32) // self.count
+
+    @property
+    def _lefts(self) -> tuple[int, ...]:
+        return tuple(16 + at * self._across for at in range(self.count))

@@ -4,17 +4,40 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.output import Fields
-from fem_impact.render.kinematics import magnified, nice_factor, nodal_volumes, rigid_motion
+from fem_impact.render.kinematics import (
+    axis_of,
+    magnified,
+    nice_factor,
+    nodal_volumes,
+    rigid_motion,
+    stretch,
+)
 
-__all__ = ["FIELDS", "Motion", "prepare"]
+__all__ = ["FIELDS", "Field", "Motion", "prepare"]
 
-FIELDS = {"mises": ("von Mises stress", "MPa", 1e-6), "velocity": ("speed", "m/s", 1.0)}
-"""Field name to label, shown unit and factor from SI."""
+
+class Field(NamedTuple):
+    """How a field is shown: label, unit, factor from SI, colour map, whether it has a sign."""
+
+    name: str
+    unit: str
+    scale: float
+    colours: str = "YlGnBu"
+    signed: bool = False
+
+
+FIELDS = {
+    "mises": Field("von Mises stress", "MPa", 1e-6),
+    "velocity": Field("speed", "m/s", 1.0),
+    "strain": Field("strain along\nthe axis", "1e-6", 1e6, "coolwarm", True),
+}
+"""The fields that can be shown."""
 
 _VISIBLE = 0.35
 """Share of the rod's diameter that the largest deformation away from the tip is magnified to."""
@@ -33,8 +56,8 @@ class Motion:
         Points of the rod.
     weights : (n,) float64, m3
         Volume at each point, zero off the rod.
-    factor : (n,) float64
-        Magnification of the deformation: ``peak`` in the rod, fading to 1 at the contact.
+    fade : (n,) float64
+        Share of the magnification: 1 in the rod, 0 at the contact.
     peak : float
         The factor that is written on the picture.
     contact : (3,) float64, m
@@ -49,12 +72,18 @@ class Motion:
     field: str
     rod_nodes: np.ndarray
     weights: np.ndarray
-    factor: np.ndarray
+    fade: np.ndarray
     peak: float
     contact: np.ndarray
     span: float
     near: tuple[float, float]
     far: tuple[float, float]
+
+    @property
+    def factor(self) -> np.ndarray:
+        """Magnification of the deformation ``(n,)``."""
+        magnification: np.ndarray = 1.0 + (self.peak - 1.0) * self.fade
+        return magnification
 
     def positions(self, frame: int) -> tuple[np.ndarray, np.ndarray]:
         """Return ``(n, 3) m`` positions as they are, and with the rod's deformation magnified."""
@@ -91,10 +120,9 @@ def prepare(fields: Fields, field: str, frames: Sequence[int]) -> Motion:
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
     peak = _peak(fields, frames, rod, weights, distance, span)
-    factor = 1.0 + (peak - 1.0) * _fade(distance)
     near, far = _ranges(fields, field, frames, distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
-    return Motion(fields, field, rod, weights, factor, peak, contact, span, near, far)
+    return Motion(fields, field, rod, weights, _fade(distance), peak, contact, span, near, far)
 
 
 def _fade(distance: np.ndarray) -> np.ndarray:
@@ -121,26 +149,38 @@ def _peak(
 
 
 def _colours(fields: Fields, field: str, frame: int) -> np.ndarray:
-    scale = FIELDS[field][2]
+    scale = FIELDS[field].scale
     if field == "velocity":
         speed: np.ndarray = scale * np.linalg.norm(fields.point_data("velocity", frame), axis=1)
         return speed
+    if field == "strain":
+        return scale * _strain(fields, frame)
     return scale * fields.cell_data(field, frame)
+
+
+def _strain(fields: Fields, frame: int) -> np.ndarray:
+    """Return the strain along the rod's axis ``(m,)``; nothing in the barrier."""
+    rod = fields.static.get("body", np.zeros(len(fields.cells))) == 0
+    cells, found = fields.cells[rod], np.zeros(len(rod))
+    moved = fields.points + fields.point_data("displacement", frame)
+    axis = axis_of(fields.points[np.unique(cells)])
+    found[rod] = stretch(fields.points, moved, cells, axis) - 1.0
+    return found
 
 
 def _ranges(
     fields: Fields, field: str, frames: Sequence[int], distance: np.ndarray, rod: np.ndarray
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    in_cells = field != "velocity"
+    in_cells, signed = field != "velocity", FIELDS[field].signed
     place = distance[fields.cells].mean(axis=1) if in_cells else distance
     on_rod = rod[fields.cells].all(axis=1) if in_cells else rod
-    tops = np.array([_tops(_colours(fields, field, frame), place, on_rod) for frame in frames])
-    near, far = np.maximum(tops.max(axis=0), 1e-12)
-    return (0.0, float(near)), (0.0, float(far))
+    tops = np.array([_tops(np.abs(_colours(fields, field, frame)), place, on_rod) for frame in frames])
+    near, far = (float(top) for top in np.maximum(tops.max(axis=0), 1e-12))
+    return (-near if signed else 0.0, near), (-far if signed else 0.0, far)
 
 
-def _tops(colours: np.ndarray, distance: np.ndarray, rod: np.ndarray) -> tuple[float, float]:
-    close, body = colours[distance < 0.5], colours[rod & (distance > 1.0)]
+def _tops(sizes: np.ndarray, distance: np.ndarray, rod: np.ndarray) -> tuple[float, float]:
+    close, body = sizes[distance < 0.5], sizes[rod & (distance > 1.0)]
     near = float(np.percentile(close, 99.5)) if close.size else 0.0
     far = float(np.percentile(body, 99.5)) if body.size else near
     return near, far

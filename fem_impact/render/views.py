@@ -7,16 +7,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.render.kinematics import to_points
-from fem_impact.render.motion import Motion
+from fem_impact.render.motion import FIELDS, Motion
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["CLOSE_WIDTH", "CloseView", "RodView"]
+__all__ = ["CLOSE_WIDTH", "CloseView", "RodView", "needed_height"]
 
-COLOUR_MAP = "YlGnBu"
 CLOSE_WIDTH = 0.45
 """Width of the close-up in diameters of the rod."""
+
+MARGIN = 0.45
+"""Free space around the rod in diameters."""
 
 _MIRROR = np.array([1.0, -1.0, 1.0])
 
@@ -33,7 +35,12 @@ class _View:
         self.cells = np.asarray(self.surface.cell_data["vtkOriginalCellIds"])
         self.plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
         self.plotter.renderer.set_background("white")
-        self.look = {"cmap": COLOUR_MAP, "clim": list(span), "show_scalar_bar": False, **look}
+        self.look = {
+            "cmap": FIELDS[motion.field].colours,
+            "clim": list(span),
+            "show_scalar_bar": False,
+            **look,
+        }
 
     def close(self) -> None:
         """Give the window back."""
@@ -51,16 +58,19 @@ class _View:
 
 
 class RodView(_View):
-    """The half model and its mirror image: the whole rod on the barrier, deformation magnified."""
+    """The half model and its mirror image: the whole rod on the barrier, deformation magnified.
 
-    def __init__(self, motion: Motion, size: tuple[int, int]) -> None:
+    ``height`` is that of the picture, m; see `needed_height`.
+    """
+
+    def __init__(self, motion: Motion, size: tuple[int, int], height: float) -> None:
         super().__init__(motion, size, motion.far, ambient=0.25, diffuse=0.8)
         self.mirrored = self.surface.copy()
         for mesh in (self.surface, self.mirrored):
             self._put(mesh, motion.fields.points, np.zeros(len(motion.fields.points)))
             self.plotter.add_mesh(mesh, scalars="colour", **self.look)
         _add_plane(self.plotter, motion)
-        self._aim(size)
+        self._aim(height)
 
     def draw(self, shown: np.ndarray, colours: np.ndarray) -> np.ndarray:
         """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
@@ -71,14 +81,12 @@ class RodView(_View):
         self._put(self.mirrored, shown * _MIRROR, smooth)
         return self._picture()
 
-    def _aim(self, size: tuple[int, int]) -> None:
-        points = self.motion.fields.points[self.motion.rod_nodes]
-        low, high = points.min(axis=0), points.max(axis=0)
-        middle = np.array([(low[0] + high[0]) / 2, 0.0, (low[2] + high[2]) / 2])
-        extent = np.array([high[0] - low[0], high[2] - low[2]]) + 0.9 * self.motion.span
-        side, height = np.radians(-20.0), np.radians(14.0)
-        towards = [np.sin(side) * np.cos(height), -np.cos(side) * np.cos(height), np.sin(height)]
-        _look_at(self.plotter, middle, np.array(towards), max(extent[1], extent[0] * size[1] / size[0]))
+    def _aim(self, height: float) -> None:
+        low, high = _corners(self.motion)
+        middle = np.array([(low[0] + high[0]) / 2, 0.0, low[2] - MARGIN * self.motion.span + height / 2])
+        side, up = np.radians(-20.0), np.radians(14.0)
+        towards = [np.sin(side) * np.cos(up), -np.cos(side) * np.cos(up), np.sin(up)]
+        _look_at(self.plotter, middle, np.array(towards), height)
 
 
 class CloseView(_View):
@@ -98,6 +106,18 @@ class CloseView(_View):
         """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
         self._put(self.surface, true, colours)
         return self._picture()
+
+
+def needed_height(motion: Motion, size: tuple[int, int]) -> float:
+    """Return the height, m, of a picture of ``size`` pixels that shows the whole rod."""
+    low, high = _corners(motion)
+    across, up = (high - low)[[0, 2]] + 2 * MARGIN * motion.span
+    return float(max(up, across * size[1] / size[0]))
+
+
+def _corners(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+    points = motion.fields.points[motion.rod_nodes]
+    return points.min(axis=0), points.max(axis=0)
 
 
 def _surface(motion: Motion) -> pyvista.PolyData:

@@ -13,17 +13,20 @@ import fem_impact.render.encode as encoding
 import fem_impact.render.probe as probe
 from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError
 from fem_impact.output import read_fields
-from fem_impact.render import render, require_gl
+from fem_impact.render import render, render_side_by_side, require_gl
 from fem_impact.render.kinematics import (
+    axis_of,
     hex_volumes,
     magnified,
     nice_factor,
     nodal_volumes,
     rigid_motion,
+    stretch,
     to_points,
 )
-from fem_impact.render.layout import Layout
+from fem_impact.render.layout import Abreast, Layout
 from fem_impact.render.motion import prepare
+from fem_impact.render.side_by_side import _alike
 
 POINTS, CELLS = result_maker.grid((3, 2, 4))
 WEIGHTS = nodal_volumes(POINTS, CELLS)
@@ -61,6 +64,42 @@ def test_magnification_leaves_rigid_motion_alone():
     moved = turned(POINTS, 0.2) + np.array([0.1, 0.0, 0.0])
     rigid = rigid_motion(POINTS, moved, WEIGHTS)
     assert np.allclose(magnified(rigid, moved, np.full(len(POINTS), 50.0)), moved)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-1e-3, 1e-3))
+@settings(max_examples=20, deadline=None)
+def test_stretch_sees_strain_along_the_axis_only(angle, strain):
+    axis = np.array([np.sin(0.6), 0.0, np.cos(0.6)])
+    across = np.array([np.cos(0.6), 0.0, -np.sin(0.6)])
+    longer = (
+        POINTS + strain * np.outer(POINTS @ axis, axis) - 0.3 * strain * np.outer(POINTS @ across, across)
+    )
+    found = stretch(POINTS, turned(longer, angle), CELLS, axis)
+    assert np.allclose(found, 1.0 + strain, atol=1e-12)
+
+
+def test_the_axis_is_found_from_the_shape():
+    long = turned(POINTS * [0.2, 0.3, 2.0], 0.7)
+    assert abs(axis_of(long) @ turned(np.array([[0.0, 0.0, 1.0]]), 0.7)[0]) == pytest.approx(1.0)
+
+
+def test_strain_is_shown_with_its_sign_and_not_in_the_barrier(result):
+    motion = prepare(read_fields(result / "fields.vtkhdf"), "strain", range(4))
+    assert motion.far[0] == -motion.far[1] < 0.0
+    colours, body = motion.colours(2), motion.fields.static["body"]
+    assert not colours[body == 1].any()
+    assert colours[body == 0].min() < 0.0 < colours[body == 0].max()
+
+
+def test_rods_side_by_side_share_scale_and_colours(result):
+    fields = read_fields(result / "fields.vtkhdf")
+    motions = [prepare(fields, "strain", frames) for frames in ([1], [3])]
+    assert motions[0].far != motions[1].far
+    assert motions[0].peak != motions[1].peak
+    one, other = _alike(motions)
+    assert one.far == other.far == max((m.far for m in motions), key=lambda far: far[1])
+    assert one.peak == other.peak == min(m.peak for m in motions)
+    assert one.factor.max() == one.peak
 
 
 @pytest.mark.parametrize(
@@ -198,3 +237,16 @@ def test_velocity_film_without_barrier_history_or_record(tmp_path):
     assert made.frames == 1
     assert any("no force curve" in note for note in made.notes)
     assert any("named after its folder" in note for note in made.notes)
+
+
+@pytest.mark.render
+def test_side_by_side_film_moves_in_every_view(result, tmp_path):
+    require_gl()
+    made = render_side_by_side([result, result], tmp_path / "film.png", frames=3, size=(640, 480))
+    assert (made.frames, made.notes) == (3, ())
+    first, second = (np.asarray(Image.open(p)).astype(int) for p in sorted(made.path.iterdir())[:2])
+    layout = Abreast(640, 480, 2)
+    for view in (*layout.views, *layout.strips):
+        cut = np.s_[view.top : view.top + view.height, view.left : view.left + view.width]
+        assert first[cut].std() > 5
+        assert (np.abs(first[cut] - second[cut]) > 30).mean() > 1e-3

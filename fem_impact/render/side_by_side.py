@@ -1,0 +1,161 @@
+"""Several rods side by side at one scale and one time: the waves in each, and its contact force below."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from textwrap import fill
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.figures.style import INK, QUIET
+from fem_impact.output import read_fields
+from fem_impact.render.board import blank, colour_bar, heading, picture, write
+from fem_impact.render.encode import encode
+from fem_impact.render.film import RenderResult, context, require_libraries, target
+from fem_impact.render.layout import Abreast, Rectangle
+from fem_impact.render.motion import Motion, prepare
+from fem_impact.render.strip import Curve, Strip, limits_of
+from fem_impact.render.views import RodView, needed_height
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from PIL.Image import Image
+
+__all__ = ["render_side_by_side"]
+
+FRAMES = 120
+TITLE = "Strain along the axis: of one sign over a section in longitudinal waves, of both in bending"
+
+
+def render_side_by_side(
+    results: Sequence[str | Path],
+    out: str | Path | None = None,
+    frames: int = FRAMES,
+    size: tuple[int, int] = (1280, 720),
+    fps: int = 20,
+) -> RenderResult:
+    """Draw one film of several runs: one scale, one magnification, one colour range, one clock.
+
+    A rod whose run is over stays as it was last. Colours are the strain along the rod's axis.
+
+    Parameters
+    ----------
+    results : paths
+        Folders as `fem_impact.render.render` takes them.
+    out : path, optional
+        The film; without it ``film-side-by-side`` in the first folder.
+    frames : int
+        Evenly over the longest run; each rod shows its nearest stored frame.
+    size : tuple of int, px
+        Width and height, multiples of 16.
+    fps : int, 1/s
+
+    Raises
+    ------
+    ResultError, MissingLibraryError, OutputPathError
+        As `fem_impact.render.render`.
+    """
+    folders = [Path(result) for result in results]
+    held = [read_fields(folder / "fields.vtkhdf") for folder in folders]
+    motions = _alike([prepare(fields, "strain", range(len(fields.times))) for fields in held])
+    require_libraries()
+    path, notes = target(folders[0], out, "film-side-by-side")
+    told = [context(folder, fields) for folder, fields in zip(folders, held, strict=True)]
+    times = np.linspace(0.0, max(float(fields.times[-1]) for fields in held), frames)
+    board = Board.make(Abreast(*size, len(folders)), motions, [t[:2] for t in told], times)
+    made = encode(_frames(board, motions, times), path, fps)
+    missing = [sentence for *_, sentences in told for sentence in sentences]
+    return RenderResult(made, (*notes, *missing), frames)
+
+
+def _alike(motions: Sequence[Motion]) -> list[Motion]:
+    """Give all motions the widest colour range and the smallest magnification."""
+    top = max(motion.far[1] for motion in motions)
+    peak = min(motion.peak for motion in motions)
+    return [replace(motion, far=(-top, top), peak=peak) for motion in motions]
+
+
+@dataclass(frozen=True, slots=True)
+class Board:
+    """What stays the same over the film.
+
+    Parameters
+    ----------
+    layout : Abreast
+    base : Image
+        The still picture that the views are pasted into.
+    strips : tuple of Strip
+    ends : tuple of float
+        When each run is over, s.
+    """
+
+    layout: Abreast
+    base: Image
+    strips: tuple[Strip, ...]
+    ends: tuple[float, ...]
+
+    @classmethod
+    def make(
+        cls, layout: Abreast, motions: Sequence[Motion], told: Sequence[tuple[str, Curve]], times: np.ndarray
+    ) -> Board:
+        """Draw the still parts once; ``told`` holds title and force curve of each run."""
+        drawn = blank(layout)
+        heading(drawn, layout, TITLE)
+        limits = limits_of([curve for _, curve in told], times)
+        strips = []
+        for (title, curve), view, place in zip(told, layout.views, layout.strips, strict=True):
+            _title(drawn, layout, view, title)
+            strips.append(Strip.draw(drawn, layout, place, curve, limits))
+        middle = layout.views[len(layout.views) // 2]
+        colour_bar(drawn, layout, middle, "strain", motions[0].far)
+        _scale(drawn, layout, motions[0].peak)
+        ends = tuple(float(motion.fields.times[-1]) for motion in motions)
+        return cls(layout, picture(drawn), tuple(strips), ends)
+
+    def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
+        """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s."""
+        from PIL import Image, ImageDraw
+
+        frame = self.base.copy()
+        pen = ImageDraw.Draw(frame)
+        for drawn, view in zip(pictures, self.layout.views, strict=True):
+            frame.paste(Image.fromarray(drawn), view.corner)
+        for strip, view, end in zip(self.strips, self.layout.views, self.ends, strict=True):
+            strip.mark(pen, time)
+            if time > end:
+                place = (view.left + view.width - 8, view.top + 4)
+                write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
+        write(pen, (self.layout.width - 24, 15), f"t = {time * 1e6:.1f} µs")
+        return np.asarray(frame)
+
+
+def _title(drawn: Figure, layout: Abreast, view: Rectangle, title: str) -> None:
+    place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
+    drawn.text(*place, fill(title, view.width // 8), fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
+
+
+def _scale(drawn: Figure, layout: Abreast, peak: float) -> None:
+    view = layout.views[0]
+    place = (view.left / layout.width, 1 - (view.top + view.height + 19) / layout.height)
+    words = f"one scale; deformation × {peak:g},\nfading to × 1 at the contact"
+    drawn.text(*place, words, fontsize=9, color=QUIET, va="center")
+
+
+def _frames(board: Board, motions: Sequence[Motion], times: np.ndarray) -> Iterator[np.ndarray]:
+    sizes = [view.size for view in board.layout.views]
+    height = max(needed_height(motion, size) for motion, size in zip(motions, sizes, strict=True))
+    views = [RodView(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]
+    try:
+        for time in times:
+            nearest = [int(np.abs(motion.fields.times - time).argmin()) for motion in motions]
+            drawn = [
+                view.draw(motion.positions(frame)[1], motion.colours(frame))
+                for view, motion, frame in zip(views, motions, nearest, strict=True)
+            ]
+            yield board.compose(drawn, float(time))
+    finally:
+        for view in views:
+            view.close()
