@@ -1,7 +1,11 @@
-"""From a scene and its filled slots to a model: meshes, operators, masses, items, step."""
+"""From a scene and its filled slots to a model: meshes, operators, masses, items, step.
+
+What only some effects need is imported where it is built.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
@@ -13,27 +17,27 @@ from fem_impact.effects.spec import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.modes import rod_modes
-from fem_impact.solid.boundary import radiating_share, spread_boundary
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
-from fem_impact.solid.damping import ModalDamping
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
+from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
-from fem_impact.solid.rigid_rest import POINTS, ElasticNose, RigidRest, rest_mass
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.solid.stable import stable_step
-from fem_impact.solid.yielding import YieldingZone, dummy_element
 from meshes import SKIN, HexMesh
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
+    from fem_impact.solid.damping import ModalDamping
+    from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
+    from fem_impact.solid.yielding import YieldingZone
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -110,8 +114,16 @@ def _complete_mass(rod: Body, geometry: Geometry, scene: Scene, rest: float) -> 
 
 
 def _rest_mass(scene: Scene, geometry: Geometry) -> float:
+    from fem_impact.solid.rigid_rest import rest_mass
+
     rod = scene.projectile
     return rest_mass(geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
+
+
+def _place_rest(mass: Array, scene: Scene, geometry: Geometry, layout: Layout) -> None:
+    from fem_impact.solid.rigid_rest import POINTS
+
+    mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
 
 
 def assemble_masses(bodies: list[Body], layout: Layout) -> Array:
@@ -160,6 +172,8 @@ def _elastic_rod(
     nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), free)
     frame = TurningFrame.at(x[:n], mass[:n], free) if spec.turning_frame else FixedFrame(x[:n].copy())
     if not spec.vibrating:
+        from fem_impact.solid.rigid_rest import ElasticNose
+
         return ElasticNose(nose, frame, np.zeros(n), np.zeros(n))
     slices = SliceOperator.of_rod(rod, body.stiffness)
     return ElasticRod(slices, drawn, nose, frame, layout, np.zeros(n), np.zeros(n))
@@ -167,17 +181,16 @@ def _elastic_rod(
 
 def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
     """Return the rigid body behind the nose: the nose's last section and the points behind it."""
+    from fem_impact.solid.rigid_rest import POINTS, RigidRest
+
     places = np.concatenate([layout.rod[geometry.rod.body_nodes[:, 0]], layout.rod[-POINTS:]])
     return RigidRest(places, mass[places[:, 0]])
 
 
-def elastic_block(
-    body: Body, layout: Layout, x: Array, whole: sp.csr_matrix, held: Bools
-) -> tuple[ElasticBlock, Array]:
-    """Return the block's linear part and the damping of its free unknowns.
+def elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, tuple[sp.dia_matrix, Array]]:
+    """Return the block's linear part, and springs and dashpots of the half-space around it."""
+    from fem_impact.solid.boundary import spread_boundary
 
-    ``whole`` is the stiffness of all its cells, ``held`` (n,) what the symmetry holds.
-    """
     place = layout.barrier_slice
     shifted = body.places - place.start
     T = tie_operator(body.mesh.tie, shifted, place.stop - place.start)
@@ -190,21 +203,36 @@ def elastic_block(
     block = ElasticBlock(
         NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)
     )
+    return block, (springs, pots)
+
+
+def dashpots(
+    body: Body,
+    layout: Layout,
+    inverse_mass: Array,
+    whole: sp.csr_matrix,
+    outside: tuple[sp.dia_matrix, Array],
+) -> Dashpots:
+    """Return the radiating boundary of a block.
+
+    ``whole`` is the stiffness of all its cells, ``outside`` springs and dashpots of the half-space around it.
+    """
+    from fem_impact.solid.boundary import radiating_share
+
+    (springs, pots), place, m = outside, layout.barrier_slice, body.material
     nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
-    loaded = int(shifted[int(nearest.argmin()), 2])
-    share = radiating_share(sp.csr_matrix(whole + springs), pots, held, loaded, (m.E, m.nu, m.rho))
-    return block, share * pots
-
-
-def dashpots(damping: Array, layout: Layout, inverse_mass: Array) -> Dashpots:
-    """Return the radiating boundary from the block's damping."""
-    places = layout.barrier_slice.start + np.flatnonzero(damping)
+    loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
+    held, K = inverse_mass[place] == 0, sp.csr_matrix(whole + springs)
+    damping = pots * radiating_share(K, pots, held, loaded, (m.E, m.nu, m.rho))
+    places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
-    return Dashpots(places, damping[places - layout.barrier_slice.start], inverse_mass[places])
+    return Dashpots(places, damping[places - place.start], inverse_mass[places])
 
 
 def yielding_zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
     """Return the cells that may yield as one item."""
+    from fem_impact.solid.yielding import YieldingZone
+
     cells, m = body.mesh.cells[body.yields], body.material
     return YieldingZone.of(body.name, body.places[cells], body.points[cells], m.E, m.nu, law, layout.dummy)
 
@@ -244,6 +272,22 @@ def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layo
     return Weight(gravity * mass[:n] * direction[:n], x[:n].copy())
 
 
+def _damping(
+    loss: float,
+    linear: ElasticRod | ElasticNose,
+    K: sp.csr_matrix,
+    mass: Array,
+    inverse_mass: Array,
+    free: Ints,
+    steps: Mapping[str, float],
+) -> ModalDamping:
+    from fem_impact.solid.damping import ModalDamping
+
+    n = K.shape[0]
+    modes = rod_modes(K, mass[:n], inverse_mass[:n] == 0)
+    return ModalDamping.of(modes, linear.frame, inverse_mass[:n], free, loss, steps["rod"])
+
+
 def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
     """Refuse a tip without a fine zone where one is needed (SceneError)."""
     if levels_of(scene) == 0 and (spec.meshed_barrier or spec.rod_law is not None):
@@ -278,7 +322,7 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     bodies = _bodies(scene, spec, geometry, layout)
     mass = assemble_masses(bodies, layout)
     if not spec.vibrating:
-        mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
+        _place_rest(mass, scene, geometry, layout)
     inverse_mass = invert(mass, bodies)
     rod = bodies[0]
     drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
@@ -297,19 +341,15 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     rod_stiffness = drawn.reduced(assembled(rod, n), layout.body_shape[1])
     steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
     if spec.loss_factor is not None:
-        modes = rod_modes(rod_stiffness, mass[:n], inverse_mass[:n] == 0)
         free = rod.places[~rod.mesh.is_hanging]
-        impulses.append(
-            ModalDamping.of(modes, linear.frame, inverse_mass[:n], free, spec.loss_factor, steps["rod"])
-        )
+        impulses.append(_damping(spec.loss_factor, linear, rod_stiffness, mass, inverse_mass, free, steps))
     if len(bodies) == 2:
         block_stiffness = assembled(bodies[1], place.stop - n, n)
         steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])
-        held = inverse_mass[place] == 0
-        block, damping = elastic_block(bodies[1], layout, x, block_stiffness, held)
+        block, outside = elastic_block(bodies[1], layout, x)
         forces.append(block)
         if spec.radiating:
-            impulses.append(dashpots(damping, layout, inverse_mass))
+            impulses.append(dashpots(bodies[1], layout, inverse_mass, block_stiffness, outside))
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])

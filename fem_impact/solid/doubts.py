@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
@@ -10,8 +10,10 @@ from fem_impact.solid.contact import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
-from fem_impact.solid.yielding import YieldingZone
 from meshes import SKIN
+
+if TYPE_CHECKING:
+    from fem_impact.solid.yielding import YieldingZone
 
 DEEP = 0.25  # of the tip size
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.estimates import ContactEstimate, contact_estimate, projectile
-from fem_impact.solid.rigid_rest import rest_points
 from meshes import HexMesh, RodMesh, Zone
 
 if TYPE_CHECKING:
@@ -77,6 +76,8 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
     rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
     if not vibrating:
+        from fem_impact.solid.rigid_rest import rest_points
+
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap - points[:, 2].min()

@@ -18,7 +18,10 @@ Array = NDArray[np.float64]
 SIGNS = np.array(
     [(-1, -1, -1), (1, -1, -1), (1, 1, -1), (-1, 1, -1), (-1, -1, 1), (1, -1, 1), (1, 1, 1), (-1, 1, 1)]
 )
+# its Gauss points, xi fastest
+CORNERS = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / np.sqrt(3.0)
 LANES = 16
+DUMMY_EDGE = 2e-3  # m
 THIRD = 1.0 / 3.0
 
 
@@ -27,6 +30,11 @@ def reference_gradients(at: Array) -> Array:
     factor = 1 + SIGNS[None] * at[:, None]
     product = [factor[..., j] * factor[..., k] for j, k in ((1, 2), (0, 2), (0, 1))]
     return np.asarray(SIGNS[None] * np.stack(product, axis=-1) / 8)
+
+
+def dummy_element() -> Array:
+    """Return the positions (8, 3) of what fills up the last block: a cube that never moves."""
+    return 0.5 * DUMMY_EDGE * SIGNS
 
 
 @inlined

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,7 +18,9 @@ from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.sparse import Hanging
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding import YieldingZone
+
+if TYPE_CHECKING:
+    from fem_impact.solid.yielding import YieldingZone
 
 Array = NDArray[np.float64]
 

@@ -36,11 +36,20 @@ class Watch:
     The one place where energies are computed in a run.
     """
 
-    moving: ClassVar[tuple[str, ...]] = ("ledger.start", "ledger.worst")
+    moving: ClassVar[tuple[str, ...]] = ("ledger.start", "ledger.worst", "sampled")
     ledger: Ledger
     every: int
     accounts: dict[str, float] = field(default_factory=dict)
     reason: str = ""
+
+    @property
+    def sampled(self) -> Array:
+        """Return the last accounts in their order, the residual last, J."""
+        return np.array(list(self.accounts.values()))
+
+    @sampled.setter
+    def sampled(self, values: Array) -> None:
+        self.accounts = dict(zip((*ACCOUNTS, "residual"), map(float, values), strict=True))
 
     def observe(self, state: State) -> bool:
         """Sample."""

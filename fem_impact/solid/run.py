@@ -19,7 +19,6 @@ from fem_impact.progress import Progress
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL, Checkpoint
 from fem_impact.solid.doubts import doubts
-from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -32,6 +31,7 @@ from fem_impact.sources import stamp
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
+    from fem_impact.solid.heatwatch import HeatWatch
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,9 +7,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
-from fem_impact.solid.hexmodes import reference_gradients
+from fem_impact.solid.hexmodes import CORNERS, reference_gradients
 from fem_impact.solid.kernels import kernel
-from fem_impact.solid.yielding_kernel import CORNERS
 
 Array = NDArray[np.float64]
 

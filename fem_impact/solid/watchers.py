@@ -11,7 +11,6 @@ from fem_impact.estimates import contact_estimate
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.fields import Fields
-from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.moving import Moving
@@ -25,6 +24,7 @@ from fem_impact.solid.stepguard import StepGuard
 if TYPE_CHECKING:
     from fem_impact.effects import ModelSpec
     from fem_impact.scene import Scene
+    from fem_impact.solid.heatwatch import HeatWatch
 
 FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 
@@ -87,7 +87,7 @@ class Watchers:
             frames = [_frames(scene, model, view, out, go_on)]
         stop = Separation(model, view, scene.accuracy.max_time)
         skin, peak = SkinWatch(model), PeakForce(model.book)
-        heat = HeatWatch(model) if spec.heat else None
+        heat = _heat_watch(model) if spec.heat else None
         return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
 
     @property
@@ -111,6 +111,12 @@ class Watchers:
         """Return everything that moves, by a name that the scene alone decides."""
         parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
+
+
+def _heat_watch(model: Model) -> HeatWatch:
+    from fem_impact.solid.heatwatch import HeatWatch
+
+    return HeatWatch(model)
 
 
 def _frames(scene: Scene, model: Model, view: RodView, out: Path, go_on: bool) -> Frames:

@@ -10,15 +10,13 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import LANES, SIGNS, reference_gradients
+from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import CORNERS, ROWS, Blocks, elastic_energy, update
+from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, update
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-DUMMY_EDGE = 2e-3  # m
 
 
 @dataclass(slots=True)
@@ -93,11 +91,6 @@ class YieldingZone:
         s = self.blocks.stress.reshape(-1, 8, 6, LANES)
         square = 1.5 * (s[:, :, :3] ** 2).sum(axis=2) + 3.0 * (s[:, :, 3:] ** 2).sum(axis=2)
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
-
-
-def dummy_element() -> Array:
-    """Return the positions (8, 3) of the filler: a cube that never moves."""
-    return 0.5 * DUMMY_EDGE * SIGNS
 
 
 def gauss_volumes(x: Array) -> Array:

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.hexmodes import (
+    CORNERS,
     LANES,
     THIRD,
     cofactors,
@@ -33,7 +34,6 @@ Ints = NDArray[np.int64]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
 POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, ROWS = 0, 21, 42, 63, 72, 78, 79, 80
-CORNERS = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / np.sqrt(3.0)
 
 
 @inlined

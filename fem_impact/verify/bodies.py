@@ -24,6 +24,7 @@ from fem_impact.solid.elements import (
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.hardening import Hardening
+from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.masspoints import MassPoints
@@ -32,7 +33,7 @@ from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, tie_operator
 from fem_impact.solid.stable import stable_step
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding import YieldingZone, dummy_element
+from fem_impact.solid.yielding import YieldingZone
 from meshes import HexMesh, RodMesh
 
 __all__ = ["Block", "Body", "body_model", "placed", "rigid_of", "unsliced"]
@@ -131,9 +132,9 @@ def body_model(body: Body) -> Model:
     if block:
         whole = build.assembled(parts[1], place.stop - n, n)
         steps["barrier"] = stable_step(whole, inverse[place])
-        elastic, damping = build.elastic_block(parts[1], layout, x, whole, inverse[place] == 0)
+        elastic, outside = build.elastic_block(parts[1], layout, x)
         forces.append(elastic)
-        impulses.append(build.dashpots(damping, layout, inverse))
+        impulses.append(build.dashpots(parts[1], layout, inverse, whole, outside))
     contact = _contact(body, parts, inverse, x)
     return Model(
         geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, int(mesh.level.max())),

@@ -1,5 +1,7 @@
 """Effects: what a scene does not name is not built; what it names is described; numbers by hand."""
 
+import subprocess
+import sys
 from dataclasses import replace
 from math import pi, sqrt
 
@@ -63,6 +65,37 @@ def test_large_rotation_changes_the_frame_alone():
     made = model("vibration", "barrier-rigid", "large-rotation")
     assert isinstance(made.forces[0].frame, TurningFrame)
     assert kinds(made.forces) == [ElasticRod]
+
+
+OF_ONE_EFFECT = ("damping", "heatwatch", "boundary", "rigid_rest", "yielding", "yielding_kernel")
+RUN = """
+import sys
+from dataclasses import replace
+from fem_impact.scene import load
+from fem_impact.solid.run import solve
+
+base = load("t5b")
+size = replace(base.accuracy, tip_size=1.6e-3, across=6, max_time=2e-6)
+solve(replace(base, measured=None, effects=tuple(sys.argv[1:]), accuracy=size))
+print(*sys.modules)
+"""
+
+
+@pytest.mark.parametrize(
+    ("effects", "imported"),
+    [
+        (("vibration", "barrier-rigid"), ()),
+        (
+            ("friction", "barrier-elastoplastic", "contact-heating"),
+            ("heatwatch", "boundary", "rigid_rest", "yielding", "yielding_kernel"),
+        ),
+        (("vibration", "barrier-rigid", "material-damping"), ("damping",)),
+    ],
+)
+def test_what_is_off_is_not_even_imported(effects, imported):
+    done = subprocess.run([sys.executable, "-c", RUN, *effects], capture_output=True, text=True, check=True)
+    loaded = done.stdout.split()
+    assert tuple(name for name in OF_ONE_EFFECT if f"fem_impact.solid.{name}" in loaded) == imported
 
 
 def test_elastic_block_brings_no_yielding():
