@@ -6,13 +6,12 @@ import itertools
 import sys
 from collections.abc import Callable
 from dataclasses import asdict
-from difflib import get_close_matches
 from pathlib import Path
 
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, SceneError, did_you_mean
 from fem_impact.outcome import utc_now
 from fem_impact.output import read_text, write_text
 from fem_impact.scale.local import cores
@@ -57,7 +56,6 @@ def _chosen(options: Options) -> list[str]:
     if options.readme:
         raise SceneError("takes all cases.", key="--readme", remedy="Leave --only out.")
     if options.only not in CASES:
-        near = get_close_matches(options.only, CASES, 1)
-        hint = f"Did you mean {near[0]}?" if near else f"Known are: {', '.join(CASES)}."
+        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
         raise SceneError("is no hard case.", key="--only", value=options.only, remedy=hint)
     return [options.only]

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing, contextmanager
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,7 +13,7 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, SceneError, did_you_mean
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
@@ -109,7 +108,6 @@ def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
 
     for name in ids:
         if name not in MEASURED_SETS:
-            near = get_close_matches(name, MEASURED_SETS, 1)
-            remedy = f"Did you mean {near[0]}?" if near else f"Measured: {', '.join(MEASURED_SETS)}."
+            remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
             raise SceneError("is not a measured set.", key="ID", value=name, remedy=remedy)
     return tuple(dict.fromkeys(ids))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, ClassVar
 
 __all__ = [
@@ -12,6 +13,7 @@ __all__ = [
     "ResultError",
     "RunError",
     "SceneError",
+    "did_you_mean",
 ]
 
 
@@ -96,6 +98,14 @@ EXIT_CODES: dict[int, str] = {
     MissingLibraryError.exit_code: "a library for pictures or films is missing; results are kept",
     130: "interrupted; what was computed is kept",
 }
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+    """Return a remedy that proposes the nearest known name, ``otherwise`` where none is near."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, list(known), 1)
+    return f"Did you mean {near[0]}?" if near else otherwise
 
 
 def _short(value: Any, limit: int = 60) -> str:

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL
 
 if TYPE_CHECKING:
@@ -58,8 +57,7 @@ def simulate(
         If the run cannot go on; what was computed stays in ``out``.
     """
     if fidelity not in (None, *FIDELITIES):
-        near = get_close_matches(str(fidelity), FIDELITIES, 1)
-        hint = f"Did you mean {near[0]}?" if near else f"Use one of {', '.join(FIDELITIES)}."
+        hint = did_you_mean(str(fidelity), FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise SceneError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     if scene.accuracy.target is not None:
         from fem_impact.cost import simulate_to_target
@@ -109,7 +107,6 @@ def require_runnable(scene: Scene, fidelity: str) -> None:
         from fem_impact.solid.build import require_fine_zone
 
         require_shallow(scene)
-
         require_fine_zone(scene, specify(scene))
 
 

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from difflib import get_close_matches
 from typing import Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.paper.numbers import estimate_entry, statistic_entry
 from rigid import first_order
 from rigid.experiments import (
@@ -69,8 +68,7 @@ def csv_rows(document: dict[str, Any]) -> Iterator[list[Any]]:
 def _checked(set_id: str) -> str:
     if set_id in set_ids():
         return set_id
-    near = get_close_matches(set_id, set_ids(), 1)
-    remedy = f"Did you mean {near[0]}?" if near else f"Measured: {', '.join(set_ids())}."
+    remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
     raise SceneError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
 
 

@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.types import Material, Scene, Surface
 from fem_impact.scene.units import parse_quantity
@@ -88,8 +88,7 @@ def proposal(path: Path) -> str:
 
 
 def _near(name: str) -> str:
-    near = get_close_matches(name, shipped(), 1)
-    return f"Did you mean {near[0]}?" if near else "`fem-impact scenes` lists the shipped scenes."
+    return did_you_mean(name, shipped(), "`fem-impact scenes` lists the shipped scenes.")
 
 
 def _looks_like_a_file(name: str) -> bool:

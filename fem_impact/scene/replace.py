@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from difflib import get_close_matches
 from typing import Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
@@ -63,8 +62,8 @@ def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     for name in path:
         inner = table.get(name)
         if not isinstance(inner, dict):
-            near = get_close_matches(name, [k for k, v in table.items() if isinstance(v, Mapping)], 1)
-            hint = f"Did you mean {near[0]}?" if near else "Write section.key, such as accuracy.tip_size."
+            sections = [k for k, v in table.items() if isinstance(v, Mapping)]
+            hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")
             raise SceneError("is not a key of a scene.", key=key, remedy=hint, source="--set")
         table = inner
     return table

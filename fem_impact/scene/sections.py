@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from difflib import get_close_matches
 from typing import Any, TypeVar
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields, library
 from fem_impact.scene.effect_names import AUTO, check_effects
 from fem_impact.scene.fields import Field
@@ -191,7 +190,5 @@ def _needed(table: Table, key: str) -> Any:
 def _check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) -> None:
     for key in table:
         if key not in known:
-            near = get_close_matches(str(key), list(known), 1)
-            listed = ", ".join(shown or known)
-            remedy = f"Did you mean {near[0]}?" if near else f"Known here: {listed}."
+            remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
             raise SceneError("is not a known key.", key=str(key), remedy=remedy)

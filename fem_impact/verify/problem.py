@@ -5,11 +5,10 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from difflib import get_close_matches
 from math import inf, isfinite
 from typing import Any, Literal
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
 __all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification"]
@@ -186,7 +185,6 @@ class Problem:
         known = {p.name: p for p in self.parameters}
         for name in changes:
             if name not in known:
-                near = get_close_matches(name, known, 1)
-                hint = f"Did you mean {near[0]}?" if near else f"Known are: {', '.join(known)}."
+                hint = did_you_mean(name, known, f"Known are: {', '.join(known)}.")
                 raise SceneError(f"is no parameter of {self.name}.", key=name, remedy=hint)
         return {name: p.read(changes[name]) if name in changes else p.default for name, p in known.items()}
