@@ -89,11 +89,6 @@ class FieldWriter:
         with h5py.File(self.path, "r+") as file:
             file["VTKHDF"]["Steps"].attrs["NSteps"] = int(known)
 
-    @property
-    def dropped(self) -> int:
-        """Number of frames dropped so far."""
-        return len(self._warnings)
-
     def append(
         self,
         time: float,

@@ -13,10 +13,9 @@ from fem_impact.errors import SceneError
 from rigid import Arms, Projectile, drop_velocities
 from rigid.experiments import MeasuredSet, measured_sets
 
-__all__ = ["SURFACES", "Case", "outside_of", "sets_of", "warnings_of", "weights_of"]
+__all__ = ["Case", "outside_of", "sets_of", "warnings_of", "weights_of"]
 
 Surface = Literal["machined", "contaminated", "cleaned"]
-SURFACES = ("machined", "contaminated", "cleaned")
 NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
 """What counts as one step away: twice the length, 20 degrees, twice the speed."""
 

@@ -111,14 +111,3 @@ def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Arra
         [np.broadcast_to(np.asarray(basis.basis[k][0]), basis.dx.shape) for k in HEX_MAPPING[:8]]
     )
     return np.asarray(density * np.einsum("kmq,mq->mk", values, basis.dx))
-
-
-def largest_frequency(K: Array, mass: Array) -> Array:
-    """Return the largest circular frequency (m,), rad/s, of each free element.
-
-    The largest eigenvalue over the elements bounds that of any assembly of them (Irons & Treharne 1971).
-    """
-    root = 1 / np.sqrt(np.repeat(mass, 3, axis=1))
-    scaled = K * root[:, :, None] * root[:, None, :]
-    parts = [np.linalg.eigvalsh(scaled[i : i + CHUNK])[:, -1] for i in range(0, len(K), CHUNK)]
-    return np.sqrt(np.concatenate(parts))

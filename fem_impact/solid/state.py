@@ -44,8 +44,3 @@ class State:
         twin.x, twin.v, twin.kick = self.x, self.v, self.kick
         twin.time, twin.step, twin.dt, twin.dt_next = self.time, self.step, self.dt, self.dt_next
         return twin
-
-    @classmethod
-    def at_rest(cls, x: Array) -> State:
-        """Start at positions ``x`` without motion."""
-        return cls(x.copy(), np.zeros_like(x), np.zeros_like(x))

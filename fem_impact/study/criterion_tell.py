@@ -22,7 +22,6 @@ KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 """T1/tau and worst e of elastic frictionless drops, derived independently (benchmark problem 8)."""
 
 JUDGED = 0.05
-YIELDING = ("yielding, frictionless", "yielding, machined")
 Found = Mapping[str, Rods]
 
 

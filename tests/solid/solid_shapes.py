@@ -3,6 +3,7 @@
 import numpy as np
 
 import meshes
+from fem_impact.solid.state import State
 from meshes import Zone
 from meshes.block import box_cells
 
@@ -43,6 +44,11 @@ def dense(K, cells):
         dof = (3 * cell[:, None] + np.arange(3)).ravel()
         result[np.ix_(dof, dof)] += k
     return result
+
+
+def at_rest(x):
+    """State at positions x without motion."""
+    return State(x.copy(), np.zeros_like(x), np.zeros_like(x))
 
 
 def fastest(K, mass):

@@ -13,7 +13,6 @@ from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
-from fem_impact.solid.state import State
 from meshes import OUTER
 
 E, NU, RHO = shapes.E, shapes.NU, shapes.RHO
@@ -98,7 +97,7 @@ class Column:
             hanging=Hanging.of([(mesh.tie, places)]),
         )
         self.mass, self.up, self.length = mass, places[:, 2], cells * h
-        self.state = State.at_rest(mesh.points.ravel())
+        self.state = shapes.at_rest(mesh.points.ravel())
         self.state.dt_next = 0.5 * h / FAST
         self._send(mesh.points[:, 2])
         self.fly(1e-12)  # one step: from here on velocities stand half a step behind, as the energy needs
@@ -143,7 +142,7 @@ def test_without_dashpots_it_comes_back():
 def test_dashpots_never_add_energy_however_long_the_step():
     rng = np.random.default_rng(1)
     for damping in (1e-3, 1.0, 1e6):
-        state = State.at_rest(np.zeros(30))
+        state = shapes.at_rest(np.zeros(30))
         state.v[:] = rng.normal(size=30)
         state.kick = state.dt_next = 1.0
         before = (state.v**2).sum()
@@ -155,7 +154,7 @@ def test_dashpots_never_add_energy_however_long_the_step():
 
 def test_weight_and_its_potential():
     weight = Weight(np.array([-3.0, 0.0, -4.0]), np.zeros(3))
-    state = State.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))
+    state = shapes.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))
     weight.add_force(state)
     assert state.force == pytest.approx([-3.0, 0.0, -4.0, 0.0])
     assert weight.accounts(state)["gravity"] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)

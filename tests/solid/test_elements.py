@@ -12,7 +12,6 @@ from fem_impact.solid.elements import (
     element_stiffness,
     isotropic_stiffness,
     lame_constants,
-    largest_frequency,
     lumped_mass,
 )
 from fem_impact.solid.sparse import assemble, tie_operator
@@ -86,7 +85,7 @@ def test_step_of_a_cube():
     points, cells = shapes.grid((1, 1, 1), h)
     K = element_stiffness(points, cells, isotropic_stiffness(E, 0.29), "full")
     lame, G = lame_constants(E, 0.29)
-    step = 2 / largest_frequency(K, lumped_mass(points, cells, RHO))[0]
+    step = 2 / shapes.fastest(K[0], lumped_mass(points, cells, RHO)[0])
     assert step * np.sqrt((lame + 2 * G) / RHO) / h == pytest.approx(0.742, abs=5e-4)
 
 
@@ -95,9 +94,8 @@ def test_no_assembly_is_faster_than_its_fastest_element():
     K, mass = element_stiffness(points, cells, C, "incompatible"), lumped_mass(points, cells, RHO)
     root = np.repeat(np.bincount(cells.ravel(), mass.ravel()), 3) ** -0.5
     whole = np.sqrt(np.linalg.eigvalsh(shapes.dense(K, cells) * root[:, None] * root)[-1])
-    single = largest_frequency(K, mass)
-    assert 0.5 * single.max() < whole <= single.max()
-    assert single[3] == pytest.approx(shapes.fastest(K[3], mass[3]), rel=1e-12)
+    single = max(map(shapes.fastest, K, mass))  # Irons & Treharne 1971
+    assert 0.5 * single < whole <= single
 
 
 def _tip_deflection(kind, nu=0.29):

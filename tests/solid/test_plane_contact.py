@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import solid_shapes as shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +18,6 @@ from fem_impact.solid.contact.book import (
     ContactBook,
 )
 from fem_impact.solid.contact.plane import PlaneContact, touch_plane
-from fem_impact.solid.state import State
 
 DT = 2e-8
 
@@ -86,7 +86,7 @@ def test_without_forces_nothing_is_created():
 
 @pytest.mark.parametrize(("f", "sticks"), [(0.2, False), (0.49, False), (0.51, True), (2.0, True)])
 def test_one_node_sticks_or_slips(f, sticks):
-    state = State.at_rest(np.zeros(3))
+    state = shapes.at_rest(np.zeros(3))
     state.v[:] = [-1.0, 0.0, -2.0]
     state.kick = state.dt_next = DT
     contact = PlaneContact(np.array([[0, 1, 2]]), np.full(3, 1e6), f)

@@ -9,7 +9,6 @@ import solid_shapes as shapes
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
 from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
 from fem_impact.solid.hexmodes import LANES
-from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone, dummy_element
 from fem_impact.solid.yielding_kernel import _hardened_increment
 
@@ -28,7 +27,7 @@ class Rig:
         self.places = np.arange(3 * n).reshape(-1, 3)
         self.dummy = 3 * n + np.arange(24).reshape(8, 3)
         x = np.concatenate([points.ravel(), dummy_element().ravel()])
-        self.state = State.at_rest(x)
+        self.state = shapes.at_rest(x)
         self.zone = YieldingZone.of("rod", self.places[cells], points[cells], E, NU, law, self.dummy)
         self.state.dt = DT
         self.work = 0.0
