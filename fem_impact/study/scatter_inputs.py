@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact.study.sensitivity import strengths
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
@@ -131,13 +132,7 @@ def changes(scene: Scene, values: np.ndarray) -> dict[str, Any]:
     f, angle, strength, radius, speed, backing = map(float, values)
     before = hypot(scene.impact.v_n, scene.impact.v_t) * speed
     turned = np.arctan2(scene.impact.v_t, scene.impact.v_n) + (angle - scene.impact.angle)
-    steels = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
-    strengths = {
-        f"{body}.material.{key}": f"{strength * getattr(steel, key) / 1e6:.9g} MPa"
-        for body, steel in steels.items()
-        for key in ("yield_stress", "ultimate_stress")
-    }
-    return strengths | {
+    return strengths(scene, strength) | {
         "surface.friction": f,
         "impact.angle_rad": angle,
         "impact.v_n": f"{before * np.cos(turned):.9g} m/s",

@@ -38,10 +38,11 @@ class Input:
     changes: Callable[[Scene], dict[str, Any]]
 
 
-def _stronger(scene: Scene) -> dict[str, Any]:
+def strengths(scene: Scene, factor: float) -> dict[str, Any]:
+    """Return the changed keys of a scene whose steels have so many times the yield and ultimate stress."""
     bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
     return {
-        f"{body}.material.{key}": f"{STRONGER * getattr(steel, key) / 1e6:.9g} MPa"
+        f"{body}.material.{key}": f"{factor * getattr(steel, key) / 1e6:.9g} MPa"
         for body, steel in bodies.items()
         for key in ("yield_stress", "ultimate_stress")
     }
@@ -58,7 +59,11 @@ INPUTS = (
         "highest friction of its interval",
         lambda s: {"surface.friction": s.surface.friction_high},
     ),
-    Input("yield", f"yield and ultimate stress of both steels times {STRONGER:g}", _stronger),
+    Input(
+        "yield",
+        f"yield and ultimate stress of both steels times {STRONGER:g}",
+        lambda s: strengths(s, STRONGER),
+    ),
     Input(
         "rate", "no hardening with the strain rate", lambda s: {"effects": [*s.effects, "-rate-hardening"]}
     ),
