@@ -14,7 +14,7 @@ from fem_impact.cli_print import print_json
 from fem_impact.errors import RunError, SceneError, did_you_mean
 from fem_impact.outcome import utc_now
 from fem_impact.output import read_text, write_text
-from fem_impact.scale.local import cores
+from fem_impact.scale import cores
 from fem_impact.stress import CASES, Row, run_cases
 from fem_impact.stress.page import MARKS, page, told
 from fem_impact.verify.page import put_page

@@ -5,14 +5,14 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import asdict, dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.output import make_directory, read_text, write_text
+from fem_impact.scale import LocalProcesses
 from fem_impact.stress.scenes import CASES, Case
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def run_cases(names: Sequence[str], out: Path, told: Callable[[Row], None], work
     rows = {name: row for name in names if (row := _kept(CASES[name], out)) is not None}
     waiting = [name for name in names if name not in rows]
     if waiting:
-        with ProcessPoolExecutor(min(workers, len(waiting)), mp_context=get_context("spawn")) as pool:
+        with LocalProcesses(min(workers, len(waiting))) as pool:
             futures = [pool.submit(run_case, name, out) for name in waiting]
             for done in as_completed(futures):
                 rows[done.result().name] = done.result()
