@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem_impact.solid.kernels import kernel
+from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -55,15 +55,15 @@ def _distinct(blocks: Array) -> tuple[NDArray[np.int32], Array]:
 
 @dataclass(slots=True)
 class NodeProduct:
-    """A sparse stiffness in 3 x 3 blocks between the nodes it touches.
+    """A symmetric sparse stiffness in 3 x 3 blocks between the nodes it touches, each pair stored once.
 
     Attributes
     ----------
     places : (k, 3) int64, unknowns of the nodes
-    start, columns : (k + 1,), (entries,) compressed rows over nodes
+    start, columns : (k + 1,), (entries,) compressed rows over nodes, each from its diagonal on
     kinds : (entries,) number of each entry's block; blocks : (kinds, 9), N/m, row-major. Equal cells
         have equal blocks, so that a regular mesh reads few numbers from memory
-    local : (k, 3) gathered displacements, m
+    moved, product : (k, 3) displacements, m, and forces, N, of the nodes
     """
 
     places: Ints
@@ -71,7 +71,8 @@ class NodeProduct:
     columns: NDArray[np.int32]
     kinds: NDArray[np.int32]
     blocks: Array
-    local: Array
+    moved: Array
+    product: Array
 
     @classmethod
     def of(cls, matrix: sp.csr_matrix, places: Ints) -> NodeProduct:
@@ -81,38 +82,61 @@ class NodeProduct:
         order = used.ravel()
         small = matrix[order][:, order].tobsr((3, 3))
         small.sort_indices()
-        kinds, blocks = _distinct(small.data.reshape(-1, 9))
-        columns = small.indices.astype(np.int32)
-        return cls(used, small.indptr.astype(np.int64), columns, kinds, blocks, np.zeros((len(used), 3)))
+        rows = np.repeat(np.arange(len(used)), np.diff(small.indptr))
+        upper = small.indices >= rows
+        kinds, blocks = _distinct(small.data[upper].reshape(-1, 9))
+        start = np.concatenate([[0], np.cumsum(np.bincount(rows[upper], minlength=len(used)))])
+        columns = small.indices[upper].astype(np.int32)
+        return cls(used, start.astype(np.int64), columns, kinds, blocks, *np.zeros((2, len(used), 3)))
 
     def add_to(self, x: Array, y: Array) -> None:
         """Add the product with ``x`` to ``y``."""
-        add_blocks(self.places, self.start, self.columns, self.kinds, self.blocks, self.local, x, y)
+        add_blocks(
+            self.places, self.start, self.columns, self.kinds, self.blocks, self.moved, self.product, x, y
+        )
+
+
+@inlined
+def _add_row(first, last, columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
+    """Add row i beyond the diagonal and its transpose; nine sums, because one would wait for itself."""
+    tt, tb, tn, bt, bb, bn, nt, nb, nn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    own_t, own_b, own_n = d[i, 0], d[i, 1], d[i, 2]
+    for p in range(first, last):
+        j, k = columns[p], blocks[kinds[p]]
+        t, b, n = d[j, 0], d[j, 1], d[j, 2]
+        tt += k[0] * t
+        tb += k[1] * b
+        tn += k[2] * n
+        bt += k[3] * t
+        bb += k[4] * b
+        bn += k[5] * n
+        nt += k[6] * t
+        nb += k[7] * b
+        nn += k[8] * n
+        f[j, 0] += k[0] * own_t + k[3] * own_b + k[6] * own_n
+        f[j, 1] += k[1] * own_t + k[4] * own_b + k[7] * own_n
+        f[j, 2] += k[2] * own_t + k[5] * own_b + k[8] * own_n
+    f[i, 0] += tt + tb + tn
+    f[i, 1] += bt + bb + bn
+    f[i, 2] += nt + nb + nn
 
 
 @kernel
-def add_blocks(places, start, columns, kinds, blocks, local, x, y):  # type: ignore[no-untyped-def]
-    """Add a block-sparse product; nine sums run side by side, because one would wait for itself."""
+def add_blocks(places, start, columns, kinds, blocks, d, f, x, y):  # type: ignore[no-untyped-def]
+    """Add a symmetric block-sparse product; ``d`` and ``f`` are room for the nodes' values."""
     for i in range(len(places)):
         for c in range(3):
-            local[i, c] = x[places[i, c]]
+            d[i, c] = x[places[i, c]]
+    f[:] = 0.0
     for i in range(len(places)):
-        tt, tb, tn, bt, bb, bn, nt, nb, nn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        for p in range(start[i], start[i + 1]):
-            t, b, n = local[columns[p], 0], local[columns[p], 1], local[columns[p], 2]
-            k = blocks[kinds[p]]
-            tt += k[0] * t
-            tb += k[1] * b
-            tn += k[2] * n
-            bt += k[3] * t
-            bb += k[4] * b
-            bn += k[5] * n
-            nt += k[6] * t
-            nb += k[7] * b
-            nn += k[8] * n
-        y[places[i, 0]] += tt + tb + tn
-        y[places[i, 1]] += bt + bb + bn
-        y[places[i, 2]] += nt + nb + nn
+        k = blocks[kinds[start[i]]]
+        f[i, 0] += k[0] * d[i, 0] + k[1] * d[i, 1] + k[2] * d[i, 2]
+        f[i, 1] += k[3] * d[i, 0] + k[4] * d[i, 1] + k[5] * d[i, 2]
+        f[i, 2] += k[6] * d[i, 0] + k[7] * d[i, 1] + k[8] * d[i, 2]
+        _add_row(start[i] + 1, start[i + 1], columns, kinds, blocks, d, f, i)
+    for i in range(len(places)):
+        for c in range(3):
+            y[places[i, c]] += f[i, c]
 
 
 @dataclass(frozen=True, slots=True)

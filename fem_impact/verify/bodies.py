@@ -217,14 +217,14 @@ def _nothing() -> NodeProduct:
         np.zeros(0, np.int32),
         np.zeros(0, np.int32),
         np.zeros((0, 9)),
-        np.zeros((0, 3)),
+        *np.zeros((2, 0, 3)),
     )
 
 
 def _slices(body: Body, K: Array) -> SliceOperator:
     if not body.mesh.body_cells.size:
         none = np.zeros(0)
-        return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none)
+        return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none, none)
     return SliceOperator.of_rod(body.mesh, K)
 
 

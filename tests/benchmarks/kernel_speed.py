@@ -1,8 +1,9 @@
 """Speed of the compiled kernels in ns an element-step, beside a SciPy CSR product on the same mesh.
 
-Run ``python tests/benchmarks/kernel_speed.py [SCENE]``; all rows come from one process, so
-the ratios mean something even on a busy machine. Times are the smallest of several repeats, CPU time but for
-the last two rows, which need two free cores.
+Run ``python tests/benchmarks/kernel_speed.py [SCENE]``; all rows come from one process, so the ratios mean
+something even on a busy machine. Parts of a scene are timed while it runs, for yielding depends on the
+increment: medians of CPU time over steps in the contact. The last two rows are wall times of whole steps, by
+turns with one thread and with two, and need two free cores.
 """
 
 from __future__ import annotations
@@ -12,23 +13,37 @@ import sys
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import numpy as np
 from scipy.sparse import csr_matrix
 
+import meshes
 from fem_impact.effects import specify
 from fem_impact.scene import load
 from fem_impact.solid.build import build
-from fem_impact.solid.elastic import ElasticBlock
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.sparse import assemble, tie_operator
 from fem_impact.solid.state import State
+from fem_impact.solid.yielding import YieldingZone
+from fem_impact.verify.bodies import Body, body_model
 
-HELPER = ThreadPoolExecutor(1)
+Row = tuple[str, int, float, float]  # part, elements, ns an element-step, over the CSR product's
+ACROSS, SLICES = 12, 144  # cells across and along the bar
+LEDGER_EVERY = 20  # steps, as a scene's history
+IN_CONTACT = 60e-6  # s: elements yield, nodes touch
+STEPS, TURNS = 400, 100
+
+
+@dataclass(frozen=True, slots=True)
+class Timed:
+    """A force under the clock."""
+
+    add_force: Callable[[State], None]
 
 
 def cpu_ns(work: Callable[[], object], repeats: int = 7, calls: int = 40) -> float:
@@ -39,16 +54,6 @@ def cpu_ns(work: Callable[[], object], repeats: int = 7, calls: int = 40) -> flo
         for _ in range(calls):
             work()
         best = min(best, (time.process_time_ns() - begun) / calls)
-    return best
-
-
-def wall_ns(work: Callable[[], object], repeats: int = 200) -> float:
-    """Return the smallest wall time of one call, ns: many short tries find moments with both cores free."""
-    best = float("inf")
-    for _ in range(repeats):
-        begun = time.perf_counter_ns()
-        work()
-        best = min(best, time.perf_counter_ns() - begun)
     return best
 
 
@@ -70,38 +75,85 @@ def plain_stiffness(model: Model) -> csr_matrix:
     return assemble(K, mesh.cells, tie_operator(mesh.tie, layout.rod, layout.rod_size))
 
 
-def rows(model: Model, state: State) -> list[tuple[str, int, float]]:
-    """Return (part, elements, ns an element-step) of each part of a step."""
-    elastic, rod = model.forces[0], model.geometry.rod
-    n, plain = len(elastic.d), plain_stiffness(model)
-    d, y = model.layout.slices_of(elastic.d), model.layout.slices_of(elastic.y)
-    vector = state.x[:n].copy()
-    cells, slices = len(rod.mesh.cells), rod.body_cells.size
-    table = [
-        ("SciPy CSR product, whole rod", cells, cpu_ns(lambda: plain @ vector) / cells),
-        ("slices: stencil alone", slices, cpu_ns(lambda: elastic.slices.apply(d, y)) / slices),
-        ("linear rod: frame, stencil, nose, force", cells, cpu_ns(lambda: elastic.add_force(state)) / cells),
+def bar_rows() -> list[Row]:
+    """Return the CSR product and the whole step of a linear bar of identical slices, with its ledger."""
+    flat = np.array([[0.0, 0.0], [0.0095, 0.0]])
+    rod = meshes.rod(flat, 0.24, ACROSS, slice_length=0.24 / SLICES, nose=False)
+    still = np.zeros_like(rod.mesh.points)
+    model = body_model(Body(rod, rod.mesh.points, still, 206e9, 0.29, 7850.0))
+    state, ledger, cells = model.initial_state(), model.ledger(), len(rod.mesh.cells)
+    state.v[:] = np.random.default_rng(1).normal(size=len(state.v)) * (model.inverse_mass > 0)
+    plain, vector = plain_stiffness(model), state.x[: model.layout.rod_size].copy()
+
+    def steps() -> None:
+        for _ in range(LEDGER_EVERY):
+            evaluate(model, state)
+            advance(model, state)
+        ledger.sample(state)
+
+    product = cpu_ns(lambda: plain @ vector) / cells
+    step = cpu_ns(steps, calls=2) / LEDGER_EVERY / cells
+    return [
+        ("bar of slices: SciPy CSR product", cells, product, 1.0),
+        ("bar of slices: force, update, ledger", cells, step, step / product),
     ]
-    for block in (force for force in model.forces if isinstance(force, ElasticBlock)):
-        linear = len(model.geometry.barrier.cells) - model.zones[-1].count
-        table.append(("linear block", linear, cpu_ns(lambda b=block: b.add_force(state)) / linear))
-    for zone in model.zones:
-        table.append(
-            (
-                f"yielding {zone.body}: B-bar, J2",
-                zone.count,
-                cpu_ns(lambda z=zone: z.add_force(state)) / zone.count,
-            )
-        )
-    every = cells + (len(model.geometry.barrier.cells) if model.geometry.barrier is not None else 0)
 
-    def step() -> None:
-        evaluate(model, state)
-        advance(model, state)
 
-    table.append(("whole step, all bodies and contact", every, cpu_ns(step) / every))
-    for words, helper in (("forces, one thread (wall)", None), ("forces, two threads (wall)", HELPER)):
-        table.append((words, every, wall_ns(lambda h=helper: evaluate(model, state, h)) / every))
+def part_times(model: Model, state: State) -> dict[str, float]:
+    """Return the median CPU time, ns, of every item over real steps."""
+    times: dict[str, list[int]] = {}
+
+    def timed(name: str, work: Callable[[State], None]) -> Callable[[State], None]:
+        def clocked(state: State) -> None:
+            begun = time.process_time_ns()
+            work(state)
+            times.setdefault(name, []).append(time.process_time_ns() - begun)
+
+        return clocked
+
+    forces = [
+        Timed(timed(f"{type(force).__name__} of the {force.body}", force.add_force)) for force in model.forces
+    ]
+    watched = replace(model, forces=forces)  # type: ignore[arg-type]
+    for _ in range(STEPS):
+        begun = time.process_time_ns()
+        evaluate(watched, state)
+        advance(watched, state)
+        times.setdefault("whole step", []).append(time.process_time_ns() - begun)
+    return {name: float(np.median(found)) for name, found in times.items()}
+
+
+def thread_times(model: Model, state: State) -> list[float]:
+    """Return the smallest wall time of a step, ns, with one thread and with two."""
+    best = [float("inf")] * 2
+    with ThreadPoolExecutor(1) as helper:
+        for turn in range(2 * TURNS):
+            begun = time.perf_counter_ns()
+            for _ in range(10):
+                evaluate(model, state, helper if turn % 2 else None)
+                advance(model, state)
+            best[turn % 2] = min(best[turn % 2], (time.perf_counter_ns() - begun) / 10)
+    return best
+
+
+def scene_rows(model: Model, state: State) -> list[Row]:
+    """Return the parts of a scene's step, those of the rod and of the barrier over their own elements."""
+    rod, barrier = model.geometry.rod.mesh, model.geometry.barrier
+    plain, vector = plain_stiffness(model), state.x[: model.layout.rod_size].copy()
+    yielding = {zone.body: zone.count for zone in model.zones}
+    whole = {"rod": len(rod.cells), "barrier": 0 if barrier is None else len(barrier.cells)}
+    product = cpu_ns(lambda: plain @ vector) / len(rod.cells)
+    table = [("rod: SciPy CSR product", len(rod.cells), product, 1.0)]
+    for name, ns in part_times(model, state).items():
+        body = name.split()[-1]
+        count = whole[body] - yielding.get(body, 0) if body in whole else sum(whole.values())
+        count = yielding[body] if name.startswith(YieldingZone.__name__) else count
+        table.append((name, count, ns / count, ns / count / product))
+    every = sum(whole.values())
+    for words, ns in zip(
+        ("one thread (wall)", "two threads (wall)"), thread_times(model, state), strict=True
+    ):
+        table.append((f"whole step, {words}", every, ns / every, ns / every / product))
     return table
 
 
@@ -110,17 +162,13 @@ def main(name: str = "t5b") -> None:
     scene = load(name)
     model = build(scene, specify(scene))
     state = model.initial_state()
-    for _ in range(2000):  # into the contact, so that elements yield and nodes touch
+    while state.time < IN_CONTACT:
         evaluate(model, state)
         advance(model, state)
-    table = rows(model, state)
-    yardstick = table[0][2]
-    print(
-        f"{name}: {len(model.geometry.rod.mesh.cells)} rod cells, triad {triad_gb_per_s():.1f} GB/s, 1 thread"
-    )
+    print(f"{name}: {len(model.geometry.rod.mesh.cells)} rod cells, triad {triad_gb_per_s():.1f} GB/s")
     print(f"{'part':<42}{'elements':>9}{'ns/element-step':>17}{'of CSR':>8}")
-    for part, count, ns in table:
-        print(f"{part:<42}{count:9d}{ns:17.1f}{ns / yardstick:8.2f}")
+    for part, count, ns, ratio in [*bar_rows(), *scene_rows(model, state)]:
+        print(f"{part:<42}{count:9d}{ns:17.1f}{ratio:8.2f}")
 
 
 if __name__ == "__main__":
