@@ -59,15 +59,16 @@ def rod_modes(
     """
     free = np.flatnonzero(~fixed)
     root = sp.diags(1 / np.sqrt(mass[free]))
-    scaled = (root @ stiffness[free][:, free] @ root).tocsc()
+    shifted = (root @ stiffness[free][:, free] @ root).tocsc()
     # a shift below zero keeps the factor definite although rigid motions have no stiffness
-    shift = -1e-6 * float(scaled.diagonal().max())
-    shifted = (scaled - shift * sp.identity(len(free), format="csc")).tocsc()
+    shift = -1e-6 * float(shifted.diagonal().max())
+    shifted.setdiag(shifted.diagonal() - shift)
     # minimum degree on the symmetric pattern and no pivoting: a quarter of the fill of the default
     factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     inverse = LinearOperator(shifted.shape, factor.solve, dtype=np.float64)
     start = np.random.default_rng(0).normal(size=len(free))
-    value, vector = eigsh(scaled, k=count + RIGID, sigma=shift, which="LM", v0=start, OPinv=inverse)
+    # with the inverse at hand the solver takes only the shape of its first argument
+    value, vector = eigsh(shifted, k=count + RIGID, sigma=shift, which="LM", v0=start, OPinv=inverse)
     order = np.argsort(value)
     value, vector = value[order], vector[:, order]
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 Kind = Literal["full", "bbar", "incompatible"]
 
 VTK_TO_SKFEM = np.argsort(HEX_MAPPING[:8])
-CHUNK = 2000  # elements handled at once, so that assembly stays below a few tens of MB
+CHUNK = 500  # elements handled at once, so that assembly stays below a few tens of MB
 
 
 def isotropic_stiffness(E: float, nu: float) -> Array:
@@ -98,10 +98,10 @@ def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: K
     -------
     (m, 24, 24) float64, N/m, node-major (node * 3 + component)
     """
-    if len(cells) == 0:
-        return np.zeros((0, 24, 24))
-    parts = [_stiffness(points, cells[i : i + CHUNK], C, kind) for i in range(0, len(cells), CHUNK)]
-    return np.concatenate(parts)
+    K = np.empty((len(cells), 24, 24))
+    for i in range(0, len(cells), CHUNK):
+        K[i : i + CHUNK] = _stiffness(points, cells[i : i + CHUNK], C, kind)
+    return K
 
 
 def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Array:

@@ -14,6 +14,9 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
+CHUNK = 1000  # elements assembled at once: the sparse matrix of their entries takes a few tens of MB
+
+
 def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
     """Return T (3 n, size): values of all mesh nodes (node * 3 + component) from the flat free vector."""
     coo = tie.tocoo()
@@ -28,10 +31,14 @@ def _element_places(cells: Ints) -> Ints:
 
 def assemble(K: Array, cells: Ints, T: sp.csr_matrix) -> sp.csr_matrix:
     """Return the assembled T^T K T (size, size) of element matrices (m, 24, 24)."""
-    dof = _element_places(cells)
-    rows, columns = np.repeat(dof, 24, axis=1).ravel(), np.tile(dof, (1, 24)).ravel()
-    full = sp.csr_matrix((K.ravel(), (rows, columns)), shape=(T.shape[0], T.shape[0]))
-    return sp.csr_matrix(T.T @ full @ T)
+    total = sp.csr_matrix((T.shape[1], T.shape[1]))
+    for first in range(0, len(cells), CHUNK):
+        dof = _element_places(cells[first : first + CHUNK]).astype(np.int32)
+        values = K[first : first + CHUNK].ravel()
+        rows, columns = np.repeat(dof, 24, axis=1).ravel(), np.tile(dof, (1, 24)).ravel()
+        part = sp.csr_matrix((values, (rows, columns)), shape=(T.shape[0], T.shape[0]))
+        total = total + T.T @ part @ T
+    return sp.csr_matrix(total)
 
 
 def assemble_mass(mass: Array, cells: Ints, T: sp.csr_matrix) -> Array:
