@@ -10,8 +10,9 @@ from typing import Any
 
 __all__ = ["print_json", "print_outcome", "print_table"]
 
+_PAPER = ("restitution e (paper's arms)", "e_paper", "")
+_EDGE = ("restitution e (tip's arms)", "e_edge", "")
 _MOTION = (
-    ("restitution e (paper's arms)", "e_paper", ""),
     ("impulse ratio mu", "mu", ""),
     ("V_n after", "V_n_m_per_s", "m/s"),
     ("V_t after", "V_t_m_per_s", "m/s"),
@@ -39,7 +40,9 @@ def print_json(document: Any) -> None:
 def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     """Print the motion after impact, where the energy went, and every warning."""
     lines = [f"{record['scene_id']}: {record['scene_title']}", ""]
-    lines += [_motion(record, *row) for row in _MOTION]
+    # only a measured set has arms of the paper
+    restitution = _EDGE if record["e_paper"] is None else _PAPER
+    lines += [_motion(record, *row) for row in (restitution, *_MOTION)]
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []

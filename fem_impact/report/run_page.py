@@ -101,8 +101,9 @@ def _heat(outcome: Outcome) -> Markup:
 def _cards(outcome: Outcome) -> Markup:
     bands = outcome["bands"] or {}
     missing = outcome.reason("bands") or ""
+    edge = ("e, the tip's arms", "e_edge", "")  # only a measured set has arms of the paper
     shown = [
-        ("e, paper's arms", "e_paper", ""),
+        edge if outcome["e_paper"] is None else ("e, paper's arms", "e_paper", ""),
         ("impulse ratio µ", "mu", ""),
         ("Ω", "Omega_rad_per_s", " rad/s"),
     ]

@@ -20,6 +20,13 @@ def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
     assert "t 100/2500 us  step 4000  energy drift +1.0e-06  touching, 12 nodes  ETA 1 min 01 s" in err
 
 
+def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):
+    stand.outcome = stand.an_outcome(e_edge=0.296)
+    assert "restitution e (tip's arms)     0.296\n" in cli("run", "t5b", "--quiet")[1]
+    stand.outcome = stand.an_outcome(e_edge=0.296, e_paper=0.327)
+    assert "restitution e (paper's arms)   0.327\n" in cli("run", "t5b", "--quiet")[1]
+
+
 def test_changes_are_applied_and_filed_apart(cli, stand):
     code, _, _ = cli("run", "t5b", "--set", "accuracy.tip_size=0.5 mm", "--set", "save.frames=10", "--quiet")
     _, (scene,), options = stand.calls[0]
