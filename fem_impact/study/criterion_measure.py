@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -15,6 +15,7 @@ from fem_impact.contact_law import contact_law
 from fem_impact.estimates import projectile
 from fem_impact.outcome import Outcome
 from fem_impact.scale import Results
+from fem_impact.study.contact_time import contact_time
 from fem_impact.study.linear_spring import spring_drop
 from fem_impact.study.rods import BODY, Drop, length_of
 from fem_impact.verify.reference.beam import bending_modes
@@ -22,7 +23,19 @@ from fem_impact.verify.reference.hertz import SPAN
 from fem_impact.verify.reference.oblique import ObliqueRod, oblique_rod
 from rigid import LIMIT
 
-__all__ = ["LEVELS", "Rod", "Rods", "blind_ratio", "exponent", "gamma_at", "linear_rods", "rods_of"]
+__all__ = [
+    "LEVELS",
+    "Measure",
+    "Rod",
+    "Rods",
+    "blind_ratio",
+    "error_of",
+    "exponent",
+    "gamma_at",
+    "linear_rods",
+    "rods_of",
+    "spread_of",
+]
 
 Array = NDArray[np.float64]
 
@@ -43,6 +56,9 @@ class Rod:
         Restitution with vibration, and of the rod that cannot vibrate on the same contact.
     groups : (n,)
         T1/tau: first bending period over the contact time of the rod that cannot vibrate.
+    whole : float
+        T1 over the contact time of the rod's whole mass, falling at full speed onto the contact of 45
+        degrees: one number a rod. At an inclined contact only m* = m / (1 + d_c^2/k^2) stands behind.
     """
 
     drop: Drop
@@ -50,6 +66,7 @@ class Rod:
     e: Array
     e_rigid: Array
     groups: Array
+    whole: float
 
     @property
     def error(self) -> float:
@@ -68,6 +85,7 @@ class Rod:
 
 
 Rods = list[Rod]
+Measure = Callable[[Rod], float]
 
 
 def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
@@ -85,13 +103,15 @@ def _stiff(drop: Drop) -> str:
 
 
 def _rod(each: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
-    T1 = first_period(each[0][0])
+    drop = each[0][0]
+    T1, level = first_period(drop), replace(drop, angle=45.0).scene()
     return Rod(
-        each[0][0],
+        drop,
         np.array([drop.angle for drop, _, _ in each]),
         np.array([run["e_edge"] for _, run, _ in each]),
         np.array([stiff["e_edge"] for _, _, stiff in each]),
         np.array([T1 / (s["contacts"][0]["end_s"] - s["contacts"][0]["start_s"]) for _, _, s in each]),
+        T1 / contact_time(contact_law(level), projectile(level).mass, drop.speed),
     )
 
 
@@ -114,6 +134,7 @@ def _linear_rod(each: Sequence[Drop], k: float) -> Rod:
         np.array([spring_drop(body, k).restitution for body in bodies]),
         np.ones(len(each)),
         np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies]),
+        T1 / (pi * sqrt(bodies[0].mass / k)),
     )
 
 
@@ -158,19 +179,29 @@ def blind_ratio(drop: Drop) -> float:
     return float(-rod.along_n[0] / rod.along_t[0])
 
 
-def gamma_at(rods: Rods, diameter: float, level: float) -> float | None:
-    """Return the slenderness at which the error of rods of a diameter first passes a level, interpolated."""
-    same = sorted((r.drop.gamma, r.error) for r in rods if r.drop.diameter == diameter)
+def error_of(rod: Rod) -> float:
+    """Return the error of rigid theory."""
+    return rod.error
+
+
+def spread_of(rod: Rod) -> float:
+    """Return the spread of e over the angles."""
+    return rod.spread
+
+
+def gamma_at(rods: Rods, diameter: float, level: float, measure: Measure = error_of) -> float | None:
+    """Return the slenderness at which rods of a diameter first pass a level, interpolated."""
+    same = sorted((r.drop.gamma, measure(r)) for r in rods if r.drop.diameter == diameter)
     for (low, below), (high, above) in pairwise(same):
         if below < level <= above:
             return low + (high - low) * (level - below) / (above - below)
     return None
 
 
-def exponent(rods: Rods, level: float) -> float | None:
-    """Return p of l = C d^p along which the error stays at a level, fitted over the diameters."""
+def exponent(rods: Rods, level: float, measure: Measure = error_of) -> float | None:
+    """Return p of l = C d^p along which the measure stays at a level, fitted over the diameters."""
     diameters = sorted({r.drop.diameter for r in rods})
-    found = [(d, gamma_at(rods, d, level)) for d in diameters]
+    found = [(d, gamma_at(rods, d, level, measure)) for d in diameters]
     known = [(d, length_of(g, d)) for d, g in found if g is not None]
     if len(known) < 2:
         return None
