@@ -92,4 +92,5 @@ def _effect_lines(effect: dict[str, Any]) -> tuple[str, str]:
         f"E_vib by {effect['change_of_E_vib_over_E_0']:.1g} of E_0"
     )
     decided = f"{effect['measure']}: {number}, needed above {effect['threshold']:g}"
-    return f"  {verdict}: {effect['sentence']}", f"        {decided}; without it {harm}"
+    time = "" if effect["share"] is None else f"; it takes about {effect['share']:.0%} of the run time"
+    return f"  {verdict}: {effect['sentence']}", f"        {decided}; without it {harm}{time}"

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import rigid
-from fem_impact.effects import choices, neglected
+from fem_impact.effects import Choice, choices, neglected
 from fem_impact.errors import RunError
 from fem_impact.heating import flash, halves, heat_keys
 from fem_impact.markers import replay
@@ -45,7 +46,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     values = provenance(
         scene, "solid", finished, open_ledger or result.reason, warnings=[*result.warnings, *neglected(scene)]
     )
-    values["effect_choices"] = [c.told() | {"share": result.shares.get(c.name)} for c in choices(scene)]
+    values["effect_choices"] = [_told(choice, result.shares) for choice in choices(scene)]
     values |= _motion(scene, result)
     coefficients, reasons = coefficient_keys(scene, values)
     values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
@@ -62,6 +63,12 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     if "vibration" not in scene.active:
         reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
     return Outcome(values, {k: v for k, v in reasons.items() if values.get(k) is None})
+
+
+def _told(choice: Choice, shares: Mapping[str, float]) -> dict[str, Any]:
+    """Return a choice with the measured share of its own items, where it has any, for the expected one."""
+    told = choice.told()
+    return told | {"share": shares.get(choice.name, told["share"])}
 
 
 def _open_ledger(result: SolidResult) -> str:

@@ -8,6 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.effects.catalogue import EFFECTS
+from fem_impact.effects.share import expected_shares
 from fem_impact.effects.spec import Harm
 from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, NEEDS
 
@@ -26,6 +27,7 @@ class Choice:
     on : it is in the model; forced : because the scene says so, or out of it for that reason
     needed : its number is above its threshold and what it needs is there
     number : the dimensionless number; harm : what leaving it out changes
+    share : of the run time, about; None where it is off
     """
 
     name: str
@@ -34,6 +36,7 @@ class Choice:
     needed: bool
     number: float
     harm: Harm
+    share: float | None
 
     def told(self) -> dict[str, Any]:
         """Return the choice as a flat record with its measure, threshold and sentence."""
@@ -50,6 +53,7 @@ class Choice:
             "change_of_e": self.harm.e,
             "change_of_E_vib_over_E_0": self.harm.E_vib,
             "sentence": effect.sentence if self.on else effect.absence,
+            "share": self.share,
         }
 
 
@@ -67,9 +71,12 @@ def choices(scene: Scene) -> tuple[Choice, ...]:
     number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
     needed = _grounded({name for name in NAMES if number[name] > EFFECTS[name].threshold})
     on = _grounded(_chosen(scene, needed))
-    forced = {name for name in NAMES if _forced(name, scene)}
+    forced, share = {name for name in NAMES if _forced(name, scene)}, expected_shares(on)
     return tuple(
-        Choice(name, name in on, name in forced, name in needed, number[name], EFFECTS[name].harm(whole))
+        Choice(
+            *(name, name in on, name in forced, name in needed, number[name]),
+            *(EFFECTS[name].harm(whole), share.get(name)),
+        )
         for name in NAMES
     )
 

@@ -4,7 +4,8 @@ The flow stress is multiplied by 1 + C ln(rate / 1 per s) for plastic strain rat
 Cook 1985, doi:10.1016/0013-7944(85)90052-9, eq 1, no thermal softening). C = 0.022 is their value for the
 mild steel 1006 (A constitutive model and data for metals subjected to large strains, high strain rates and
 high temperatures, 7th Int. Symp. Ballistics, The Hague 1983), whose yield stress of 350 MPa is the plate's
-within a tenth; the paper of 1985 has .060 for soft iron and .014 for hard 4340 steel.
+within a tenth. Their table has .060 for Armco iron, .055 for Carpenter electrical iron, .014 for 4340 and
+.012 for S-7 steel; it was read in a public transcription, not in the proceedings themselves.
 """
 
 from __future__ import annotations

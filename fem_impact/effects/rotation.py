@@ -32,9 +32,14 @@ def angle_turned(scene: Scene) -> float:
 
 
 def number(scene: Scene) -> float:
-    """Return the strain energy of the false strain theta^2/2 over E_0."""
-    rod = projectile(scene)
-    false = scene.projectile.material.E * angle_turned(scene) ** 4 / 8 * rod.mass / rod.density
+    """Return the strain energy that a turned rod seems to have over E_0.
+
+    Small strains of a rotation are cos(theta) - 1, about -theta^2/2, along both axes of its plane, and no
+    shear: (lambda + mu) theta^4 / 2 a volume.
+    """
+    rod, steel = projectile(scene), scene.projectile.material
+    stiffness = steel.E / (2 * (1 + steel.nu) * (1 - 2 * steel.nu))
+    false = stiffness * angle_turned(scene) ** 4 / 2 * rod.mass / rod.density
     return float(false / start_energy(scene))
 
 
@@ -53,7 +58,7 @@ EFFECT = Effect(
     "large-rotation",
     "The rod's linear part is computed in a frame that turns with it.",
     "Rotations are taken as small: theta^2/2 of false strain.",
-    "E theta^4/8 per E_0, false strain energy at theta = Omega (tau + T1)",
+    "(lambda + mu) theta^4/2 per E_0, false strain energy at theta = Omega (tau + T1)",
     1e-5,
     "small-strain kinematics of a turned body; a tenth of the 1e-4 of E_0 that E_vib may be off",
     number,

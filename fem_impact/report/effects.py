@@ -21,7 +21,7 @@ def effects_section(outcome: Mapping[str, Any]) -> Markup:
     rows = [_row(choice) for choice in outcome["effect_choices"] or []]
     caption = (
         "An effect is needed when its number is above its threshold; the changes are rough sizes of what "
-        "leaving it out does; the run time is that of its own parts, friction and rates being in others."
+        "leaving it out does; the run time is that of its own parts, of friction and rates about."
     )
     return section("Effects", table(HEAD, rows, caption, numbers=range(3, 8)))
 

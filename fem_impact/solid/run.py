@@ -162,7 +162,8 @@ def _result(
     )
     if stop.finished and model.rod_stiffness is not None:
         result = replace(result, vibration_check=coast(model, view, state))
-    return replace(result, shares=run_time_shares(scene, model, state, result.cost.wall / max(state.step, 1)))
+    step_time = result.cost.cpu / max(result.steps, 1)
+    return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
 
 def _helper(threads: int) -> AbstractContextManager[Executor | None]:

@@ -16,7 +16,9 @@ from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
+    from fem_impact.solid.damping import ModalDamping
     from fem_impact.solid.elastic import ElasticRod
+    from fem_impact.solid.heatwatch import HeatWatch
     from fem_impact.solid.model import Model
     from fem_impact.solid.rigid_rest import ElasticNose
 
@@ -33,7 +35,9 @@ SINGLE = {
 }
 
 
-def run_time_shares(scene: Scene, model: Model, state: State, step_time: float) -> dict[str, float]:
+def run_time_shares(
+    scene: Scene, model: Model, state: State, step_time: float, heat: HeatWatch | None = None
+) -> dict[str, float]:
     """Return the share of the mean step, ``step_time`` in s, that each effect's own items take.
 
     Friction and rate hardening have no items of their own: they are in the contact's and the zones' time.
@@ -46,7 +50,10 @@ def run_time_shares(scene: Scene, model: Model, state: State, step_time: float) 
     acts += [(item, item.resolve) for item in model.impulses[:-1]]
     for item, act in acts:
         name = _effect(item, model, barrier)
-        shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / step_time
+        every = cast("ModalDamping", item).every if name == "material-damping" else 1
+        shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / every / step_time
+    if heat is not None:
+        shares["contact-heating"] = _shortest(lambda: heat.observe(still)) / step_time
     rod = cast("ElasticRod | ElasticNose", model.forces[0])
     if isinstance(rod.frame, TurningFrame):
         n = len(rod.d)

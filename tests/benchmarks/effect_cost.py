@@ -1,8 +1,10 @@
-"""Time of a step against the set of effects, in contact, beside the bare rod on a rigid plane.
+"""Run time against the set of effects: a ladder on which each rung adds one, timed in contact.
 
-Run ``python tests/benchmarks/effect_cost.py [SCENE]``; all rows come from one process and one thread. The
-same set stands twice, first and last: an effect that is absent has no item, no array and no branch, so what
-those two rows differ by is the noise, and nothing that is not named in a row can cost more.
+Run ``python tests/benchmarks/effect_cost.py [FOLDER]``: it times t5b at its default mesh in one process and
+one thread, prints the table, and writes it as ``effect-cost.csv`` with its chart ``effect-cost.svg``, into
+``fem_impact/effects/data`` unless a folder is given. README shows the chart and ``check`` takes its shares
+from the table. The bare rod stands first and last: an effect that is absent has no item, no array and no
+branch, so what those two differ by is noise, and nothing that a row does not name can cost more.
 """
 
 from __future__ import annotations
@@ -10,47 +12,50 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fem_impact.effects import specify
-from fem_impact.scene import Scene, load, replace_all
+from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.output import write_table
+from fem_impact.scene import BARRIERS, Scene, load
 from fem_impact.solid.build import build
-from fem_impact.solid.heatwatch import HeatWatch
 from fem_impact.solid.march import Observer, advance, evaluate
 
-STEPS, REPEATS = 60, 5
-FULL = ("friction", "rod-plasticity", "barrier-elastoplastic", "radiation", "large-rotation")
-SETS = (
-    ("barrier-rigid",),
-    ("vibration", "barrier-rigid"),
-    ("vibration", "friction", "barrier-rigid"),
-    ("vibration", "barrier-rigid", "gravity"),
-    ("vibration", "barrier-rigid", "large-rotation"),
-    ("vibration", "barrier-rigid", "material-damping"),
-    ("vibration", "friction", "barrier-rigid", "contact-heating"),
-    ("vibration", "rod-plasticity", "barrier-rigid"),
-    ("vibration", "rod-plasticity", "barrier-rigid", "rate-hardening"),
-    ("vibration", "barrier-elastic"),
-    ("vibration", "barrier-elastic", "radiation"),
-    ("vibration", "barrier-elastoplastic"),
-    FULL,
-    ("vibration", *FULL),
-    ("vibration", *FULL, "rate-hardening"),
-    ("vibration", *FULL, "rate-hardening", "gravity", "material-damping", "contact-heating"),
-    ("barrier-rigid",),
+SCENE, UNTIL = "t5b", 10e-6  # s: in contact, both bodies yield
+STEPS, REPEATS = 30, 7
+BARE = "barrier-rigid"
+ADDED = (
+    *("vibration", "friction", "rod-plasticity", "barrier-elastic", "barrier-elastoplastic"),
+    *("rate-hardening", "radiation", "large-rotation", "gravity", "material-damping", "contact-heating"),
 )
+COLUMNS = ("added", "step_us", "run_s_per_ms", "run_over_bare", "effects")
+FOLDER = Path(__file__).parents[2] / "fem_impact" / "effects" / "data"
+Row = tuple[str, float, float, float, str]
 
 
-def step_time(scene: Scene, effects: Sequence[str], until: float) -> float:
-    """Return the smallest mean CPU time of a step, s, from the time ``until``, s, on."""
-    spec = specify(replace(scene, effects=tuple(effects)))
-    model = build(replace(scene, effects=tuple(effects)), spec)
-    observers: list[Observer] = [HeatWatch(model)] if spec.heat else []
+def ladder() -> Iterator[tuple[str, tuple[str, ...]]]:
+    """Yield what each rung adds and all its effects; the bare rod once more at the end."""
+    effects: tuple[str, ...] = (BARE,)
+    yield BARE, effects
+    for name in ADDED:
+        kept = [e for e in effects if not (name in BARRIERS and e in BARRIERS)]
+        effects = (*kept, name)
+        yield name, effects
+    yield f"{BARE}, again", (BARE,)
+
+
+def times(scene: Scene, effects: Sequence[str]) -> tuple[float, float]:
+    """Return the smallest mean CPU time of a step, s, and what a second of motion takes at that rate, s."""
+    stated = replace(scene, measured=None, effects=tuple(effects))
+    spec = specify(stated)
+    model = build(stated, spec)
+    observers = list(_heat(model)) if spec.heat else []
     state, best = model.initial_state(), float("inf")
-    while state.time < until or state.step < 50:
+    while state.time < UNTIL:
         evaluate(model, state)
         advance(model, state)
     for _ in range(REPEATS):
@@ -61,19 +66,49 @@ def step_time(scene: Scene, effects: Sequence[str], until: float) -> float:
                 observer.observe(state)
             advance(model, state)
         best = min(best, (time.process_time() - begun) / STEPS)
-    return best
+    return best, best / model.step
 
 
-def main(name: str = "quick") -> None:
-    """Print the table."""
-    scene = replace_all(load(name), {"accuracy.tip_size": "0.8 mm"})
-    bare = None
-    print(f"{'us a step':>10} {'of bare':>8}  effects")
-    for effects in SETS:
-        found = step_time(scene, effects, 10e-6)
-        bare = bare or found
-        print(f"{found * 1e6:10.1f} {found / bare:8.2f}  {', '.join(effects)}", flush=True)
+def _heat(model: object) -> Iterator[Observer]:
+    from fem_impact.solid.heatwatch import HeatWatch
+
+    yield HeatWatch(model)
+
+
+def measured() -> list[Row]:
+    """Return the rows of the table and print each."""
+    scene, rows = load(SCENE), []
+    for added, effects in ladder():
+        step, run = times(scene, effects)
+        bare = rows[0][2] if rows else run * 1e-3
+        rows.append((added, step * 1e6, run * 1e-3, run * 1e-3 / bare, " ".join(effects)))
+        print("{:24} {:8.1f} us a step {:8.2f} s a ms {:6.2f} of bare".format(*rows[-1][:4]), flush=True)
+    return rows
+
+
+def draw(rows: Sequence[Row], path: Path) -> None:
+    """Draw the run time of each rung."""
+    labels = [row[0] if row[0].startswith(BARE) else f"+ {row[0]}" for row in rows]
+    with figure(path, "wide", 4.2) as drawn:
+        axes = drawn.add_subplot()
+        bars = axes.barh(range(len(rows)), [row[2] for row in rows], height=0.7, color=PALETTE["blue"])
+        for i in (0, -1):
+            bars[i].set_color(PALETTE["grey"])
+        axes.set_yticks(range(len(rows)), labels)
+        axes.bar_label(bars, [f"{row[3]:.2f} x" for row in rows], padding=4, fontsize=8.5)
+        axes.invert_yaxis()
+        axes.tick_params(axis="y", length=0)
+        axes.margins(x=0.1)
+        axes.grid(axis="x")
+        axes.set_xlabel(f"CPU time of 1 ms of motion, s ({SCENE}, default mesh, in contact)", color=QUIET)
+
+
+def main(folder: Path = FOLDER) -> None:
+    """Time, write, draw."""
+    rows = measured()
+    draw(rows, folder / "effect-cost.svg")
+    write_table(folder / "effect-cost.csv", COLUMNS, rows)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:2])
+    main(*map(Path, sys.argv[1:2]))

@@ -1,14 +1,14 @@
 """Flash temperatures: closed-form limits, sharing of heat, and the watch over a run."""
 
 from dataclasses import replace
-from math import pi, sqrt
+from math import erfc, exp, pi, sqrt
 
 import numpy as np
 import pytest
 import solid_scenes
 
 from fem_impact.estimates import arms, contact_estimate
-from fem_impact.heating import Half, expected_rise, flash, flash_bound, moving_rise, short_rise
+from fem_impact.heating import Half, expected_rise, flash, flash_bound, moving_rise, short_rise, sliding_speed
 from fem_impact.reduce import reduce
 from fem_impact.scene import load
 from fem_impact.simulate import simulate
@@ -28,6 +28,43 @@ def test_fast_source():
     V = 1e4 * STEEL.diffusivity / A
     passing = 2 * Q / 53.0 * sqrt(STEEL.diffusivity * (2 * A / V) / pi)
     assert moving_rise(Q, A, V, STEEL) == pytest.approx(passing, rel=1e-3)
+
+
+def under_a_moving_disc(V, x):
+    """Steady rise at x on the axis of an even disc moving along x, by adding up moving points.
+
+    Each point leaves Q / (2 pi k r) exp(-V (r + x) / (2 kappa)) (Carslaw & Jaeger 10.7, eq 2); over the
+    distance r the sum is closed, over the direction it is a mean.
+    """
+    theta = (np.arange(2000) + 0.5) * 2 * pi / 2000
+    edge = x * np.cos(theta) + np.sqrt(A**2 - (x * np.sin(theta)) ** 2)
+    decay = V / (2 * STEEL.diffusivity) * edge * (1 + np.cos(theta))
+    return Q / 53.0 * np.mean(edge * -np.expm1(-decay) / decay)
+
+
+@pytest.mark.parametrize("peclet", [0.01, 0.1, 1.0, 10.0, 100.0, 1000.0])
+def test_moving_source_beside_the_exact_one(peclet):
+    """The closed form fits the hottest point under the disc within 2.5 % at any speed."""
+    V = peclet * 2 * STEEL.diffusivity / A
+    hottest = max(under_a_moving_disc(V, x) for x in np.linspace(-0.999 * A, 0.0, 201))
+    assert moving_rise(Q, A, V, STEEL) == pytest.approx(hottest, rel=0.025)
+
+
+def middle_of_a_resting_disc(t):
+    """Rise at the centre after a time of even flux (Carslaw & Jaeger 10.5, 7)."""
+    reach = sqrt(STEEL.diffusivity * t)
+    x = A / (2 * reach)
+    spread = exp(-x * x) / sqrt(pi) - x * erfc(x)
+    return 2 * Q * reach / 53.0 * (1 / sqrt(pi) - spread)
+
+
+@pytest.mark.parametrize("seconds", [1e-4, 1e-2, 3e-2, 0.1, 1.0, 100.0])
+def test_the_flash_is_never_below_the_exact_one(seconds):
+    """The lower of two limits is above the true course; at worst, between them, by a third."""
+    t = np.linspace(0.0, seconds, 2001)
+    one = np.ones(2000)
+    found = 2 * flash(t, Q * one, A * one, 0 * one, STEEL, STEEL).rise[-1]
+    assert 1.0 - 1e-9 <= found / middle_of_a_resting_disc(seconds) < 1.34
 
 
 def test_short_rise_of_a_steady_flux_and_after_it():
@@ -105,6 +142,38 @@ def test_closed_form_of_the_rigid_fidelity():
     assert 100 < found["flash_rise_K"] < found["flash_bound_K"]
     assert found["flash_bound_K"] == pytest.approx(293.15 + flash_bound(stated))
     assert 0.2 < expected_rise(stated) / found["flash_rise_K"] < 5
+
+
+def test_the_bound_by_hand():
+    """Hardness of the plate, first speed along and across, all heat in the less effusive body."""
+    stated = load("t5b").replace("heating.rod_conductivity", "20 W/(m K)")
+    f, v = stated.surface.friction, abs(stated.impact.v_t) + abs(stated.impact.v_n)
+    seconds = 3 * contact_estimate(stated).duration
+    alone = 2 * f * 3 * 446e6 * v * sqrt(seconds / (pi * 20.0 * 7850 * 440.0))
+    assert flash_bound(stated) == pytest.approx(alone)
+
+
+def test_expected_rise_of_a_hertzian_patch_by_hand():
+    """Short beside the time that heat takes across the patch: a mean flux all the time, shared evenly."""
+    stated = load("elastic-frictionless")
+    stated = replace(
+        stated,
+        surface=replace(stated.surface, state="custom", friction=0.1, friction_low=0.0, friction_high=0.2),
+        effects=("vibration", "friction", "barrier-rigid"),
+        impact=replace(stated.impact, v_t=-1.0, omega=-2.0),
+    )
+    size = contact_estimate(stated)
+    speed = abs(-1.0 + 2.0 * arms(stated)[1])
+    assert sliding_speed(stated) == pytest.approx(speed)
+    flux = 0.1 * size.pressure * 0.5 * speed
+    shared = 2 * flux * sqrt(size.duration / pi) / (2 * sqrt(53.0 * 7850 * 440.0))
+    assert expected_rise(stated) == pytest.approx(shared, rel=0.02)
+
+
+def test_heat_stays_for_a_while_when_the_source_is_gone():
+    t, q = np.linspace(0, 1e-5, 11), np.concatenate([np.full(5, Q), np.zeros(5)])
+    made = flash(t, q, np.full(10, A), np.zeros(10), STEEL, STEEL)
+    assert made.rise[-1] == pytest.approx((sqrt(2.0) - 1) * made.peak, rel=1e-6)
 
 
 def test_ignition_is_the_users():
