@@ -101,11 +101,11 @@ def test_the_command_refuses_what_it_does_not_know(capsys):
 
 
 def test_the_command_prints_the_verdict(capsys):
-    line = ["verify", "modes", "--set", "length=60 mm"]
-    assert main(line) == 6  # so short a bar needs more cells across
+    line = ["verify", "waves", "--set", "aspect=2"]
+    assert main(line) == 6  # slices twice as high as cells are wide
     shown = capsys.readouterr().out
-    assert "modes: FAILED" in shown and "bending 1, ringing" in shown
+    assert "waves: FAILED" in shown and "longitudinal c/c0 at radius/wavelength 0.2" in shown
     main([*line, "--json"])
     document = json.loads(capsys.readouterr().out)
-    assert document["parameters"]["length"] == 0.06
+    assert document["parameters"]["aspect"] == 2
     assert document["passed"] is False

@@ -5,6 +5,10 @@ import pytest
 from fem_impact.verify import verify
 
 
+def checks(found):
+    return {c.name: c for c in found.checks}
+
+
 def test_a_coarse_tip_on_a_rigid_plane():
     found = verify("oblique-rod", {"elastic_barrier": 0, "tip_size": "0.8 mm", "across": 6})
     assert found.passed
@@ -14,17 +18,13 @@ def test_a_coarse_tip_on_a_rigid_plane():
 
 
 @pytest.mark.validation
-@pytest.mark.parametrize(
-    ("f", "e", "away", "bending"),
-    [(0.0, 0.853, 0.04, 0.058), (0.34, 0.396, 0.04, 0.114), (0.55, 0.733, 0.08, 0.036)],
-)
-def test_the_long_rod_on_an_elastic_block(f, e, away, bending):
-    """The modal reference, to which e must be within .04, is itself .04 from the last printed e."""
+@pytest.mark.parametrize(("f", "e"), [(0.0, 0.853), (0.34, 0.396), (0.55, 0.733)])
+def test_the_long_rod_on_an_elastic_block(f, e):
+    """Printed are the numbers of the sharp corner, whose arm of friction the rounded edge has not."""
     found = verify("oblique-rod", {"f": f})
     assert found.passed
-    values = {c.name: c.computed for c in found.checks}
-    assert values["restitution e"] == pytest.approx(e, abs=away)
-    assert values["bending energy / E_0"] == pytest.approx(bending, rel=0.25)
+    shown = checks(found)["restitution e, sharp corner"]
+    assert shown.reference == pytest.approx(e, abs=5e-3)
 
 
 SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
@@ -45,7 +45,8 @@ def test_the_short_rod_on_an_elastic_block(f, e, bending):
 @pytest.mark.validation
 def test_the_short_rod_comes_nearer_with_smaller_cells():
     errors = [
-        verify("oblique-rod", SHORT | {"f": 0.0, "tip_size": h}).checks[2].error for h in (1.2e-3, 6e-4, 3e-4)
+        checks(verify("oblique-rod", SHORT | {"f": 0.0, "tip_size": h}))["bending energy / E_0"].error
+        for h in (1.2e-3, 6e-4, 3e-4)
     ]
     assert abs(errors[0]) > 3 * abs(errors[1]) > 3 * abs(errors[2])
 
@@ -68,4 +69,4 @@ def test_a_graze_between_two_contacts_with_a_rigid_plane():
     """Cells of 0.6 mm miss the graze, 2 % of the impulse, that modes and small cells have: e .86, not .83."""
     found = verify("oblique-rod", {"f": 0.0, "elastic_barrier": 0})
     assert found.passed
-    assert found.checks[1].computed == 3
+    assert checks(found)["contacts"].computed == 3

@@ -20,8 +20,8 @@ __all__ = ["ObliqueRebound", "ObliqueRod", "oblique_drop", "oblique_rod"]
 
 Array = NDArray[np.float64]
 
-BENDING, STRETCHING = 6, 3  # modes
-FASTEST = 0.1  # step times the largest circular frequency of the modes
+BENDING, STRETCHING = 12, 8  # modes
+FASTEST = 0.3  # step times the largest circular frequency of the modes
 LONGEST = 2e-7  # s
 FAINT = 1e-3  # of the impulse: a touch below it is no contact
 MERGE = 10e-6  # s: shorter releases do not end a contact

@@ -8,7 +8,6 @@ E* and G* per length and Coulomb's law for each spring. Bodies of like material:
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,8 +51,8 @@ class SpringRow:
         self.shift = np.zeros(SPRINGS)
 
     def normal(self, depth: float) -> float:
-        """Return the normal force, N, at an approach, m."""
-        return float(4 / 3 * self.E_star * sqrt(self.radius) * max(depth, 0.0) ** 1.5)
+        """Return the normal force, N, at an approach, m: Hertz', by the springs that also carry friction."""
+        return float(self.E_star * (self.width @ np.maximum(depth - self.profile, 0.0)))
 
     def slide(self, depth: float, step: float) -> float:
         """Move the contact tangentially by ``step``, m; return the force against it, N."""
