@@ -101,7 +101,7 @@ class Check:
     @property
     def passed(self) -> bool:
         """Return whether the error is finite and within the tolerance, which what is only shown has not."""
-        return isfinite(self.error) and abs(self.error) <= self.tolerance
+        return isfinite(self.error) and bool(abs(self.error) <= self.tolerance)
 
     def document(self) -> dict[str, Any]:
         """Return all of it as plain values."""

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import pytest
 
 from fem_impact.cli import main
@@ -57,6 +58,10 @@ def test_a_check_judges(kind, computed, passed, error):
     assert check.passed is passed
     if error is not None:
         assert check.error == pytest.approx(error)
+
+
+def test_a_check_of_numpy_numbers_can_be_written_as_json():
+    assert '"passed": true' in json.dumps(Check("x", "1", np.float64(1.0), np.float64(1.0), 0.1).document())
 
 
 def test_what_is_only_shown_judges_nothing_and_says_why():

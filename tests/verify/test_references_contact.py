@@ -8,10 +8,12 @@ import pytest
 from fem_impact.verify.reference.finite_sphere import ball_excess, ball_impact, bounce, local_law
 from fem_impact.verify.reference.finite_sphere_shear import ball_shear
 from fem_impact.verify.reference.hertz import contact_modulus, hertz, radiated_share
+from fem_impact.verify.reference.oblique import ObliqueRod, oblique_drop
 from fem_impact.verify.reference.radiation import radiated_energy
 from fem_impact.verify.reference.rod_end import end_excess, end_law
 from fem_impact.verify.reference.sears import rod_impact, sears
 from fem_impact.verify.reference.sphere import oblique_ball, oblique_sphere
+from fem_impact.verify.reference.tangential import SpringRow
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9
 MASS = 4 / 3 * pi * R**3 * RHO
@@ -76,6 +78,17 @@ def test_the_round_end_shortens_the_contact_of_a_fast_rod():
     plain, found = axial(2.0, np.inf)
     assert found.duration / plain.duration == pytest.approx(0.977, abs=2e-3)
     assert found.force / plain.force == pytest.approx(1.018, abs=2e-3)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.29])
+def test_a_sum_over_modes_is_sears_and_lateral_inertia_takes_little(nu):
+    """With nu = 0 the modes are those of the one-dimensional rod; E* stays that of nu = 0.29."""
+    length, mass, wave = 0.24, RHO * np.pi * R**2 * 0.24, np.arange(1, 41) * np.pi / 0.24
+    omega = np.sqrt(219e9 / RHO) * wave / np.sqrt(1 + (nu * wave * R) ** 2 / 2)
+    rod = ObliqueRod(mass, length**2, 0.0, 0.0, omega, np.full(40, np.sqrt(2 / mass)), np.zeros(40))
+    E_star = contact_modulus(219e9, 0.29, 206e9, 0.29)
+    found = oblique_drop(rod, SpringRow(E_star, E_star, 7e-3, 0.0, 1.5e-3), -2.0, 0.0, 3e-4)
+    assert (found.bending + found.stretching) / found.E_0 == pytest.approx(0.00245, abs=1.5e-4)
 
 
 def test_a_ball_is_softer_along_its_skin_the_more_compressible_it_is():

@@ -1,0 +1,63 @@
+"""The contact of public codes: a spring under every node, friction through a second spring that gives way."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.state import State
+from meshes import HexMesh
+
+__all__ = ["NodeSprings", "node_areas"]
+
+Array = NDArray[np.float64]
+
+
+def node_areas(mesh: HexMesh) -> Array:
+    """Return the area (n,), m2, that each node has in the face n = 0 of a bar."""
+    corners = mesh.faces[(mesh.points[mesh.faces, 2] == 0.0).all(axis=1)]
+    a, b = (mesh.points[corners[:, 2 + i]] - mesh.points[corners[:, i]] for i in (0, 1))
+    area = 0.5 * np.linalg.norm(np.cross(a, b), axis=1)
+    return np.bincount(corners.ravel(), np.repeat(area / 4, 4), len(mesh.points))
+
+
+@dataclass(slots=True)
+class NodeSprings:
+    """Springs between the rigid plane n = 0 and the nodes of a body.
+
+    Attributes
+    ----------
+    nodes : (k, 3) unknowns; stiffness : (k,) N/m, along the normal
+    stick : tangential over normal stiffness; f : Coulomb's coefficient
+    anchor : (k, 2) where each node holds on to the plane, m
+    """
+
+    body: ClassVar[str] = "rod"
+    moving: ClassVar[tuple[str, ...]] = ("anchor",)
+    nodes: NDArray[np.int64]
+    stiffness: Array
+    stick: float
+    f: float
+    anchor: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.anchor = np.zeros((len(self.nodes), 2))
+
+    def add_force(self, state: State) -> None:
+        """Add the springs' forces; where friction gives way, the anchor follows."""
+        place = state.x[self.nodes]
+        press = self.stiffness * np.maximum(-place[:, 2], 0.0)
+        stiff = (self.stick * self.stiffness)[:, None]
+        pull = stiff * (self.anchor - place[:, :2])
+        most = self.f * press
+        pull *= np.minimum(1.0, most / np.maximum(np.linalg.norm(pull, axis=1), 1e-30))[:, None]
+        self.anchor = place[:, :2] + pull / stiff
+        state.force[self.nodes] += np.column_stack([pull, press])
+
+    def accounts(self, state: State) -> Accounts:
+        """Return nothing: what springs hold and lose is no part of the ledger."""
+        return {}
