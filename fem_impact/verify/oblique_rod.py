@@ -12,6 +12,9 @@ f     printed  corner       rounded edge  solver
 0.34  0.396    0.392        0.379         0.363
 0.55  0.733    0.734        0.692         0.668
 ====  =======  ===========  ============  ======
+
+On a block the interface leans under friction (`sliding_ratio`), mu is 0.545 for f = 0.55: 0.007 of the last
+difference.
 """
 
 from __future__ import annotations

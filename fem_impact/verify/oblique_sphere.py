@@ -8,6 +8,9 @@ slides; the same incremental contact with the ball's own two stiffnesses decides
 Restitution at 5, 20, 40 degrees: solver 0.716, 0.588, 0.782, ball 0.722, 0.588, 0.781, plain 0.742, 0.594,
 0.781. The sweeps of the contact, which end at 60 in a third of the steps, change it by less than 1e-5.
 
+Where the sphere slides throughout, mu = f but for the lean of the interface (`sliding_ratio`): on a block
+0.4 % less at 3.9 m/s, 1.2 % at 20 m/s with nu = 0, nothing on a rigid plane.
+
 Both bodies must be of like material, which the block is. On a rigid plane (block = 0) a normal load also
 shifts the skin sideways, so blows that stick for most of the contact differ: seen were 0.19 in tangential
 restitution at 5 degrees, f = 0.092, nu = 0.23. With nu near 0.5 that coupling vanishes.
@@ -21,6 +24,7 @@ from fem_impact.verify import steel
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
 from fem_impact.verify.reference.hertz import contact_modulus
 from fem_impact.verify.reference.sphere import oblique_ball, oblique_sphere
+from fem_impact.verify.reference.tangential import sliding_ratio
 from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, sphere_model
 from fem_impact.verify.tips import run_strike
 
@@ -42,12 +46,16 @@ def solve(p: Values) -> Solved:
     m = found.motion
     mu = (m.V_t + v_t) / (m.V_n + v_n)
     slides = exact.ratio > 0.999 * p["f"]
+    ratio = exact.ratio
+    if slides and p["block"]:
+        pressure = 2 * modulus(p) * normal.radius / (pi * R)
+        ratio = sliding_ratio(p["f"], p["nu"], p["E"] / (2 + 2 * p["nu"]), pressure)
     back, note = -m.V_t / v_t, f"for a / R far below 1, here {normal.radius / R:.3f}"
     checks = (
         Check("tangential restitution", "1", back, exact.centre_t / v_t, RESTITUTION, "absolute"),
         Check.shown("tangential restitution, plain", "1", back, plain.centre_t / v_t, note),
         Check("spin R Omega / v_t", "1", -R * m.Omega / v_t, exact.spin / v_t, SLIPPED, "absolute"),
-        Check("impulse ratio mu / f", "1", mu / p["f"], exact.ratio / p["f"], RATIO if slides else SLIPPED),
+        Check("impulse ratio mu / f", "1", mu / p["f"], ratio / p["f"], RATIO if slides else SLIPPED),
         Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
     )
     return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))

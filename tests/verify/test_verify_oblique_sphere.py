@@ -16,6 +16,14 @@ def test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction():
     assert abs(values["tangential restitution"].error) < 0.02
 
 
+def test_the_interface_of_a_hard_blow_leans_under_friction():
+    """The most where nu = 0; the bodies' skins are lower ahead of the contact and higher behind it."""
+    found = verify("oblique-sphere", {**COARSE, "angle": "50 deg", "nu": 0.0, "speed": 20.0})
+    ratio = {c.name: c for c in found.checks}["impulse ratio mu / f"]
+    assert ratio.computed < 0.993
+    assert abs(ratio.error) < 0.004
+
+
 def test_a_sphere_that_sticks_gives_its_tangential_energy_back():
     """On a rigid plane nothing couples pressing and shifting only where nu is near 0.5."""
     found = verify("oblique-sphere", {**COARSE, "across": 16, "angle": "5 deg", "nu": 0.49, "block": 0})

@@ -12,15 +12,32 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SpringRow", "tangential_ratio"]
+__all__ = ["SpringRow", "sliding_ratio", "tangential_ratio"]
 
 Array = NDArray[np.float64]
 SPRINGS = 100
+MEAN_PRESSURE = 0.674  # over the largest: 3/4 weighted by itself over the contact, 0.899 over the impulse
 
 
 def tangential_ratio(nu: float) -> float:
     """Return G* / E* of two bodies with the same elastic constants."""
     return 2 * (1 - nu) / (2 - nu)
+
+
+def sliding_ratio(f: float, nu: float, G: float, pressure: float) -> float:
+    """Return the impulse ratio of a sliding collision of like bodies with a largest Hertz pressure, Pa.
+
+    The traction f p lowers the skin ahead of the contact and raises it behind (Cerruti: Johnson, Contact
+    Mechanics, 1985, Eq 3.75c), in both bodies alike. So the interface, on which friction is f, leans by
+    (1 - 2 nu) f p / (4 G), weighted with the pressure, and along the barrier's own directions less is seen.
+
+    Examples
+    --------
+    >>> round(sliding_ratio(0.5, 0.29, 85e9, 8e9), 4), sliding_ratio(0.5, 0.5, 85e9, 8e9)
+    (0.4958, 0.5)
+    """
+    lean = MEAN_PRESSURE * (1 - 2 * nu) * f * pressure / (4 * G)
+    return (f - lean) / (1 + f * lean)
 
 
 @dataclass(slots=True)
