@@ -22,7 +22,9 @@ def node_areas(mesh: HexMesh) -> Array:
     corners = mesh.faces[(mesh.points[mesh.faces, 2] == 0.0).all(axis=1)]
     a, b = (mesh.points[corners[:, 2 + i]] - mesh.points[corners[:, i]] for i in (0, 1))
     area = 0.5 * np.linalg.norm(np.cross(a, b), axis=1)
-    return np.bincount(corners.ravel(), np.repeat(area / 4, 4), len(mesh.points))
+    return np.asarray(
+        np.bincount(corners.ravel(), np.repeat(area / 4, 4), len(mesh.points)), dtype=np.float64
+    )
 
 
 @dataclass(slots=True)
