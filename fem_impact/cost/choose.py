@@ -12,12 +12,12 @@ __all__ = ["advice", "best_within", "cheapest"]
 def cheapest(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the quickest setting whose worst error is at most the target, None if there is none."""
     good = [one for one in front(settings, names) if worst(one, names) <= target]
-    return min(good, key=lambda one: one.wall_s, default=None)
+    return min(good, key=lambda one: one.cpu_s, default=None)
 
 
 def best_within(settings: Sequence[Judged], names: Sequence[str], budget: float) -> Judged | None:
     """Return the most accurate setting that takes at most ``budget`` s, None if there is none."""
-    quick = [one for one in front(settings, names) if one.wall_s <= budget]
+    quick = [one for one in front(settings, names) if one.cpu_s <= budget]
     return min(quick, key=lambda one: worst(one, names), default=None)
 
 
@@ -46,4 +46,4 @@ def advice(
 
 
 def _words(setting: Judged, names: Sequence[str]) -> str:
-    return f"{setting.name}, error {100 * worst(setting, names):.2g} % in {setting.wall_s:.3g} s"
+    return f"{setting.name}, error {100 * worst(setting, names):.2g} % in {setting.cpu_s:.3g} s"

@@ -31,6 +31,9 @@ class Truth:
 class Judged:
     """A setting with what it gave and what it took; times in s, memory in 1e6 bytes.
 
+    Settings are compared by CPU time: a run of the ladder has one thread, so that this is its wall time on a
+    free core, and another program beside it does not lengthen it.
+
     ``error`` holds, for each quantity, distance from the limit plus the limit's own uncertainty over the
     scale; where an effect is left out, what that changes on the same mesh over the scale. ``front`` names
     the quantities on whose Pareto front the setting lies.
@@ -171,7 +174,7 @@ def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
     found: list[Judged] = []
     best = inf
     whole = [one for one in judged if one.kind != "effect"]
-    for one in sorted(whole, key=lambda j: (j.wall_s, worst(j, names))):
+    for one in sorted(whole, key=lambda j: (j.cpu_s, worst(j, names))):
         if worst(one, names) < best:
             best = worst(one, names)
             found.append(one)

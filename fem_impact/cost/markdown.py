@@ -14,7 +14,7 @@ __all__ = ["summary_markdown"]
 def summary_markdown(document: dict[str, Any]) -> str:
     """Return one row a scene: limits of the targeted quantities, then errors and time of every setting.
 
-    A cell reads: errors of the targeted quantities in per cent, wall time in s.
+    A cell reads: errors of the targeted quantities in per cent, CPU time in s.
     """
     scenes = {
         name: (cost["quantities"], [Judged(**setting) for setting in cost["settings"]])
@@ -25,7 +25,7 @@ def summary_markdown(document: dict[str, Any]) -> str:
     body = [[name, *_limits(q), *(_cell(s, column) for column in columns)] for name, (q, s) in scenes.items()]
     machine = document["machine"]
     note = (
-        f"Measured {document['created_utc'][:10]}, wall times in s on a machine with a triad of "
+        f"Measured {document['created_utc'][:10]}, CPU times in s on a machine with a triad of "
         f"{machine['triad_GB_per_s']:.3g} GB/s and a CSR product of "
         f"{machine['csr_ns_per_element_step']:.3g} ns an element-step."
     )
@@ -49,7 +49,7 @@ def _cell(settings: list[Judged], name: str) -> str:
         return ""
     errors = [found[0].error[quantity] for quantity in TARGETED]
     words = " / ".join("-" if error is None else _percent(error) for error in errors)
-    return f"{words}, {found[0].wall_s:.2g} s"
+    return f"{words}, {found[0].cpu_s:.2g} s"
 
 
 def _percent(error: float) -> str:

@@ -148,5 +148,5 @@ def _given(setting: Setting, results: Results, runs: dict[Mesh, Outcome]) -> lis
 def _marked(judged: list[Judged]) -> list[Judged]:
     """Sort by time and name the quantities on whose Pareto front each setting lies."""
     fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
-    ordered = sorted(judged, key=lambda one: one.wall_s)
+    ordered = sorted(judged, key=lambda one: one.cpu_s)
     return [replace(o, front=[name for name, held in fronts.items() if o.name in held]) for o in ordered]

@@ -1,4 +1,4 @@
-"""The work-precision plot: error against wall time, one panel a quantity, with the Pareto front."""
+"""The work-precision plot: error against CPU time, one panel a quantity, with the Pareto front."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ LOOKS = {
 
 
 def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path) -> None:
-    """Draw relative error against wall time, both logarithmic, of some quantities."""
+    """Draw relative error against CPU time, both logarithmic, of some quantities."""
     rows = (len(names) + 1) // 2
     with figure(path, "wide", 0.6 + 2.7 * rows) as drawn:
         panels = drawn.subplots(rows, min(2, len(names)), squeeze=False, sharex=True).ravel()
@@ -38,9 +38,9 @@ def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
     for kind, (marker, colour) in LOOKS.items():
         of = [one for one in settings if one.kind == kind]
         axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=kind, markersize=5)
-    axes.set(title=name, xscale="log", yscale="log", xlabel="wall time, s", ylabel="error, %")
+    axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
     axes.grid(which="both", alpha=0.5)
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
-    return [one.wall_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
+    return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]

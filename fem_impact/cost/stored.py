@@ -144,7 +144,7 @@ def plan(scene: Scene, fidelity: str | None = None) -> Plan:
         raise _not_met(scene, name, front(settings, TARGETED)[-1])
     machine = summary()["machine"]["csr_ns_per_element_step"]
     pace = yardsticks()["csr_ns_per_element_step"] / machine
-    return Plan(target, found, name, worst(found, TARGETED), found.wall_s * pace)
+    return Plan(target, found, name, worst(found, TARGETED), found.cpu_s * pace)
 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
@@ -162,7 +162,7 @@ def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneErr
 def _not_met(scene: Scene, name: str, best: Judged) -> SceneError:
     error = worst(best, TARGETED)
     return SceneError(
-        f"cannot be met: on {name}, the best measured setting ({best.name}, {best.wall_s:.2g} s) is "
+        f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
         f"uncertain by {100 * error:.2g} % in {' and '.join(TARGETED)}.",
         key="accuracy",
         value=_written(scene),

@@ -1,5 +1,7 @@
 """Fast products against assembled matrices, and ties that do no work."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -122,6 +124,18 @@ def test_rigid_motion_of_a_tied_assembly_is_free():
     assert isinstance(K, sp.csr_matrix)
     u = np.cross([1.0, -2.0, 0.5], points)
     assert abs(K @ u.ravel()).max() < 1e-11 * abs(K).max() * abs(u).max()
+
+
+def test_assembly_takes_little_more_memory_than_its_result():
+    points, cells = shapes.grid((20, 20, 10), 1e-3)
+    K, T = np.ones((len(cells), 24, 24)), sp.identity(3 * len(points), format="csr")
+    tracemalloc.start()
+    try:
+        whole = assemble(K, cells, T)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert peak < 4 * (whole.data.nbytes + whole.indices.nbytes)
 
 
 def test_equal_cells_share_their_blocks():
