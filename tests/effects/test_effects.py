@@ -214,9 +214,13 @@ def test_a_hard_stiff_barrier_is_rigid():
     hard = replace(
         base.barrier.material, name="hard", E=1e13, yield_stress=9e10, ultimate_stress=9e10, rho=3000
     )
-    made = chosen(replace(base, barrier=replace(base.barrier, material=hard)))
+    barrier = replace(base.barrier, material=hard)
+    light = replace(base.projectile, material=replace(base.projectile.material, E=70e9))
+    made = chosen(replace(base, projectile=light, barrier=barrier))
     assert "barrier-rigid" in made
     assert "radiation" not in made
+    # 2 % of the compliance: as much in e
+    assert "barrier-elastic" in chosen(replace(base, barrier=barrier))
 
 
 def test_forced_effects_are_kept_and_missed_ones_named():

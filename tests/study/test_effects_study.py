@@ -72,4 +72,4 @@ def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
     whole = replace(everything(scene), effects=(*scene.active, "gravity", "material-damping"))
     found = row("x", simulate(scene), simulate(whole))
     assert found[-1] == "within", found
-    assert not isclose(found[2], found[3], rel_tol=1e-9)
+    assert not isclose(found[3], 0.0, abs_tol=1e-12)
