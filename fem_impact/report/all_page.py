@@ -9,19 +9,22 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError
+from fem_impact.outcome import Outcome
 from fem_impact.output import make_directory, read_text, write_text
+from fem_impact.report.conclusions import conclusion_section, conclusion_text, conclusions
 from fem_impact.report.embed import data_link
 from fem_impact.report.findings import findings_section, read_findings
 from fem_impact.report.html import Markup, details, join, section, table
+from fem_impact.report.misses import misses_section
 from fem_impact.report.page import page, sources
 from fem_impact.report.study_data import STUDY_SCHEMA, Study, read_study
 from fem_impact.report.study_page import comparison_part, partition_part
 from fem_impact.report.tables import card
-from fem_impact.report.verdicts import marker_section, verdict_section
+from fem_impact.report.verdicts import marker_section, verdict_section, verdicts
 
 __all__ = ["write_all"]
 
-LEDGER = "runs.csv"
+LEDGER, RECORD = "runs.csv", "outcome.json"
 
 
 def write_all(results: Path, out: Path) -> Path:
@@ -37,11 +40,14 @@ def write_all(results: Path, out: Path) -> Path:
     if not told and sets is None:
         raise ResultError(f"{results}: holds no study. Run one, such as fem-impact study gamma --quick.")
     figures = make_directory(out / "figures")
-    ledger = _ledger(told, sets)
+    ledger = _ledger(told, _runs(results / "sets", sets) if sets else [])
     write_text(out / "ledger.csv", ledger)
-    write_text(out / "summary.md", _markdown(told, results if sets else None))
+    concluded = conclusions(told, sets)
+    folders = ([results / "sets"] if sets else []) + list(told)
+    write_text(out / "summary.md", _markdown(folders, conclusion_text(concluded)))
     body = [
         _cards(told, sets, ledger),
+        conclusion_section(concluded),
         *(_sets_part(sets, figures) if sets else []),
         *(findings_section(held, folder) for folder, held in told.items()),
         section("Ledger of every run", _ledger_part(ledger)),
@@ -70,7 +76,8 @@ def _sets_part(sets: Study, figures: Path) -> list[Markup]:
     return [
         section("Model beside measurement", comparison_part(sets, figures)),
         section("Where the energy went", partition_part(sets, figures)),
-        verdict_section(rows, figures),
+        misses_section(sets),
+        verdict_section(verdicts(rows), figures),
         marker_section(rows),
     ]
 
@@ -83,7 +90,15 @@ def _cards(told: dict[Path, dict[str, Any]], sets: Study | None, ledger: str) ->
     return Markup(f'<div class="cards">{join(cards).text}</div>')
 
 
-def _ledger(told: Iterable[Path], sets: Study | None) -> str:
+def _runs(folder: Path, sets: Study) -> list[Outcome]:
+    """Return the runs of the measured sets; coarser meshes and changed inputs where their files stand."""
+    shown = {row["scene_id"] for row in sets.rows}
+    beside = [place for place in _folders(folder) if place.name not in shown]
+    found = [(place.name, Outcome.read(place / RECORD)) for place in beside if (place / RECORD).is_file()]
+    return [*sets.rows, *(run.replace(scene_id=name) for name, run in found)]
+
+
+def _ledger(told: Iterable[Path], runs: Iterable[Outcome]) -> str:
     """Return one table of the runs of all studies."""
     lines = io.StringIO()
     writer, head = csv.writer(lines, lineterminator="\n"), None
@@ -96,7 +111,7 @@ def _ledger(told: Iterable[Path], sets: Study | None) -> str:
     names = _columns(lines.getvalue())
     if head is None:
         writer.writerow(names)
-    for run in sets.rows if sets else ():
+    for run in runs:
         writer.writerow(["sets", run["scene_id"], *(_cell(run, name) for name in names[2:])])
     return lines.getvalue()
 
@@ -130,11 +145,10 @@ def _short(cell: str) -> str:
         return cell[:24]
 
 
-def _markdown(told: dict[Path, dict[str, Any]], results: Path | None) -> str:
-    parts = ["# Where the energy of a dropped steel rod goes"]
-    folders = ([results / "sets"] if results else []) + list(told)
+def _markdown(folders: Iterable[Path], concluded: str) -> str:
+    parts = ["# Where the energy of a dropped steel rod goes", concluded]
     parts += [_summary(folder) for folder in folders]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def _summary(folder: Path) -> str:

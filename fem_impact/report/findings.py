@@ -11,13 +11,17 @@ from typing import Any
 from fem_impact.errors import ResultError
 from fem_impact.output import read_text
 from fem_impact.report.embed import download, stored_picture
-from fem_impact.report.html import Markup, bullets, details, join, number, paragraph, section, table
+from fem_impact.report.html import Markup, bullets, details, join, number, paragraph, place, section, table
 
-__all__ = ["FINDINGS", "findings_section", "read_findings"]
+__all__ = ["FINDINGS", "figure_id", "findings_section", "read_findings"]
 
 FINDINGS = "fem-impact/findings/1"
 WANTED = {"study": str, "title": str, "command": str, "findings": list, "assumptions": list, "sources": list}
-PARTS = {"figures": ("name", "caption"), "sheets": ("name", "caption", "columns", "rows")}
+PARTS = {
+    "figures": ("name", "caption"),
+    "sheets": ("name", "caption", "columns", "rows"),
+    "conclusions": ("name", "sentence"),
+}
 
 
 def read_findings(folder: Path) -> dict[str, Any] | None:
@@ -37,6 +41,7 @@ def read_findings(folder: Path) -> dict[str, Any] | None:
         raise ResultError(f"{path}: not readable JSON ({error}); it may be cut off.") from error
     if not isinstance(held, dict) or held.get("schema") != FINDINGS:
         return None
+    held.setdefault("conclusions", [])  # none in those of an earlier version
     _check(held, path)
     return held
 
@@ -63,7 +68,7 @@ def findings_section(held: Mapping[str, Any], folder: Path) -> Markup:
     return section(
         held["title"],
         bullets(held["findings"]),
-        *(_figure(entry, folder) for entry in held["figures"]),
+        *(_figure(entry, held["study"], folder) for entry in held["figures"]),
         *(_sheet(sheet, folder) for sheet in held["sheets"]),
         details("What it rests on", bullets(held["assumptions"])),
         Markup(f"<p>{escape(runs)} <code>{escape(held['command'])}</code></p>"),
@@ -71,9 +76,15 @@ def findings_section(held: Mapping[str, Any], folder: Path) -> Markup:
     )
 
 
-def _figure(entry: Mapping[str, Any], folder: Path) -> Markup:
+def figure_id(study: str, name: str) -> str:
+    """Return the name under which a page links to a study's figure."""
+    return f"{study}-{name}"
+
+
+def _figure(entry: Mapping[str, Any], study: str, folder: Path) -> Markup:
     stem = folder / "figures" / entry["name"]
-    return join([stored_picture(stem, entry["caption"]), download(stem.with_suffix(".csv"), "its data")])
+    shown = place(figure_id(study, entry["name"]), stored_picture(stem, entry["caption"]))
+    return join([shown, download(stem.with_suffix(".csv"), "its data")])
 
 
 def _sheet(sheet: Mapping[str, Any], folder: Path) -> Markup:

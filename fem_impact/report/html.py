@@ -15,6 +15,7 @@ __all__ = [
     "join",
     "number",
     "paragraph",
+    "place",
     "section",
     "table",
     "with_band",
@@ -38,6 +39,11 @@ def paragraph(content: str | Markup, kind: str = "") -> Markup:
     shown = f' class="{escape(kind)}"' if kind else ""
     text = _safe(content)
     return Markup(f"<p{shown}>{text}</p>" if text else "")
+
+
+def place(name: str, content: Markup) -> Markup:
+    """Return a piece that a link ``#name`` leads to."""
+    return Markup(f'<div id="{escape(name)}">\n{content.text}\n</div>')
 
 
 def section(title: str, *content: Markup) -> Markup:

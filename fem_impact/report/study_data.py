@@ -15,6 +15,10 @@ from fem_impact.output import COMPARISON, read_text
 __all__ = ["STUDY_SCHEMA", "Study", "read_study"]
 
 STUDY_SCHEMA = "fem-impact/study/1"
+TOLD = {
+    "explanations": ("set", "quantity", "model", "measured_mean", "shares", "could"),
+    "sensitivity": ("set", "quantity", "input", "base", "changed"),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +36,10 @@ class Study:
         Runs that gave no record: ``scene_id`` and ``error``.
     notes : tuple of str
         Sentences of the study, such as the friction rule.
+    explanations : tuple of mappings
+        What could explain a quantity outside its interval (`fem_impact.study.sensitivity.explanations`).
+    sensitivity : tuple of mappings
+        What each changed input does: ``set``, ``quantity``, ``input``, ``base``, ``changed``.
     """
 
     title: str
@@ -39,6 +47,8 @@ class Study:
     comparison: tuple[Mapping[str, Any], ...]
     failures: tuple[Mapping[str, str], ...]
     notes: tuple[str, ...]
+    explanations: tuple[Mapping[str, Any], ...]
+    sensitivity: tuple[Mapping[str, Any], ...]
 
 
 def read_study(path: str | Path) -> Study:
@@ -62,7 +72,8 @@ def read_study(path: str | Path) -> Study:
     ]
     notes = [str(note) for note in held.get("notes") or []]
     title = str(held.get("title") or "Model beside measurement")
-    return Study(title, tuple(rows), tuple(comparison), tuple(failures), tuple(notes))
+    told = {name: _records(held, name, keys, path) for name, keys in TOLD.items()}
+    return Study(title, tuple(rows), tuple(comparison), tuple(failures), tuple(notes), **told)
 
 
 def _object(path: str | Path) -> dict[str, Any]:
@@ -80,6 +91,17 @@ def _list(held: Mapping[str, Any], name: str, path: str | Path) -> list[dict[str
     if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
         raise ResultError(f'{path}: key "{name}" must be a list of records.')
     return items
+
+
+def _records(
+    held: Mapping[str, Any], name: str, keys: tuple[str, ...], path: str | Path
+) -> tuple[Mapping[str, Any], ...]:
+    items = _list(held, name, path)
+    for at, item in enumerate(items):
+        missing = [key for key in keys if key not in item]
+        if missing:
+            raise ResultError(f'{path}: {name}[{at}] lacks the key "{missing[0]}".')
+    return tuple(items)
 
 
 def _check(row: Mapping[str, Any], at: int, path: str | Path) -> None:

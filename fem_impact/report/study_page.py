@@ -15,6 +15,7 @@ from fem_impact.outcome import Outcome
 from fem_impact.output import make_directory
 from fem_impact.report.embed import picture
 from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table, with_band
+from fem_impact.report.misses import misses_section
 from fem_impact.report.page import page, sources
 from fem_impact.report.sections import has_film, history_figures, notices
 from fem_impact.report.study_data import Study, read_study
@@ -39,6 +40,7 @@ def study_page(folder: Path) -> str:
         _cards(study),
         notices(rows),
         section("Model beside measurement", comparison_part(study, figures), _tables(study.comparison)),
+        misses_section(study),
         section("Notes", bullets(study.notes)),
         section("Where the energy went", partition_part(study, figures)),
         section("Runs that failed", _failures(study)),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
@@ -11,32 +12,47 @@ import numpy as np
 from fem_impact.figures.lines import Panel, Series, lines_figure
 from fem_impact.outcome import Outcome
 from fem_impact.report.embed import download, picture
-from fem_impact.report.html import Markup, join, number, paragraph, section, table
+from fem_impact.report.html import Markup, join, number, paragraph, place, section, table
 from rigid.experiments import measured_set
 
-__all__ = ["marker_section", "verdict_section"]
+__all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
+
+MARKED = {"V_n": "V_n_m_per_s", "V_t": "V_t_m_per_s", "Omega": "Omega_rad_per_s"}
 
 
-def verdict_section(rows: Sequence[Outcome], figures: Path) -> Markup:
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """A conclusion of the paper: name of its figure, sentence, and the figure that shows it."""
+
+    name: str
+    sentence: str
+    panel: Panel
+
+
+def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
     """Return closure, trend of e_m, mu_c as a bound, and E_lt as heat, from the measured sets as computed."""
     rows = [row for row in rows if row["e_m_paper"] is not None]
-    if not rows:
-        return Markup("")
-    parts = (_closure, _moment, _critical, _heat)
+    return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
+
+
+def verdict_section(told: Sequence[Verdict], figures: Path) -> Markup:
+    """Return the verdicts with their figures, drawn into a folder."""
     title = "What the paper concluded, what stands and what does not"
-    return section(title, *(part(rows, figures) for part in parts))
+    return section(title, *(_shown(verdict, figures) for verdict in told))
 
 
-def _told(sentence: str, panel: Panel, name: str, figures: Path) -> Markup:
-    drawn = picture(partial(_draw, panel), figures / name, panel.title, panel.title)
-    return join([paragraph(sentence), drawn, download(figures / f"{name}.csv", "its data")])
+def _shown(verdict: Verdict, figures: Path) -> Markup:
+    name, title = verdict.name, verdict.panel.title
+    drawn = picture(partial(_draw, verdict.panel), figures / name, title, title)
+    data = download(figures / f"{name}.csv", "its data")
+    return join([paragraph(verdict.sentence), place(name, drawn), data])
 
 
 def _draw(panel: Panel, path: Path, shape: str) -> Path:
     return lines_figure([panel], path, "wide" if shape == "wide" else "narrow", columns=1)
 
 
-def _closure(rows: Sequence[Outcome], figures: Path) -> Markup:
+def _closure(rows: Sequence[Outcome]) -> Verdict:
     lost = [100 * row["E_vib_over_E_0"] for row in rows]
     gap = [100 * (_sum(row) - 1) for row in rows]
     identity = [100 * _spin(row) * (1 + 1 / row["e_m_paper"]) for row in rows]
@@ -53,7 +69,7 @@ def _closure(rows: Sequence[Outcome], figures: Path) -> Markup:
         Series("vibration", range(len(rows)), lost, "points"),
     )
     panel = Panel("Closure of the computed sets", _axis(rows), "% of E_0", series)
-    return _told(sentence, panel, "closure", figures)
+    return Verdict("closure", sentence, panel)
 
 
 def _apart(a: Sequence[float], b: Sequence[float]) -> float:
@@ -69,7 +85,7 @@ def _spin(row: Outcome) -> float:
     return float(turn / row["E_0_J"])
 
 
-def _moment(rows: Sequence[Outcome], figures: Path) -> Markup:
+def _moment(rows: Sequence[Outcome]) -> Verdict:
     angle = np.degrees([row["alpha_rad"] for row in rows])
     names = {"paper": "the paper's arms", "edge": "arms of the edge", "impulse": "centre of the impulse"}
     series = tuple(
@@ -81,10 +97,10 @@ def _moment(rows: Sequence[Outcome], figures: Path) -> Markup:
         f"motion gives values up to {max(spread):.2g} apart with the paper's arms and those of the edge, and "
         "-1 at the centre of the impulse."
     )
-    return _told(sentence, Panel("e_m against angle", "angle, degrees", "e_m, -", series), "moment", figures)
+    return Verdict("moment", sentence, Panel("e_m against angle", "angle, degrees", "e_m, -", series))
 
 
-def _critical(rows: Sequence[Outcome], figures: Path) -> Markup:
+def _critical(rows: Sequence[Outcome]) -> Verdict:
     measured = [measured_set(row["scene_id"]).statistics()["mu"].mean for row in rows]
     at = range(len(rows))
     series = (
@@ -98,10 +114,10 @@ def _critical(rows: Sequence[Outcome], figures: Path) -> Markup:
         "Stands with a limit: mu_c is the ratio at which the tip stops without turning back, and no upper "
         f"bound. It is exceeded by more than 2 %, measured or computed, in {', '.join(above) or 'no set'}."
     )
-    return _told(sentence, Panel("Impulse ratio and mu_c", _axis(rows), "mu, -", series), "critical", figures)
+    return Verdict("critical", sentence, Panel("Impulse ratio and mu_c", _axis(rows), "mu, -", series))
 
 
-def _heat(rows: Sequence[Outcome], figures: Path) -> Markup:
+def _heat(rows: Sequence[Outcome]) -> Verdict:
     at = range(len(rows))
     tangential = [100 * row["E_lt_paper_over_E_0"] for row in rows]
     rubbed = [100 * row["W_friction_over_E_0"] for row in rows]
@@ -112,10 +128,11 @@ def _heat(rows: Sequence[Outcome], figures: Path) -> Markup:
     )
     ratio = [r / t for r, t in zip(rubbed, tangential, strict=True) if t > 0]
     sentence = (
-        "Does not stand: E_lt is not the energy that can heat the contact. Friction takes "
-        f"{min(ratio):.0%} to {max(ratio):.0%} of it; what is left of it is plastic flow and vibration."
+        "Does not stand: E_lt is not the energy that can heat the contact. Friction, which can, takes "
+        f"{min(rubbed):.2g} to {max(rubbed):.2g} % of E_0 and {min(ratio):.0%} to {max(ratio):.0%} of E_lt; "
+        "what is left of E_lt is plastic flow and vibration."
     )
-    return _told(sentence, Panel("E_lt and friction work", _axis(rows), "% of E_0", series), "heat", figures)
+    return Verdict("heat", sentence, Panel("E_lt and friction work", _axis(rows), "% of E_0", series))
 
 
 def _axis(rows: Sequence[Outcome]) -> str:
@@ -124,12 +141,26 @@ def _axis(rows: Sequence[Outcome]) -> str:
 
 def marker_section(rows: Sequence[Outcome]) -> Markup:
     """Return the camera's two markers, replayed on the computed flight, beside the exact momentum sums."""
-    names = ("V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s")
+    seen = [row for row in rows if row["marker_V_n_m_per_s"] is not None]
     shown = [
-        [row["scene_id"], *(number(row[key]) for name in names for key in (name, f"marker_{name}"))]
-        for row in rows
-        if row["marker_V_n_m_per_s"] is not None
+        [row["scene_id"], *(number(row[key]) for name in MARKED.values() for key in (name, f"marker_{name}"))]
+        for row in seen
     ]
-    head = ("set", *(words for name in names for words in (name, "by markers")))
+    head = ("set", *(words for name in MARKED.values() for words in (name, "by markers")))
     listed = table(head, shown, numbers=range(1, 7), compact=True)
-    return section("The camera's measurement, replayed", listed)
+    return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)
+
+
+def marker_sentence(seen: Sequence[Outcome]) -> str:
+    """Say how far the markers lie from the exact sums, nothing where no run has them."""
+    if not seen:
+        return ""
+    away = {words: _apart(*_pairs(seen, key)) for words, key in MARKED.items()}
+    return (
+        "Two markers over 40 frames at 10 kHz, replayed on the computed flight, give the exact momentum sums "
+        f"within {away['V_n']:.2g} m/s along n, {away['V_t']:.2g} m/s along t and {away['Omega']:.2g} rad/s."
+    )
+
+
+def _pairs(rows: Sequence[Outcome], key: str) -> tuple[list[float], list[float]]:
+    return [row[key] for row in rows], [row[f"marker_{key}"] for row in rows]

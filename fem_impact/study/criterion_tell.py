@@ -36,35 +36,36 @@ JUDGED = 0.05
 HERTZ = ("Hertz, one tip radius", "Hertz, tip in proportion")
 YIELDING = "yielding, frictionless"
 Found = Mapping[str, Rods]
+ASSUMPTIONS = (
+    *MAP_NOTES,
+    "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
+    "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
+    "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "
+    "long a contact as Hertz' for 19 mm, gamma 26.45, 45 degrees, 2.1 m/s; solved exactly.",
+    "T1: first bending period. tau: contact time of the rod that cannot vibrate, at the angle of its "
+    "largest error; or of its whole mass, falling at full speed onto the contact of 45 degrees.",
+)
 
 
 def paper(found: Found, blind: Sequence[Drop], results: Results) -> Paper:
     """Return the study from the rods of each family and the drops over friction."""
     gives = gives_of(found[YIELDING])
+    told = {
+        "onset": [*_origin(found), *_verdicts(found)],
+        "angles": _invariance(found),
+        "static-give": give_words(gives),
+        "master": [*_group(found), *_known(found)],
+        "blind-direction": _blind_words(blind, results),
+    }
     return Paper(
         "criterion",
         "When a rod may be called rigid",
-        [
-            *_origin(found),
-            *_verdicts(found),
-            *_invariance(found),
-            *give_words(gives),
-            *_group(found),
-            *_known(found),
-            *_blind_words(blind, results),
-        ],
+        [sentence for sentences in told.values() for sentence in sentences],
         [_angles(found), _onset(found), give_picture(gives), _master(found), _blind(blind, results)],
         [_levels(found), _rods(found), give_sheet(gives), _curves(found)],
-        [
-            *MAP_NOTES,
-            "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
-            "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
-            "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "
-            "long a contact as Hertz' for 19 mm, gamma 26.45, 45 degrees, 2.1 m/s; solved exactly.",
-            "T1: first bending period. tau: contact time of the rod that cannot vibrate, at the angle of its "
-            "largest error; or of its whole mass, falling at full speed onto the contact of 45 degrees.",
-        ],
+        ASSUMPTIONS,
         ["modal", "thornton", "slenderness"],
+        [(name, sentence) for name, sentences in told.items() for sentence in sentences],
     )
 
 

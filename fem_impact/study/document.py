@@ -51,7 +51,8 @@ class Picture:
 class Paper:
     """A study as it is told: its name, title, findings in sentences, pictures, sheets and sources.
 
-    ``sources`` name entries of the report's list of papers; ``assumptions`` state ranges and limits.
+    ``sources`` name entries of the report's list of papers; ``assumptions`` state ranges and limits;
+    ``conclusions`` are the findings for the report's first page, by the picture that shows them.
     """
 
     study: str
@@ -61,6 +62,7 @@ class Paper:
     sheets: Sequence[Sheet] = ()
     assumptions: Sequence[str] = ()
     sources: Sequence[str] = ()
+    conclusions: Sequence[tuple[str, str]] = ()
 
 
 def publish(paper: Paper, request: Request, results: Results) -> StudyResult:
@@ -85,6 +87,7 @@ def _document(paper: Paper, request: Request, results: Results) -> dict[str, Any
         "title": paper.title,
         "command": request.command(paper.study),
         "findings": list(paper.findings),
+        "conclusions": [{"name": name, "sentence": sentence} for name, sentence in paper.conclusions],
         "assumptions": list(paper.assumptions),
         "sources": list(paper.sources),
         "figures": [{"name": p.name, "caption": p.caption} for p in paper.pictures],

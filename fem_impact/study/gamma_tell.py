@@ -80,15 +80,22 @@ def paper(maps: Maps, tip: float) -> Paper:
     """Return the study."""
     pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *_other_pictures(maps)]
     sheets = [_anchor_sheet(maps), _rod_sheet(maps), _worst_sheet(maps), _map_sheet(maps)]
+    peaks, back, away = _peaks(maps), _given_back(maps), _differences(maps)
     anchored = f"Anchors: finite elements of {tip * 1e3:g} mm at the tip, one mesh, so without a mesh band."
     return Paper(
         "gamma",
         "Vibration against slenderness",
-        [*_peaks(maps), *_given_back(maps), *_differences(maps)],
+        [*peaks, *back, *away],
         pictures,
         sheets,
         [*MAP_NOTES, anchored],
         ["modal", "thornton", "slenderness"],
+        [
+            *(("line-elastic", told) for told in peaks[:1]),
+            *(("line-yielding", told) for told in peaks[-1:]),
+            *(("second-contacts", told) for told in back),
+            *(("line-yielding", told) for told in away),
+        ],
     )
 
 

@@ -24,14 +24,16 @@ Told = dict[str, Any]
 def paper(told: Sequence[Told], inputs: Sequence[Input], fidelity: str) -> Paper:
     """Return the study for what every set says (see `fem_impact.study.scatter`)."""
     names = [i.name for i in inputs]
+    sentences = [(f"cloud-{t['set']}", sentence) for t in told for sentence in _sentences(t, names)]
     return Paper(
         "scatter",
         f"Scatter of the measured sets and what causes it ({fidelity})",
-        [sentence for t in told for sentence in _sentences(t, names)],
+        [sentence for _, sentence in sentences],
         [*(_cloud(t) for t in told), *(_ranks(t, names) for t in told if t["indices"])],
         [_spread_sheet(told), _correlation_sheet(told), _index_sheet(told, names), _sample_sheet(told)],
         [f"{i.name}: {i.words}" + ("" if i.varies else "; one value for all tests of a set") for i in inputs],
         ["sobol", "qmc"],
+        sentences,
     )
 
 

@@ -3,6 +3,7 @@
 import csv
 import json
 import re
+from dataclasses import replace
 
 import pytest
 from result_maker import values
@@ -24,6 +25,7 @@ def results(tmp_path):
     sheets = [Sheet("numbers", "Some numbers", ("name", "value_m"), [["<b>", 0.25], ["none", None]])]
     picture = Picture("line", "A rising line.", (panel,))
     paper = Paper("gamma", "A study", ["It rises & falls."], [picture], sheets)
+    paper = replace(paper, conclusions=[("line", "It rises & falls.")])
     publish(paper, Request(tmp_path / "gamma", quick=True), {"run-1": Outcome(values())})
     return tmp_path
 
@@ -35,12 +37,17 @@ def test_the_page_holds_findings_figures_data_and_ledger(results):
     assert "&lt;b&gt;" in page
     assert "<code>fem-impact study gamma --quick</code>" in page
     assert {"line.csv", "numbers.csv", "ledger.csv"} <= set(re.findall(r'download="([\w.-]+)"', page))
-    assert not re.findall(r'(?:src|href)="(?!data:)', page)
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', page)
+    assert (
+        set(re.findall(r'href="#([\w-]+)"', page))
+        == set(re.findall(r'id="([\w-]+)"', page))
+        == {"gamma-line"}
+    )
     (row,) = csv.DictReader((results / "report" / "ledger.csv").read_text().splitlines())
     assert (row["study"], row["run"]) == ("gamma", "run-1")
     told = (results / "report" / "summary.md").read_text()
     assert "](../gamma/figures/line.png)" in told
-    assert "- It rises & falls." in told
+    assert "- It rises & falls. ([figure](../gamma/figures/line.png))" in told
 
 
 def test_a_study_alone_has_a_page_too(results):
@@ -49,7 +56,24 @@ def test_a_study_alone_has_a_page_too(results):
 
 def test_the_papers_conclusions_are_judged(results):
     row = Outcome(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
-    document = {"schema": "fem-impact/study/1", "rows": [row.to_dict()], "comparison": [], "failures": []}
+    document = {
+        "schema": "fem-impact/study/1",
+        "rows": [row.to_dict()],
+        "comparison": [],
+        "failures": [],
+        "explanations": [
+            {
+                "set": "t5b",
+                "quantity": "e",
+                "model": 0.3,
+                "measured_mean": 0.4,
+                "shares": {"yield": 1.2, "rate": -0.1},
+                "could": ["yield"],
+            }
+        ],
+        "sensitivity": [{"set": "t5b", "quantity": "e", "input": "yield", "base": 0.3, "changed": 0.42}],
+    }
+    row.replace(e_edge=0.123).write(results / "sets" / "t5b-coarse-yield" / "outcome.json")
     write_text(results / "sets" / "study.json", json.dumps(document))
     write_text(results / "sets" / "summary.md", "the sets\n")
     page = write_all(results, results / "report").read_text()
@@ -58,8 +82,20 @@ def test_the_papers_conclusions_are_judged(results):
     for name in ("closure", "moment", "critical", "heat"):
         assert (results / "report" / "figures" / f"{name}.csv").stat().st_size > 100
     ledger = (results / "report" / "ledger.csv").read_text().splitlines()
-    assert len(ledger) == 3
-    assert ledger[2].startswith("sets,t5b,")
+    assert [line.split(",")[1] for line in ledger[1:]] == ["run-1", "t5b", "t5b-coarse-yield"]
+    assert ",0.123," in ledger[3]
+    assert "could explain: yield 1. None of them explains 0." in page
+    assert "yield +120%, rate -10%" in page
+    assert set(re.findall(r'href="#([\w-]+)"', page)) <= set(re.findall(r'id="([\w-]+)"', page))
+    assert "within 0.003 m/s along n, 0.003 m/s along t and 0.1 rad/s" in page
+
+
+@pytest.mark.parametrize("name", ["explanations", "sensitivity"])
+def test_damaged_explanations_are_named(results, name):
+    document = {"schema": "fem-impact/study/1", "rows": [], "comparison": [], name: [{"set": "t5b"}]}
+    write_text(results / "sets" / "study.json", json.dumps(document))
+    with pytest.raises(ResultError, match=rf"{name}\[0\] lacks the key \"quantity\""):
+        write_all(results, results / "report")
 
 
 def test_an_empty_folder_is_refused_with_a_remedy(tmp_path):
