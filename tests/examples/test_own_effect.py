@@ -1,0 +1,129 @@
+"""README's "Make it yours", an effect: its number and slot, and an item that takes energy and says so."""
+
+from dataclasses import dataclass, replace
+from math import exp, hypot
+
+import numpy as np
+import pytest
+
+from fem_impact.effects import EFFECTS, Effect, Harm, choices, choose, neglected, specify
+from fem_impact.estimates import contact_estimate, projectile
+from fem_impact.scene import effect_names, load, replace_all
+from fem_impact.solid.build import build
+from fem_impact.solid.elastic import Weight
+from fem_impact.solid.march import march
+from fem_impact.solid.observers import Watch
+
+MOON = 1.62  # m/s2
+
+
+def number(scene):
+    """Speed gained during the contact over the impact speed."""
+    return MOON * contact_estimate(scene).duration / hypot(scene.impact.v_n, scene.impact.v_t)
+
+
+def fill(scene, spec):
+    spec.gravity = MOON
+
+
+EFFECT = Effect(
+    name="lunar-gravity",
+    sentence="The Moon pulls the rod down.",
+    absence="No Moon under the plate.",
+    measure="g tau/v",
+    threshold=0.005,
+    source="a quarter of the 2 % that e may be off",
+    number=number,
+    harm=lambda scene: Harm(number(scene), 0.0),
+    fill=fill,
+)
+
+
+@pytest.fixture
+def moon(monkeypatch):
+    """What a line in `effects/catalogue.py` and one in `scene/effect_names.py` do."""
+    names = (*effect_names.NAMES, EFFECT.name)
+    monkeypatch.setitem(EFFECTS, EFFECT.name, EFFECT)
+    for module in (effect_names, choose):
+        monkeypatch.setattr(module, "NAMES", names)
+    choices.cache_clear()
+    yield
+    choices.cache_clear()
+
+
+def scene_with(*effects, **changes):
+    return replace_all(load("quick"), {"effects": ["auto", *effects], **changes})
+
+
+def test_an_added_effect_is_chosen_by_its_number(moon):
+    fast, slow = scene_with(), scene_with(**{"impact.v_n": "-5 mm/s", "impact.v_t": "-5 mm/s"})
+    assert EFFECT.name not in fast.active
+    assert EFFECT.name in slow.active
+    (choice,) = [choice for choice in choices(slow) if choice.name == EFFECT.name]
+    assert choice.told()["sentence"] == "The Moon pulls the rod down."
+    left_out = slow.replace("effects", ["auto", f"-{EFFECT.name}"])
+    assert any(EFFECT.name in words for words in neglected(left_out))
+
+
+def test_it_is_built_when_it_is_on_and_only_then(moon):
+    coarse = {"accuracy.tip_size": "1.6 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
+    on, off = (scene_with("barrier-rigid", *names, **coarse) for names in ((EFFECT.name,), ()))
+    model = build(on, specify(on))
+    (weight,) = [item for item in model.forces if isinstance(item, Weight)]
+    places = model.layout.rod[model.layout.rod[:, 0] < model.layout.rod_size]
+    pull = np.hypot(*weight.weight[places[:, [0, 2]]].sum(axis=0))
+    assert pull == pytest.approx(MOON * projectile(on).mass / 2, rel=1e-9)  # half the rod is meshed
+    assert not [item for item in build(off, specify(off)).forces if isinstance(item, Weight)]
+
+
+@dataclass
+class Drag:
+    """An item: every step it takes a share of the velocities, and books it with their mean."""
+
+    moving = ("taken",)
+    mass: np.ndarray
+    inverse_mass: np.ndarray
+    rate: float
+    taken: float = 0.0
+
+    def resolve(self, state):
+        n = len(self.mass)
+        kicked = state.v[:n].copy()
+        old = kicked - state.kick * self.inverse_mass * state.force[:n]
+        lost = kicked * -np.expm1(-self.rate * state.kick)
+        state.v[:n] -= lost
+        self.taken += 0.5 * float(self.mass * lost @ (old + kicked - lost))
+
+    def accounts(self, state):
+        return {"damping": self.taken}
+
+
+def test_an_own_item_closes_the_ledger():
+    scene = replace_all(
+        load("quick"),
+        {
+            "effects": ["vibration", "barrier-rigid"],
+            "accuracy.tip_size": "1.6 mm",
+            "accuracy.across": 6,
+            "projectile.length": "60 mm",
+        },
+    )
+    model = build(scene, specify(scene)).coasting()
+    n, rate = model.layout.rod_size, 5e3
+    free = model.inverse_mass[:n] > 0
+    drag = Drag(np.where(free, model.mass[:n], 0.0), model.inverse_mass[:n], rate)
+    model = replace(model, impulses=[drag])
+    watch, state = Watch(model.ledger(), every=10), model.initial_state()
+
+    class End:
+        every = 1
+
+        def observe(self, state):
+            return state.step >= 500
+
+    march(model, state, [watch, End()])
+    assert watch.ledger.worst < 1e-12 * watch.ledger.start
+    flown = state.time - 0.5 * state.dt  # velocities stand half a step behind
+    kept = watch.accounts["kinetic_rod"] / watch.ledger.start
+    assert kept == pytest.approx(exp(-2 * rate * flown), rel=1e-6)
+    assert kept < 0.9
