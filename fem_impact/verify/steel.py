@@ -26,9 +26,9 @@ def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Pa
     )
 
 
-def across(default: int = 8) -> Parameter:
+def across(default: int = 8, low: int = 6) -> Parameter:
     """Return the number of cells over the diameter, even."""
-    return Parameter("across", "cells over the diameter, even", default, 6, 24, multiple=2)
+    return Parameter("across", "cells over the diameter, even", default, low, 24, multiple=2)
 
 
 def speed(name: str, words: str, default: float) -> Parameter:
