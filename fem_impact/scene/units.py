@@ -113,7 +113,8 @@ def parse_quantity(value: Any, dimension: str, key: str) -> float:
     if isinstance(value, bool) or not isinstance(value, (str, int, float)):
         raise SceneError(f"is a {_kind(value)}, not a {dim.name}.", key=key, value=value, remedy=remedy)
     if not isinstance(value, str):
-        raise SceneError(f"a bare number is not a {dim.name}.", key=key, value=value, remedy=remedy)
+        article = "an" if dim.name[0] in "aeiou" else "a"
+        raise SceneError(f"a bare number is not {article} {dim.name}.", key=key, value=value, remedy=remedy)
     return _read_text(value, dim, key, remedy)
 
 
