@@ -14,6 +14,11 @@ def bands(fine: Outcome, coarse: Outcome) -> dict[str, float]:
     This is Richardson's estimate of the fine mesh's error for first-order convergence, the order that
     contact and yielding show; for higher orders it is too wide, never too narrow.
     """
+    return {key: abs(limit - fine[key]) for key, limit in limits(fine, coarse).items()}
+
+
+def limits(fine: Outcome, coarse: Outcome) -> dict[str, float]:
+    """Return the limit for vanishing elements of each banded quantity, if it converges to first order."""
     r = coarse["tip_size_m"] / fine["tip_size_m"]
     keys = [k for k in (*BANDED, *EXTRA) if fine[k] is not None and coarse[k] is not None]
-    return {key: abs(fine[key] - coarse[key]) / (r - 1) for key in keys}
+    return {key: fine[key] + (fine[key] - coarse[key]) / (r - 1) for key in keys}

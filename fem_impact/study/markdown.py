@@ -22,7 +22,7 @@ SHARES = (
 
 def summary(rows: list[Row], comparison: list[Row], changed: list[Row], explained: list[Row]) -> str:
     """Return the tables, with those of the changed inputs if they were computed."""
-    tables = [_beside(comparison), _shares(rows)]
+    tables = [_beside(comparison), _shares(rows), *_limits(rows)]
     if changed:
         words = "\n".join(f"- `{name}`: {meaning}" for name, meaning in WORDS.items())
         tables += [_changes(changed), _explanations(explained), words]
@@ -61,6 +61,20 @@ def _shares(outcomes: list[dict[str, Any]]) -> str:
             [o["scene_id"], *shares, f"{o['residual_over_E_0']:.0e}", f"{o['steps']}", f"{o['cpu_s']:.0f}"]
         )
     return table(head, body)
+
+
+def _limits(outcomes: list[dict[str, Any]]) -> list[str]:
+    """Return a row a set with two meshes: e and E_vib extrapolated, how uncertain, and what the finer took."""
+    head = ["set", "e, extrapolated", "of e, %", "E_vib / E_0, %, extrapolated", "of E_vib, %", "CPU s"]
+    body = []
+    for o in (o for o in outcomes if o.get("extrapolated")):
+        e, e_band, vib, vib_band = (
+            o[kind][key] for key in ("e_edge", "E_vib_over_E_0") for kind in ("extrapolated", "bands")
+        )
+        shares = [f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band))]
+        cells = [f"{e:.3f} ± {e_band:.3f}", shares[0], f"{100 * vib:.3f} ± {100 * vib_band:.3f}", shares[1]]
+        body.append([o["scene_id"], *cells, f"{o['cpu_s']:.0f}"])
+    return [table(head, body)] if body else []
 
 
 def _percent(outcome: Mapping[str, Any], key: str) -> str:

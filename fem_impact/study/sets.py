@@ -11,7 +11,7 @@ from fem_impact.outcome import Outcome
 from fem_impact.output import COMPARISON, write_table, write_text
 from fem_impact.scale import Failure, Job, Results
 from fem_impact.scene import MEASURED_SETS, load, replace_all
-from fem_impact.study.bands import bands
+from fem_impact.study.bands import bands, limits
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
 from fem_impact.study.request import Request, StudyResult, failures_of
@@ -73,7 +73,7 @@ def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
         return fine.replace(
             reasons={"bands": "the second mesh is not coarser: give a smaller accuracy.tip_size"}
         )
-    banded = fine.replace(bands=bands(fine, coarse))
+    banded = fine.replace(bands=bands(fine, coarse), extrapolated=limits(fine, coarse))
     banded.write(out / "outcome.json")
     return banded
 

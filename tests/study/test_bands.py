@@ -7,7 +7,7 @@ from study_fakes import outcome
 from fem_impact.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
 from fem_impact.outcome import KEYS
 from fem_impact.scene import MEASURED_SETS
-from fem_impact.study.bands import EXTRA, bands
+from fem_impact.study.bands import EXTRA, bands, limits
 from rigid.experiments import Statistic, measured_set
 
 
@@ -20,6 +20,15 @@ def test_bands_are_exact_for_first_order(ratio):
     assert found["mu"] == pytest.approx(200 * h)
     assert found["e_edge"] == pytest.approx(50 * h)
     assert "e_paper" not in found
+
+
+@pytest.mark.parametrize("ratio", [2.0, 1.5])
+def test_limits_are_exact_for_first_order(ratio):
+    fine, coarse = (
+        outcome(tip_size_m=h, mu=0.5 + 200 * h, e_edge=0.3 - 50 * h) for h in (3e-4, ratio * 3e-4)
+    )
+    found = limits(fine, coarse)
+    assert (found["mu"], found["e_edge"]) == pytest.approx((0.5, 0.3))
 
 
 def test_bands_are_no_narrower_than_the_error_of_second_order():

@@ -60,6 +60,14 @@ def test_marks_tell_inside_undecided_and_outside_apart():
     ]
 
 
+def test_limits_say_how_uncertain_they_are():
+    known = {"extrapolated": {"e_edge": 0.32, "E_vib_over_E_0": 0.002}}
+    known |= {"bands": {"e_edge": 0.016, "E_vib_over_E_0": 0.0005}}
+    cells = summary([OUTCOME | known], COMPARISON, [], []).splitlines()[10].strip("|").split("|")
+    assert [cell.strip() for cell in cells] == ["t5b", "0.320 ± 0.016", "5", "0.200 ± 0.050", "25", "7"]
+    assert "extrapolated" not in summary([OUTCOME], COMPARISON, [], [])
+
+
 def test_shares_are_percent_with_their_bands():
     cells = summary([OUTCOME], COMPARISON, [], []).splitlines()[6].strip("|").split("|")
     assert [cell.strip() for cell in cells] == [
