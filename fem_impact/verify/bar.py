@@ -66,6 +66,15 @@ class Ceiling:
         return {}
 
 
+def _lost(slices: int) -> float:
+    """Return what restitution may lack: half the closing loss, and what stays behind in the lagging front.
+
+    The front of a wave in a row of n cells spreads over n^(1/3) of them (an Airy function), so n^(-2/3) of
+    the energy rings on; found were factors of 0.12 to 0.22 from 10 to 400 slices.
+    """
+    return 0.25 / slices + 0.25 * slices ** (-2 / 3)
+
+
 def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
     slices = int(p["slices"])
     model = _model(p, slices, 0.0, int(p["across"]))
@@ -79,7 +88,7 @@ def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
         Check("plateau of the wall force", "N", plateau, exact.force, PLATEAU),
         Check("duration", "s", spans[-1].end - spans[0].start, exact.duration, DURATION),
         Check("contacts", "1", force.touches, 1, 0.0, "absolute"),
-        Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], 1.0, 0.02, "absolute"),
+        Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], 1.0, _lost(slices), "absolute"),
         Check("largest energy / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
         # half a slice of mass stops dead at the wall
         Check("closing loss / E_0", "1", closing, 0.5 / slices, CLOSING),
@@ -121,7 +130,7 @@ PROBLEM = Problem(
         steel.diameter(),
         steel.speed("speed", "approach speed", 2.0),
         *(q for q in steel.elastic() if q.name != "nu"),
-        Parameter("slices", "cells along the bar", 100, 10, 2000, multiple=1),
+        Parameter("slices", "cells along the bar", 100, 50, 2000, multiple=1),
         steel.across(6),
         Parameter("bounces", "bounces between two walls, 0 for none", 1000, 0, 1e5, multiple=2),
     ),

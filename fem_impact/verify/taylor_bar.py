@@ -61,7 +61,7 @@ def solve(p: Values) -> Solved:
     checks = (
         Check("final length", "m", length, scale * FINAL, scale * 0.06e-3, "absolute"),
         Check("foot radius", "m", radius, scale * FOOT, scale * 0.08e-3, "absolute"),
-        Check("energy ledger / E_0", "1", energy.ledger.worst / energy.ledger.start, 0.0, 1e-2, "at most"),
+        Check("energy ledger / E_0", "1", energy.ledger.worst / energy.ledger.start, 0.0, 1e-3, "at most"),
     )
     return Solved(checks, state.step, len(bar.mesh.cells))
 

@@ -19,10 +19,11 @@ def test_another_bar():
 def test_closing_loss_is_of_first_order_in_the_slice():
     """The lumped end node, half a slice, stops dead: h / (2 L) of the energy, .0050 at 100 slices."""
     losses = []
-    for slices in (25, 50, 100, 200):
+    for slices in (50, 100, 200):
         found = verify("bar", {"slices": slices, "bounces": 0})
+        assert found.passed
         losses.append(next(c.computed for c in found.checks if c.name.startswith("closing loss")))
-    assert losses == pytest.approx([0.02, 0.01, 0.005, 0.0025], rel=1e-6)
+    assert losses == pytest.approx([0.01, 0.005, 0.0025], rel=1e-6)
 
 
 @pytest.mark.validation

@@ -1,5 +1,7 @@
 """Restitution of an elastic, perfectly plastic sphere: Thornton (1997, J. Appl. Mech. 64, 383), and a fit.
 
+The paper is cited so, beside finite elements, by Zhang & Vu-Quoc (2002, Int. J. Impact Eng. 27, 317-341).
+
 Also the speeds between which a contact is fully plastic and small, where restitution goes as v^(-1/4).
 """
 
