@@ -15,11 +15,11 @@ from fem_impact.estimates import normal_share
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
-LEAST_SHARE = 0.01
+LEAST_SHARE = 0.02
 COMPLIANCE = (
-    "e of a yielding contact falls like E*^-1/2 (Thornton 1997, doi:10.1115/1.2787319), and twice as fast by "
-    "`study effects`: a share s of the compliance changes it by s, half of the 2 % that e may be off; E_vib "
-    "falls like tau^-4, tau grows like E*^-0.4 (Hertz): 1.6 s"
+    "e of a yielding contact falls like E*^-1/2 (Thornton 1997, doi:10.1115/1.2787319), so a share s of the "
+    "compliance changes it by s/2, half of the 2 % that e may be off; E_vib falls like tau^-4 and tau grows "
+    "like E*^-0.4 (Hertz): 1.6 s"
 )
 
 

@@ -19,33 +19,50 @@ if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
 
-def angle_turned(scene: Scene) -> float:
-    """Return the angle turned until the impact is over, Omega (tau + T1), rad.
+def _lasting(scene: Scene) -> float:
+    """Return tau + T1, s: a second contact comes about a bending period later."""
+    return contact_estimate(scene).duration + bending_period(scene)
 
-    Omega is that of an elastic frictionless impact; a second contact comes about a bending period later.
-    """
+
+def angle_turned(scene: Scene) -> float:
+    """Return the largest angle turned until the impact is over, rad: Omega without friction or loss."""
     rod = projectile(scene)
     d_c, _ = arms(scene)
     Omega = 2 * effective_mass(scene) * abs(scene.impact.v_n) * d_c / (rod.mass * rod.k2)
-    lasting = contact_estimate(scene).duration + bending_period(scene)
-    return float((abs(Omega) + abs(scene.impact.omega)) * lasting)
+    return float((abs(Omega) + abs(scene.impact.omega)) * _lasting(scene))
 
 
 def number(scene: Scene) -> float:
-    """Return the strain energy that a turned rod seems to have over E_0.
+    """Return the strain energy that the turned rod would seem to have over E_0.
 
     Small strains of a rotation are cos(theta) - 1, about -theta^2/2, along both axes of its plane, and no
     shear: (lambda + mu) theta^4 / 2 a volume.
     """
+    return _false_share(scene, angle_turned(scene))
+
+
+def _false_share(scene: Scene, theta: float) -> float:
     rod, steel = projectile(scene), scene.projectile.material
     stiffness = steel.E / (2 * (1 + steel.nu) * (1 - 2 * steel.nu))
-    false = stiffness * angle_turned(scene) ** 4 / 2 * rod.mass / rod.density
-    return float(false / start_energy(scene))
+    return float(stiffness * theta**4 / 2 * rod.mass / rod.density / start_energy(scene))
+
+
+def expected_angle(scene: Scene) -> float:
+    """Return about the angle turned until the impact is over, rad, at the mean spin of the rigid impact."""
+    import rigid
+    from fem_impact.contact_law import contact_law, restitution
+
+    rod, (d_c, d_d), impact = projectile(scene), arms(scene), scene.impact
+    e = restitution(contact_law(scene), effective_mass(scene), abs(impact.v_n + d_c * impact.omega))
+    f = scene.surface.friction if "friction" in scene.active else 0.0
+    speeds, point = (impact.v_n, impact.v_t), {"d_c": d_c, "d_d": d_d, "k2": rod.k2}
+    _, _, Omega = rigid.sliding_path(*speeds, e=e, f=f, omega=impact.omega, **point).motion
+    return 0.5 * float(impact.omega + Omega) * _lasting(scene)
 
 
 def harm(scene: Scene) -> Harm:
-    """Return the false energy as vibration, and as restitution lost."""
-    false = min(number(scene), 1.0)
+    """Return the false energy at the end of the impact as vibration, and as restitution lost."""
+    false = min(_false_share(scene, expected_angle(scene)), 1.0)
     return Harm(min(false / normal_share(scene), 1.0), false)
 
 

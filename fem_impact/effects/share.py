@@ -29,7 +29,6 @@ def expected_shares(active: Iterable[str]) -> dict[str, float]:
 def _added() -> Mapping[str, float]:
     """Return what each effect adds to a step, us; the first rung is the nose on a rigid plane."""
     text = files("fem_impact.effects").joinpath("data", "effect-cost.csv").read_text(encoding="utf-8")
-    rows = list(csv.DictReader(text.splitlines()))[:-1]  # the last is the first again
-    steps = [(row["added"], float(row["step_us"])) for row in rows]
+    steps = [(row["added"], float(row["step_us"])) for row in csv.DictReader(text.splitlines())]
     rises = {name: max(now - before, 0.0) for (_, before), (name, now) in pairwise(steps)}
     return {"nose": steps[0][1], "barrier-rigid": 0.0, **rises}

@@ -219,7 +219,7 @@ def test_a_hard_stiff_barrier_is_rigid():
     made = chosen(replace(base, projectile=light, barrier=barrier))
     assert "barrier-rigid" in made
     assert "radiation" not in made
-    # 2 % of the compliance: as much in e
+    # 2.1 % of the compliance
     assert "barrier-elastic" in chosen(replace(base, barrier=barrier))
 
 

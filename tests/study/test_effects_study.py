@@ -5,11 +5,11 @@ from math import isclose
 
 import pytest
 
-from fem_impact.effects import everything
-from fem_impact.scene import BARRIERS, MEASURED_SETS
+from fem_impact.effects import Harm, choices, everything
+from fem_impact.scene import BARRIERS, MEASURED_SETS, load
 from fem_impact.simulate import simulate
 from fem_impact.study import Request
-from fem_impact.study.effects import COSTED, DESIGNED, cost_row, plan, row
+from fem_impact.study.effects import COSTED, DESIGNED, cost_row, plan, row, told
 
 RUN = {
     "e_edge": 0.4,
@@ -61,8 +61,16 @@ def test_no_vibration_agrees_with_hardly_any():
 
 
 def test_costs_are_ratios():
-    found = cost_row("x", RUN | {"cpu_s": 6.0, "steps": 400}, RUN)
-    assert found[1:3] == [2.0, 0.5]
+    found = cost_row("x", RUN | {"cpu_s": 6.0, "steps": 400, "e_edge": 0.45}, RUN, Harm(0.1, 2e-3))
+    assert found[1:] == [2.0, 0.5, pytest.approx(0.05), 0.1, 0.0, 2e-3]
+
+
+def test_a_change_stands_beside_what_was_expected_of_it():
+    scene = replace(load("t5b"), effects=("auto",))
+    harm = {choice.name: choice.harm for choice in choices(scene)}
+    assert told(scene, ("auto", "-friction")) == harm["friction"]
+    assert told(scene, ("auto", "gravity")) == harm["gravity"]
+    assert told(scene, ("auto", "barrier-rigid")) == harm["barrier-elastoplastic"]
 
 
 def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
