@@ -64,7 +64,7 @@ def _shares(outcomes: list[dict[str, Any]]) -> str:
 
 
 def _limits(outcomes: list[dict[str, Any]]) -> list[str]:
-    """Return a row a set with two meshes: e and E_vib extrapolated, how uncertain, and what the finer took."""
+    """Return a row a set with two meshes: e and E_vib extrapolated, how uncertain, what the finer took."""
     head = ["set", "e, extrapolated", "of e, %", "E_vib / E_0, %, extrapolated", "of E_vib, %", "CPU s"]
     body = []
     for o in (o for o in outcomes if o.get("extrapolated")):
