@@ -72,7 +72,7 @@ def _lost(slices: int) -> float:
     The front of a wave in a row of n cells spreads over n^(1/3) of them (an Airy function), so n^(-2/3) of
     the energy rings on; found were factors of 0.12 to 0.22 from 10 to 400 slices.
     """
-    return 0.25 / slices + 0.25 * slices ** (-2 / 3)
+    return float(0.25 / slices + 0.25 * slices ** (-2 / 3))
 
 
 def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:

@@ -6,8 +6,9 @@ the alumina case at 5 degrees and 3.9 m/s (a / R = 0.065), 0.006 at 0.1 m/s and 
 slides; the same incremental contact with the ball's own two stiffnesses decides, the plain one is shown.
 
 Kharaz, Gorham & Salman (2001, doi:10.1016/S0032-5910(01)00283-2) struck glass; the printed numbers, and this
-problem, are those of two bodies of alumina. Restitution at 5, 20, 40 degrees: solver 0.716, 0.588, 0.782, ball 0.722, 0.588, 0.781, plain 0.742, 0.594,
-0.781. The sweeps of the contact, which end at 60 in a third of the steps, change it by less than 1e-5.
+problem, are those of two bodies of alumina. Restitution at 5, 20, 40 degrees: solver 0.716, 0.588, 0.782,
+ball 0.722, 0.588, 0.781, plain 0.742, 0.594, 0.781. The sweeps of the contact, which end at 60 in a third of
+the steps, change it by less than 1e-5.
 
 Where the sphere slides throughout, mu = f but for the lean of the interface (`sliding_ratio`): on a block
 0.4 % less at 3.9 m/s, 1.2 % at 20 m/s with nu = 0, nothing on a rigid plane.
