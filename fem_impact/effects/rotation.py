@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
@@ -55,8 +56,8 @@ def expected_angle(scene: Scene) -> float:
     rod, (d_c, d_d), impact = projectile(scene), arms(scene), scene.impact
     e = restitution(contact_law(scene), effective_mass(scene), abs(impact.v_n + d_c * impact.omega))
     f = scene.surface.friction if "friction" in scene.active else 0.0
-    speeds, point = (impact.v_n, impact.v_t), {"d_c": d_c, "d_d": d_d, "k2": rod.k2}
-    _, _, Omega = rigid.sliding_path(*speeds, e=e, f=f, omega=impact.omega, **point).motion
+    strike = partial(rigid.sliding_path, impact.v_n, impact.v_t, omega=impact.omega, d_c=d_c, d_d=d_d)
+    _, _, Omega = strike(e=e, f=f, k2=rod.k2).motion
     return 0.5 * float(impact.omega + Omega) * _lasting(scene)
 
 
