@@ -11,6 +11,7 @@ import pytest
 from fem_impact.cli_parser import build_parser, read_line
 from fem_impact.errors import EXIT_CODES
 from fem_impact.scene import Scene, load, surfaces
+from rigid import SHAPES
 
 ROOT = Path(__file__).parents[2]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -79,16 +80,27 @@ def test_every_block_is_of_a_kind_that_is_tested(language):
     assert language in ("python", "sh", "text", "toml")
 
 
+def _merged(whole, part):
+    """Nested tables with those of a part laid over them."""
+    both = {name: _merged(whole[name], part[name]) for name in part if isinstance(part[name], dict)}
+    return whole | part | both
+
+
 @pytest.mark.parametrize("text", texts("toml"))
 def test_every_scene_is_valid(text):
     stated = tomllib.loads(text)
-    whole = stated if "id" in stated else load("t5b").to_dict() | stated
+    whole = stated if "id" in stated else _merged(load("t5b").to_dict(), stated)
     assert Scene.from_dict(whole, "README.md").to_dict() == Scene.from_dict(whole).to_dict()
 
 
 @pytest.mark.parametrize("text", texts("python"))
 def test_every_block_of_python_runs(text, capsys):
-    exec(compile(text, "README.md", "exec"), {})
+    shapes = dict(SHAPES)
+    try:
+        exec(compile(text, "README.md", "exec"), {})
+    finally:
+        SHAPES.clear()
+        SHAPES.update(shapes)
     assert capsys.readouterr().out
 
 
