@@ -5,14 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import scipy.sparse as sp
 import solid_shapes as shapes
 
 import meshes
-from fem_impact.solid.boundary import spread_boundary
+from fem_impact.solid.boundary import RADIATION, radiating_share, spread_boundary
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.verify.reference.radiation import radiation_resistance
 from meshes import OUTER
 
 E, NU, RHO = shapes.E, shapes.NU, shapes.RHO
@@ -48,6 +50,32 @@ def test_springs_add_up_to_the_integral_over_the_faces():
     exact = np.array(exact) - [0, 0, 0]
     # t: two ends (one quarter each), side and bottom (two quarters each), and so on
     assert spring == pytest.approx(exact, rel=2e-3)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.1, 0.2, 0.29, 0.4, 0.49])
+def test_radiation_of_a_half_space_is_that_of_lambs_integral(nu):
+    G = E / (2 * (1 + nu))
+    exact = radiation_resistance(E, nu, RHO) * 2 * np.pi * G * np.sqrt(G / RHO)
+    assert np.polyval(RADIATION, nu) == pytest.approx(exact, rel=0.003)
+
+
+def test_dashpots_take_what_a_slow_force_radiates():
+    """Under a force that grows at 1 N/s in the middle, the whole block's dashpots take D (Lamb), in W."""
+    mesh = meshes.block([-4e-3, 0, -4e-3], [4e-3, 4e-3, 0], 1e-3)
+    n, places = len(mesh.points), np.arange(3 * len(mesh.points)).reshape(-1, 3)
+    spring, damping = (part.ravel() for part in spread_boundary(mesh, E, NU, RHO))
+    T = tie_operator(mesh.tie, places, 3 * n)
+    each = element_stiffness(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible")
+    K = (assemble(each, mesh.cells, T) + sp.diags(spring)).tocsr()
+    held = np.zeros(3 * n, dtype=bool)
+    held[places[mesh.points[:, 1] == 0, 1]] = True
+    loaded = places[np.linalg.norm(mesh.points, axis=1).argmin(), 2]
+    share = radiating_share(K, damping, held, loaded, (E, NU, RHO))
+    push = 0.5 * (np.arange(3 * n) == loaded)
+    speed = np.linalg.solve(K.toarray()[~held][:, ~held], push[~held])
+    taken = 2 * share * float(damping[~held] @ speed**2)
+    assert taken == pytest.approx(radiation_resistance(E, NU, RHO), rel=0.005)
+    assert 0.2 < share < 0.9
 
 
 def test_free_surfaces_carry_nothing():
