@@ -25,6 +25,7 @@ from fem_impact.report.verdicts import marker_section, verdict_section, verdicts
 __all__ = ["write_all"]
 
 LEDGER, RECORD = "runs.csv", "outcome.json"
+SETS_COMMAND = "<p>Measured sets, and what follows from them below: <code>fem-impact study sets</code></p>"
 
 
 def write_all(results: Path, out: Path) -> Path:
@@ -74,7 +75,7 @@ def _effects(sets: Study | None) -> set[str]:
 def _sets_part(sets: Study, figures: Path) -> list[Markup]:
     rows = list(sets.rows)
     return [
-        section("Model beside measurement", comparison_part(sets, figures)),
+        section("Model beside measurement", Markup(SETS_COMMAND), comparison_part(sets, figures)),
         section("Where the energy went", partition_part(sets, figures)),
         misses_section(sets),
         verdict_section(verdicts(rows), figures),

@@ -13,7 +13,7 @@ from fem_impact.figures.accounts import FINAL
 from fem_impact.figures.style import percent
 from fem_impact.outcome import Outcome
 from fem_impact.output import make_directory
-from fem_impact.report.embed import picture
+from fem_impact.report.embed import download, picture
 from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table, with_band
 from fem_impact.report.misses import misses_section
 from fem_impact.report.page import page, sources
@@ -71,13 +71,14 @@ def comparison_part(study: Study, figures: Path) -> Markup:
     """Return the figure of model beside measurement, drawn into a folder."""
     if not study.comparison:
         return Markup("")
-    return picture(
+    drawn = picture(
         partial(comparison_figure, study.comparison),
         figures / "comparison",
         "Model and measured values with intervals, a panel for each quantity",
         "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
         "two-mesh band where two meshes were run.",
     )
+    return join([drawn, download(figures / "comparison.csv", "its data")])
 
 
 def _tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
@@ -133,7 +134,7 @@ def partition_part(study: Study, figures: Path) -> Markup:
         "Stacked bars of the shares of the energy, one a run",
         "Shares of E₀ after the last separation; a white rest is not known.",
     )
-    return join([drawn, _energies(study.rows)])
+    return join([drawn, download(figures / "partition.csv", "its data"), _energies(study.rows)])
 
 
 def _energies(rows: Sequence[Outcome]) -> Markup:

@@ -84,6 +84,8 @@ def test_the_papers_conclusions_are_judged(results):
     ledger = (results / "report" / "ledger.csv").read_text().splitlines()
     assert [line.split(",")[1] for line in ledger[1:]] == ["run-1", "t5b", "t5b-coarse-yield"]
     assert ",0.123," in ledger[3]
+    assert "<code>fem-impact study sets</code>" in page
+    assert {"partition.csv", "closure.csv"} <= set(re.findall(r'download="([\w.-]+)"', page))
     assert "could explain: yield 1. None of them explains 0." in page
     assert "yield +120%, rate -10%" in page
     assert set(re.findall(r'href="#([\w-]+)"', page)) <= set(re.findall(r'id="([\w-]+)"', page))
