@@ -40,8 +40,8 @@ GAUSS_PRESSURE = """\
                 J = w[DET * LANES + l] / weight[l]
                 z.pressure[b, l] = K * np.log(J) / J
 """
-RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
 SPHERE = "tests/verify/test_verify_oblique_sphere.py"
+RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
 UNIT = "        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)\n"
 FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
 MUTANTS = (
@@ -85,7 +85,7 @@ MUTANTS = (
         "fem_impact/solid/contact/points.py",
         UNIT,
         FACET + UNIT,
-        f"{RUNS}::test_sliding_rod_has_the_impulse_ratio_of_its_friction",
+        f"{SPHERE}::test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction",
     ),
     Mutant(
         "stopping at the first separation",

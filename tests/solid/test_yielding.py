@@ -8,8 +8,8 @@ import solid_shapes as shapes
 
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
 from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
-from fem_impact.solid.hexmodes import LANES
-from fem_impact.solid.yielding import YieldingZone, dummy_element
+from fem_impact.solid.hexmodes import LANES, dummy_element
+from fem_impact.solid.yielding import YieldingZone
 from fem_impact.solid.yielding_kernel import _hardened_increment
 
 E, NU = shapes.E, shapes.NU
