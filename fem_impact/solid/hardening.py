@@ -19,10 +19,6 @@ class RateFactor:
     C: float
     slowest: float = 1.0
 
-    def at(self, rate: ArrayLike) -> NDArray[np.float64]:
-        """Return the factor at plastic strain rates, 1/s, of any shape."""
-        return np.asarray(1 + self.C * np.log(np.maximum(np.asarray(rate) / self.slowest, 1.0)))
-
 
 @dataclass(frozen=True, slots=True)
 class Hardening:

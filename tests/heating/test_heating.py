@@ -128,9 +128,17 @@ def test_heat_does_not_act_on_the_motion():
     watched = solid_scenes.run(*effects, "contact-heating", **changes)
     assert plain.heat is None
     assert watched.accounts == plain.accounts
-    assert reduce(solid_scenes.scene(*effects, **changes), plain).reason("flash_rise_K") == (
-        "the contact-heating effect is off"
-    )
+    outcome = reduce(solid_scenes.scene(*effects, **changes), plain)
+    assert outcome.reason("flash_rise_K") == "the contact-heating effect is off"
+    # a list without auto forces off what it does not name, and the outcome says so
+    missed = {words.split()[0] for words in outcome["warnings"] if "is left out by the scene" in words}
+    assert {"rod-plasticity", "barrier-elastoplastic", "large-rotation"} <= missed
+    # every effect that is on has its share of the run time, and only those
+    shares = {choice["name"]: choice["share"] for choice in outcome["effect_choices"]}
+    assert {name for name in shares if shares[name] is not None} == set(effects)
+    assert 0.05 < shares["vibration"] < 1.0
+    heated = reduce(solid_scenes.scene(*effects, "contact-heating", **changes), watched)["effect_choices"]
+    assert next(0.0 < choice["share"] < 0.5 for choice in heated if choice["name"] == "contact-heating")
 
 
 def test_closed_form_of_the_rigid_fidelity():
