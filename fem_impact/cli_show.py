@@ -16,10 +16,9 @@ def render(options: Options) -> int:
     """Make a film of the stress waves of a result, or of several side by side."""
     results = [checked_result(result) for result in options.results]
     out = checked_file(options.out) if options.out else None
-    from fem_impact.render import render as make_film
-    from fem_impact.render import render_side_by_side
+    from fem_impact import render as films
 
-    film = make_film(results[0], out) if len(results) == 1 else render_side_by_side(results, out)
+    film = films.render(results[0], out) if len(results) == 1 else films.render_side_by_side(results, out)
     if options.json:
         print_json({"path": str(film.path) if film.path else None, "notes": list(film.notes)})
     else:

@@ -67,6 +67,7 @@ def stand(monkeypatch):
         monkeypatch, "fem_impact.simulate", simulate=work("simulate", lambda: stand.outcome or an_outcome())
     )
     monkeypatch.setattr(fem_impact.study, "run_study", work("run_study", lambda: table))
-    _module(monkeypatch, "fem_impact.render", render=work("render", lambda: film))
+    films = {name: work(name, lambda: film) for name in ("render", "render_side_by_side")}
+    _module(monkeypatch, "fem_impact.render", **films)
     _module(monkeypatch, "fem_impact.report", write_report=work("report", lambda: "report.html"))
     return stand

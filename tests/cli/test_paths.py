@@ -96,6 +96,18 @@ def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
     assert json.loads(cli("render", "here", "--json")[1]) == {"path": None, "notes": ["install libegl1"]}
 
 
+def test_several_results_make_one_film(cli, stand):
+    for name in ("here", "there"):
+        Path(name).mkdir()
+        Path(name, "outcome.json").write_text("{}")
+    cli("render", "here", "there", "--out", "both.gif")
+    cli("render", "here", "--out", "one.gif")
+    assert [(name, args) for name, args, _ in stand.calls] == [
+        ("render_side_by_side", ([Path("here"), Path("there")], Path("both.gif"))),
+        ("render", (Path("here"), Path("one.gif"))),
+    ]
+
+
 def test_report_prints_where_it_is(cli, stand):
     Path("here").mkdir()
     Path("here/study.json").write_text("{}")
