@@ -1,6 +1,6 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
 
-from meshes.block import block
+from meshes.block import block, with_thin_skin
 from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
@@ -32,6 +32,7 @@ __all__ = [
     "step_bound",
     "step_limit",
     "volume",
+    "with_thin_skin",
     "without_slices",
     "write",
 ]

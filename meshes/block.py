@@ -1,6 +1,7 @@
 """A rectangular block under a flat top, for a barrier."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +13,7 @@ from meshes.refine import refine
 from meshes.topology import CORNERS
 from meshes.zone import Zone
 
-__all__ = ["block", "box_cells"]
+__all__ = ["block", "box_cells", "with_thin_skin"]
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -52,6 +53,29 @@ def block(
     mesh = base if zone is None else refine(base, zone, levels, buffer=buffer)
     require_positive(mesh)
     return mesh
+
+
+def with_thin_skin(mesh: HexMesh, cell: float, share: float) -> HexMesh:
+    """Draw the rows of a block towards its top; the sides and the columns stay.
+
+    Parameters
+    ----------
+    mesh : HexMesh
+        As `block` gives it.
+    cell : float, m
+        Edge of the finest cells; rows are regular again about six of them deep.
+    share : float
+        Height of a vanishing row at the top over what it was, above 0, at most 1. The first row gets
+        0.61 of its height at 0.5.
+
+    Returns
+    -------
+    HexMesh
+        The bottom of the block rises by 2 (1 - share) cells.
+    """
+    points, reach = mesh.points.copy(), 2.0 * cell
+    points[:, 2] -= (1.0 - share) * reach * np.expm1(points[:, 2] / reach)
+    return replace(mesh, points=np.asarray(mesh.tie @ points))
 
 
 def box_cells(counts: IntArray) -> IntArray:

@@ -27,6 +27,9 @@ ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
 SLIDE, DRAG = 5.0, 0.6
 # a flat face whose middle is no higher than this many depths may touch as a whole
 FLAT = 2.0
+# under a tip that sticks the plate shears in a layer thinner than a cell: rows at its skin are drawn together
+# as far as the step allows that the tip of the rod sets anyway
+SKIN = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,4 +108,5 @@ def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, flo
     margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
     low = np.array([-t - reach - slide - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
-    return meshes.block(low, high, base, zone=box, levels=levels)
+    block = meshes.block(low, high, base, zone=box, levels=levels)
+    return meshes.with_thin_skin(block, base / 2**levels, SKIN)
