@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 __all__ = ["Mark", "Panel", "Series", "lines_figure"]
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
+LETTERS = {"wide": 110, "narrow": 46}
+"""Letters of an axis label that fit across a picture."""
 COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y")
 
 
@@ -65,7 +68,7 @@ def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide
     with figure(path, shape, 3.3 * down + 0.2) as drawn:
         every = _axes(drawn, down, across)
         for axes, panel in zip(every, panels, strict=False):
-            _panel(axes, panel)
+            _panel(axes, panel, LETTERS[shape] // across)
         for axes in every[len(panels) :]:
             axes.set_visible(False)
     return path
@@ -83,8 +86,8 @@ def _axes(drawn: Figure, down: int, across: int) -> list[Axes]:
     return list(drawn.subplots(down, across, squeeze=False).flat)
 
 
-def _panel(axes: Axes, panel: Panel) -> None:
-    axes.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
+def _panel(axes: Axes, panel: Panel, letters: int) -> None:
+    axes.set(title=panel.title, xlabel=fill(panel.x, letters), ylabel=panel.y)
     for at, series in enumerate(panel.series):
         _draw(axes, series, PALETTE[COLOURS[(at if series.colour is None else series.colour) % len(COLOURS)]])
     for level in panel.levels:

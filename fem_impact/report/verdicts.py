@@ -17,6 +17,7 @@ from rigid.experiments import measured_set
 
 __all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
 
+UNITS = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
 MARKED = {"V_n": "V_n_m_per_s", "V_t": "V_t_m_per_s", "Omega": "Omega_rad_per_s"}
 
 
@@ -146,7 +147,7 @@ def marker_section(rows: Sequence[Outcome]) -> Markup:
         [row["scene_id"], *(number(row[key]) for name in MARKED.values() for key in (name, f"marker_{name}"))]
         for row in seen
     ]
-    head = ("set", *(words for name in MARKED.values() for words in (name, "by markers")))
+    head = ("set", *(words for name in MARKED for words in (f"{name}, {UNITS[name]}", "by markers")))
     listed = table(head, shown, numbers=range(1, 7), compact=True)
     return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)
 
