@@ -160,6 +160,17 @@ def test_every_file_named_is_there(place):
     assert (ROOT / place).exists()
 
 
+def test_the_words_that_the_trouble_table_quotes_are_the_programs():
+    table = README.partition("| what you see |")[2].partition("\n\n")[0]
+    quoted = [words for row in table.splitlines()[2:] for words in re.findall("`([^`]+)`", row.split("|")[1])]
+    ours = [
+        words for words in quoted if "=" not in words and not words.startswith(("fem-impact:", "ensurepip"))
+    ]
+    sources = "".join(path.read_text() for path in (ROOT / "fem_impact").rglob("*.py"))
+    assert len(ours) > 6
+    assert [words for words in ours if words not in sources] == []
+
+
 def test_the_table_of_exit_codes_is_the_programs():
     assert {int(code): words for code, words in rows(r"\d+ \|")} == EXIT_CODES
 
