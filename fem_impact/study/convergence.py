@@ -79,6 +79,8 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
         (Picture("convergence", CAPTION, tuple(_panels(rows))),) if rows else (),
         (_sheet(rows),),
         ("Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",),
+        ("convergence",),
+        [("convergence", _sentence(row)) for row in rows if row["quantity"] == "e"],
     )
     return publish(paper, request, results)
 
