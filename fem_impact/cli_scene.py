@@ -9,7 +9,7 @@ from typing import Any
 from fem_impact.cli_changes import changed_scene
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json, print_table
-from fem_impact.scene import DEFAULTS, Scene, load, shipped, source_of, validity
+from fem_impact.scene import BARRIERS, DEFAULTS, Scene, load, shipped, source_of, validity
 
 __all__ = ["check", "scenes"]
 
@@ -87,10 +87,20 @@ def _readable(scene: Scene, statement: dict[str, Any]) -> str:
 def _effect_lines(effect: dict[str, Any]) -> tuple[str, str]:
     number = "not finite" if effect["number"] is None else f"{effect['number']:.2g}"
     verdict = f"{'on ' if effect['on'] else 'off'} {effect['name']}{' (forced)' if effect['forced'] else ''}"
-    harm = (
-        f"e changes by about {effect['change_of_e']:.1g}, "
+    decided = f"{effect['measure']}: {number}, threshold {effect['threshold']:g}"
+    told = [decided, _harm(effect), _time(effect)]
+    return f"  {verdict}: {effect['sentence']}", f"        {'; '.join(words for words in told if words)}"
+
+
+def _harm(effect: dict[str, Any]) -> str:
+    """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    if effect["name"] in BARRIERS and not effect["on"]:
+        return ""
+    return (
+        f"without it e changes by about {effect['change_of_e']:.1g}, "
         f"E_vib by {effect['change_of_E_vib_over_E_0']:.1g} of E_0"
     )
-    decided = f"{effect['measure']}: {number}, needed above {effect['threshold']:g}"
-    time = "" if effect["share"] is None else f"; it takes about {effect['share']:.0%} of the run time"
-    return f"  {verdict}: {effect['sentence']}", f"        {decided}; without it {harm}{time}"
+
+
+def _time(effect: dict[str, Any]) -> str:
+    return "" if effect["share"] is None else f"it takes about {effect['share']:.0%} of the run time"
