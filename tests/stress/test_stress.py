@@ -18,6 +18,7 @@ from fem_impact.stress import CASES, run_case
 from fem_impact.stress.judge import Balance, balance
 from fem_impact.stress.page import MARKS, page
 from fem_impact.stress.run import ROW
+from fem_impact.stress.run import _model as model_of
 
 QUICK = ("flat-on-plane", "few-elements", "overlap", "between-nodes", "painleve", "upright-round", "resting")
 
@@ -48,6 +49,21 @@ def test_what_cannot_be_run_is_refused_before_any_work(name, tmp_path):
     row = run_case(name, tmp_path)
     assert row.passed and row.verdict == "refused" and row.steps == 0
     assert any(key in row.reason for key in ("accuracy.across", "impact.omega", "impact.v_n"))
+
+
+def test_a_case_that_ends_otherwise_than_expected_has_not_passed(tmp_path, monkeypatch):
+    monkeypatch.setitem(CASES, "six-elements", replace(CASES["six-elements"], expected="closed"))
+    row = run_case("six-elements", tmp_path)
+    assert (row.verdict, row.passed) == ("refused", False)
+
+
+def test_the_start_and_the_step_of_a_case_are_its_own():
+    case = replace(CASES["between-nodes"], step=0.45)
+    scene = case.scene()
+    own, plain = model_of(case, scene), build(scene, specify(scene))
+    moved = own.start[0] - plain.start[0]
+    assert moved[own.layout.rod[:, 0]] == pytest.approx(4e-4)
+    assert own.step == pytest.approx(0.5 * plain.step)
 
 
 def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
