@@ -17,9 +17,9 @@ __all__ = ["NodeSprings", "node_areas"]
 Array = NDArray[np.float64]
 
 
-def node_areas(mesh: HexMesh) -> Array:
-    """Return the area (n,), m2, that each node has in the face n = 0 of a bar."""
-    corners = mesh.faces[(mesh.points[mesh.faces, 2] == 0.0).all(axis=1)]
+def node_areas(mesh: HexMesh, faces: NDArray[np.bool_]) -> Array:
+    """Return the area (n,), m2, that each node has in some of the outer faces (k,)."""
+    corners = mesh.faces[faces]
     a, b = (mesh.points[corners[:, 2 + i]] - mesh.points[corners[:, i]] for i in (0, 1))
     area = 0.5 * np.linalg.norm(np.cross(a, b), axis=1)
     return np.asarray(
