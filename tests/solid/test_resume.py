@@ -93,7 +93,14 @@ def same_frames(found, expected):
 
 # set anew by each step before it is read, or of the clock and the file: not in a checkpoint
 WORK_SPACE = {
-    *("NodeProduct.local", "ElasticRod.d", "ElasticRod.y", "ElasticNose.d", "ElasticNose.y"),
+    *(
+        "NodeProduct.moved",
+        "NodeProduct.product",
+        "ElasticRod.d",
+        "ElasticRod.y",
+        "ElasticNose.d",
+        "ElasticNose.y",
+    ),
     *("ElasticBlock.d", "ElasticBlock.y", "Blocks.pressure", "Blocks.scratch", "State._beside"),
     *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner")),
     *("SurfaceContact.normals", "HistoryWriter._due", "FieldWriter._begun", "FieldWriter._shapes"),
