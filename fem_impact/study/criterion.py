@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
 __all__ = ["conclude", "plan"]
 
-GAMMAS, QUICK_GAMMAS = (10, 14, 18, 22, 26.45, 30, 36, 42, 50, 60, 75, 90), (14.0, 26.45, 42.0)
-ANGLES, QUICK_ANGLES = (1.0, *np.arange(5.0, 81.0, 5.0)), (1.0, 20.0, 45.0, 70.0)
+GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45, 42.0)
+ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)
+QUICK_ANGLES = (1.0, 20.0, 45.0, 70.0)
 DIAMETERS, QUICK_DIAMETERS = (0.012, 0.019, 0.030), (0.012, 0.019)
 FRICTIONS = np.round(np.arange(0.0, 0.951, 0.05), 3)
 

@@ -19,9 +19,11 @@ if TYPE_CHECKING:
 
 __all__ = ["conclude", "plan"]
 
-FINE, QUICK_FINE = np.arange(10.0, 120.5, 2.0), np.arange(10.0, 121.0, 22.0)
-COARSE, QUICK_COARSE = np.arange(10.0, 121.0, 10.0), np.array([20.0, 60.0])
-DIAMETERS, SPEEDS = (0.010, 0.019, 0.030), (1.3, 2.1, 4.2)
+FINE = np.concatenate([np.arange(10.0, 60.0, 2.0), np.arange(60.0, 121.0, 10.0)])
+COARSE = np.array([10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0])
+QUICK_FINE, QUICK_COARSE = np.arange(10.0, 121.0, 22.0), np.array([20.0, 60.0])
+SPEED = 2.1  # m/s
+DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # beside 19 mm and 2.1 m/s
 ANGLES, QUICK_ANGLES = (5.0, 12.0, 20.0, 28.0, 36.0, 45.0, 54.0, 63.0, 72.0), (20.0, 45.0)
 ANCHOR_TIP, QUICK_TIP = 0.6e-3, 0.8e-3  # m
 LONG = 0.4  # m: an anchor beyond the paper's rods
@@ -39,13 +41,13 @@ def line(quick: bool) -> list[Drop]:
 
 
 def grid(quick: bool) -> list[Drop]:
-    """Return the map: diameters, speeds, surface states, angles, elastic and yielding; rod by rod."""
+    """Return the map: other diameters, other speeds; surface states, angles, elastic and yielding."""
     gammas, angles = (QUICK_COARSE, QUICK_ANGLES) if quick else (COARSE, ANGLES)
+    others = [] if quick else [*((d, SPEED) for d in DIAMETERS), *((BODY, speed) for speed in SPEEDS)]
     return [
         Drop(length_of(g, d), angle, f, yields, d, speed=speed)
-        for d in ((BODY,) if quick else DIAMETERS)
+        for d, speed in [(BODY, SPEED), *others]
         for g in gammas
-        for speed in ((2.1,) if quick else SPEEDS)
         for yields in (False, True)
         for f in STATES.values()
         for angle in angles

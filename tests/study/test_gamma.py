@@ -59,7 +59,8 @@ def test_the_full_study_covers_what_it_promises():
     whole = grid(False)
     assert {d.friction for d in whole} == set(STATES.values())
     assert len({d.diameter for d in whole}) == len({d.speed for d in whole}) == 3
-    assert len({d.name for d in (*line(False), *whole, *anchors(False))}) > 5000
+    assert {(d.diameter, d.speed) for d in whole} >= {(0.019, 2.1), (0.01, 2.1), (0.019, 4.2)}
+    assert len({d.name for d in (*line(False), *whole, *anchors(False))}) > 3000
 
 
 def test_drops_that_touch_again_are_cut_off_after_the_first(tmp_path):
