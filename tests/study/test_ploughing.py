@@ -1,0 +1,23 @@
+"""The impulse ratio of a yielding tip exceeds its friction by what it ploughs, on every mesh by the same."""
+
+import numpy as np
+import pytest
+
+from fem_impact.scene import load, replace_all
+from fem_impact.simulate import simulate
+from fem_impact.study.convergence import family
+
+F = 0.2
+
+
+@pytest.mark.validation
+def test_ploughing_converges():
+    scene = replace_all(
+        load("t5b"),
+        {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
+    )
+    ploughed = np.array([simulate(mesh)["mu"] - F for mesh in family(scene, (6, 8, 10), 3)])
+    assert (ploughed > 0.01).all()
+    assert (ploughed < 0.03).all()
+    steps = np.abs(np.diff(ploughed))
+    assert steps[1] < steps[0] < 0.005
