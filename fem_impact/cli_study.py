@@ -80,18 +80,22 @@ def _estimate(options: Options, request: Request, meter: Meter, executor: Execut
 def _estimate_text(found: Estimate) -> str:
     from fem_impact.progress import clock_text
 
-    lines = [f"{found.jobs} jobs, {found.stored} of them stored; work left: {clock_text(found.work_s)}"]
+    lines = [f"{_jobs(found.jobs)}, {found.stored} of them stored; work left: {clock_text(found.work_s)}"]
     lines += [_kind_line(kind) for kind in found.kinds]
     lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in found.wall_s.items()]
     lines += [f"The longest job takes {clock_text(found.longest_s)}; no number of workers beats that."]
     return "\n".join(lines) + "\n"
 
 
+def _jobs(count: object) -> str:
+    return f"{count} job" + ("" if count == 1 else "s")
+
+
 def _kind_line(kind: dict[str, object]) -> str:
     size = kind["tip_size_m"]
     name = f"{kind['fidelity']}" + (f", tip {float(str(size)) * 1e3:.2g} mm" if size else "")
     basis = f"median of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
-    return f"  {kind['jobs']} jobs {name}: {kind['cost_s']:.3g} s each ({basis})"
+    return f"  {_jobs(kind['jobs'])} {name}: {kind['cost_s']:.3g} s each ({basis})"
 
 
 @contextmanager

@@ -70,7 +70,7 @@ RIGID = Effect(
     "barrier-rigid",
     "The barrier is a rigid plane.",
     "The barrier is not rigid.",
-    "barrier's share of the contact compliance: rigid below",
+    "barrier's share of the contact compliance (rigid below the threshold)",
     LEAST_SHARE,
     COMPLIANCE,
     compliance_share,

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from fem_impact.cost.settings import Mesh, on_mesh
 from fem_impact.figures.lines import Panel, Series
 from fem_impact.outcome import Outcome
 from fem_impact.output.tables import Cell
@@ -41,18 +42,8 @@ QUANTITIES = {
 
 def family(scene: Scene, across: Iterable[int], levels: int) -> list[Scene]:
     """Return the scene on meshes that differ in the size of all cells and in nothing else."""
-    d = scene.projectile.diameter
-    return [
-        replace_all(
-            scene,
-            {
-                "accuracy.across": cells,
-                "accuracy.tip_size": f"{d / cells / 2**levels * 1e3:.9g} mm",
-                "save.frames": 0,
-            },
-        )
-        for cells in across
-    ]
+    plain = replace_all(scene, {"save.frames": 0})
+    return [on_mesh(plain, Mesh(cells, levels)) for cells in across]
 
 
 def jobs_of(name: str, quick: bool) -> list[Job]:
