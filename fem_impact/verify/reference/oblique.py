@@ -20,7 +20,7 @@ __all__ = ["ObliqueRebound", "ObliqueRod", "oblique_drop", "oblique_rod"]
 
 Array = NDArray[np.float64]
 
-BENDING, STRETCHING = 12, 8  # modes
+MODES = 12, 8  # bending, stretching
 FASTEST = 0.3  # step times the largest circular frequency of the modes
 LONGEST = 2e-7  # s
 FAINT = 1e-3  # of the impulse: a touch below it is no contact
@@ -33,7 +33,7 @@ class ObliqueRod:
 
     Attributes
     ----------
-    omega : (k,) rad/s, bending first
+    omega : (k,) rad/s, first the ``bending`` ones
     along_n, along_t : (k,) kg^-1/2, displacement of the contact point by each mode
     """
 
@@ -44,6 +44,7 @@ class ObliqueRod:
     omega: Array
     along_n: Array
     along_t: Array
+    bending: int
 
 
 def oblique_rod(
@@ -56,15 +57,16 @@ def oblique_rod(
     body: tuple[float, float],
     arms: tuple[float, float],
     touch: tuple[float, float],
+    modes: tuple[int, int] = MODES,
 ) -> ObliqueRod:
     """Return the rod from its material, size and angle.
 
     ``body`` is (mass, k2), ``arms`` (d_c, d_d), ``touch`` the contact point's distance from the axis and
-    from the struck end.
+    from the struck end, ``modes`` how many bend and how many stretch it.
     """
-    beam = bending_modes(E, nu, rho, length, radius, BENDING)
+    beam = bending_modes(E, nu, rho, length, radius, modes[0])
     w, theta = beam.at(2 * touch[1] / length - 1)
-    number = np.arange(1, STRETCHING + 1)
+    number = np.arange(1, modes[1] + 1)
     wave = number * pi / length
     stretch = sqrt(E / rho) * wave / np.sqrt(1 + (nu * wave * radius) ** 2 / 2)
     u = sqrt(2 / body[0]) * np.cos(wave * touch[1])
@@ -75,6 +77,7 @@ def oblique_rod(
         np.concatenate([beam.omega, stretch]),
         along * cos(angle) - across * sin(angle),
         along * sin(angle) + across * cos(angle),
+        modes[0],
     )
 
 
@@ -155,8 +158,8 @@ def _rebound(motion: _Motion, v_n: float, v_t: float) -> ObliqueRebound:
         motion.Omega,
         -(motion.V_n + rod.d_c * motion.Omega) / v_n,
         (motion.V_t - v_t) / (motion.V_n - v_n),
-        float(energy[:BENDING].sum()),
-        float(energy[BENDING:].sum()),
+        float(energy[: rod.bending].sum()),
+        float(energy[rod.bending :].sum()),
         0.5 * rod.mass * (v_n**2 + v_t**2),
         [(a, b, p) for a, b, p in motion.touches if p > FAINT * total],
     )
