@@ -73,8 +73,8 @@ def _rods_words(gives: Gives) -> str:
             f"{words} rod: rigid {rod.e_rigid[at]:.2f}, give {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
         )
     return (
-        "The same makes long rods bounce more than short ones, which no law of the contact alone does; e at "
-        f"45 degrees, frictionless: {'; '.join(told)}."
+        "Without friction this makes long rods bounce more than short ones, which no contact law does; e at "
+        f"45 degrees: {'; '.join(told)}."
     )
 
 
