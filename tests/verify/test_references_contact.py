@@ -85,7 +85,8 @@ def test_a_sum_over_modes_is_sears_and_lateral_inertia_takes_little(nu):
     """With nu = 0 the modes are those of the one-dimensional rod; E* stays that of nu = 0.29."""
     length, mass, wave = 0.24, RHO * np.pi * R**2 * 0.24, np.arange(1, 41) * np.pi / 0.24
     omega = np.sqrt(219e9 / RHO) * wave / np.sqrt(1 + (nu * wave * R) ** 2 / 2)
-    rod = ObliqueRod(mass, length**2, 0.0, 0.0, omega, np.full(40, np.sqrt(2 / mass)), np.zeros(40))
+    along = np.full(40, np.sqrt(2 / mass))
+    rod = ObliqueRod(mass, length**2, 0.0, 0.0, omega, along, np.zeros(40), bending=0)
     E_star = contact_modulus(219e9, 0.29, 206e9, 0.29)
     found = oblique_drop(rod, SpringRow(E_star, E_star, 7e-3, 0.0, 1.5e-3), -2.0, 0.0, 3e-4)
     assert (found.bending + found.stretching) / found.E_0 == pytest.approx(0.00245, abs=1.5e-4)
