@@ -33,7 +33,7 @@ def test_the_error_is_the_change_of_e_and_the_worst_is_no_smaller(answers):
         assert 0 < found["worst_angle_rad"] < math.pi / 2
 
 
-def test_solid_runs_two_drops_only(monkeypatch):
+def test_solid_runs_two_drops_and_leaves_other_angles_to_modes(monkeypatch):
     asked = []
     real = module.simulate
 
@@ -43,8 +43,10 @@ def test_solid_runs_two_drops_only(monkeypatch):
 
     monkeypatch.setattr(module, "simulate", coarse)
     found = rigid_enough(case(0.08), "solid")
-    assert asked == [("solid", True), ("solid", False)]
-    assert found["worst_angle_rad"] == math.radians(45.0)
+    assert asked[:2] == [("solid", True), ("solid", False)]
+    assert {fidelity for fidelity, _ in asked[2:]} == {"modal"}
+    assert found["worst_error_of_e"] > found["error_of_e"]  # not from the stated angle alone
+    assert (found["fidelity"], found["worst_fidelity"]) == ("solid", "modal")
 
 
 @pytest.mark.parametrize(("error", "says"), [(0.01, "yes"), (0.03, "yes, if"), (0.2, "no")])
