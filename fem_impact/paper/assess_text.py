@@ -124,8 +124,8 @@ def _rigid(d: Document) -> Iterator[str]:
     yield ""
     yield from _wrap(
         f"May rigid-body theory be used? At this angle: {r['answer']} (vibration changes e by "
-        f"{r['error_of_e']:.3f}; {r['fidelity']}). At any angle: {r['answer_any_angle']} (by {r['worst_error_of_e']:.3f} at "
-        f"{angle:.0f} degrees; {r['worst_fidelity']}).",
+        f"{r['error_of_e']:.3f}; {r['fidelity']}). At any angle: {r['answer_any_angle']} (by "
+        f"{r['worst_error_of_e']:.3f} at {angle:.0f} degrees; {r['worst_fidelity']}).",
         "",
     )
     pairs = (("e", "e"), ("mu", "mu"), ("Omega", "Omega_rad_per_s"), ("E_r/E_0", "E_r_over_E_0"))
