@@ -93,6 +93,7 @@ class _Lane:
     """One process and the pipe to it."""
 
     def __init__(self) -> None:
+        self._ending = threading.Lock()
         context = get_context("spawn")
         self._pipe, far = context.Pipe()
         self._process = context.Process(target=_serve, args=(far,), daemon=True)
@@ -111,9 +112,10 @@ class _Lane:
         return result
 
     def end(self) -> None:
-        self._process.kill()
-        self._process.join()
-        self._pipe.close()
+        with self._ending:  # an interrupt ends it here while its own thread sees it die: a pipe closes once
+            self._process.kill()
+            self._process.join()
+            self._pipe.close()
 
 
 def _serve(pipe: Connection) -> None:
