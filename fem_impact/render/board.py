@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-__all__ = ["Board", "blank", "colour_bar", "heading", "picture", "write"]
+__all__ = ["Board", "blank", "clock", "colour_bar", "heading", "picture", "write"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class Board:
         frame.paste(Image.fromarray(rod), self.layout.rod.corner)
         frame.paste(Image.fromarray(close), self.layout.close.corner)
         pen = ImageDraw.Draw(frame)
-        write(pen, (self.layout.width - 24, 15), f"t = {time * 1e6:.1f} µs")
+        clock(pen, self.layout, time)
         self.strip.mark(pen, time)
         return np.asarray(frame)
 
@@ -119,3 +119,8 @@ def write(pen: Any, place: tuple[int, int], text: str, size: int = 22) -> None:
 
     font = ImageFont.truetype(findfont("DejaVu Sans"), size)
     pen.text(place, text, font=font, fill=INK, anchor="ra")
+
+
+def clock(pen: Any, frame: Frame, time: float) -> None:
+    """Write the time, s, into the upper right corner."""
+    write(pen, (frame.width - 24, 15), f"t = {time * 1e6:.1f} µs")

@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.output import read_fields
-from fem_impact.render.board import blank, colour_bar, heading, picture, write
+from fem_impact.render.board import blank, clock, colour_bar, heading, picture, write
 from fem_impact.render.encode import encode
 from fem_impact.render.film import RenderResult, context, require_libraries, target
 from fem_impact.render.layout import Abreast, Rectangle
@@ -128,7 +128,7 @@ class Board:
             if time > end:
                 place = (view.left + view.width - 8, view.top + 4)
                 write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
-        write(pen, (self.layout.width - 24, 15), f"t = {time * 1e6:.1f} µs")
+        clock(pen, self.layout, time)
         return np.asarray(frame)
 
 
