@@ -45,11 +45,11 @@ def rigid_enough(case: Case, fidelity: str = "modal") -> dict[str, Any]:
         Plain JSON: both results at the stated angle, the share of vibration, T1/tau (first bending period
         over contact time), the worst angle and its fidelity, the error of e and the answers in words.
     """
-    free, stiff = _both(case, case.alpha, fidelity)
     alpha = float(case.alpha)
-    pairs = {float(angle): _both(case, float(angle), "modal") for angle in ANGLES}
+    free, stiff = _both(case, alpha, fidelity)
+    others = (angle for angle in map(float, ANGLES) if angle != alpha)
+    pairs = {alpha: (free, stiff)} | {angle: _both(case, angle, "modal") for angle in others}
     errors = {angle: abs(a["e_edge"] - b["e_edge"]) for angle, (a, b) in pairs.items()}
-    errors[alpha] = abs(free["e_edge"] - stiff["e_edge"])
     worst = max(errors, key=lambda angle: errors[angle])
     touch = stiff["contacts"][0]
     return {
