@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fem_impact.scale import Job
 from fem_impact.scene import replace_all
-from fem_impact.scene.effect_names import BARRIERS, NEEDS
+from fem_impact.scene.effect_names import BARRIERS, grounded
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -94,16 +94,11 @@ def _without(scene: Scene) -> list[Setting]:
     """Return the scene with each effect left out that can be, and with a simpler barrier."""
     size = f"{scene.accuracy.tip_size * 1e3:.3g} mm"
     optional = [name for name in scene.active if name not in BARRIERS]
-    fewer = {f"without {name}": _grounded([e for e in scene.active if e != name]) for name in optional}
+    fewer = {f"without {name}": grounded([e for e in scene.active if e != name]) for name in optional}
     if "barrier-elastoplastic" in scene.active:
         softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in scene.active]
-        fewer["with an elastic barrier"] = _grounded(softer)
+        fewer["with an elastic barrier"] = grounded(softer)
     return [
         Setting(f"solid {size} {words}", "effect", "solid", replace_all(scene, {"effects": names}), PLAIN)
         for words, names in fewer.items()
     ]
-
-
-def _grounded(names: list[str]) -> list[str]:
-    """Drop the effects that mean nothing without one that was left out."""
-    return [name for name in names if name not in NEEDS or set(names) & set(NEEDS[name])]

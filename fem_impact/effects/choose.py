@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.effects.catalogue import EFFECTS
 from fem_impact.effects.share import expected_shares
 from fem_impact.effects.spec import Harm
-from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, NEEDS
+from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, grounded
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -118,7 +118,7 @@ def _grounded(wanted: set[str]) -> set[str]:
 
 
 def _with_grounds(wanted: set[str]) -> list[str]:
-    return [n for n in NAMES if n in wanted and (n not in NEEDS or wanted & set(NEEDS[n]))]
+    return grounded([name for name in NAMES if name in wanted])
 
 
 def _forced(name: str, scene: Scene) -> bool:

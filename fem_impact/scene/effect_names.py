@@ -6,12 +6,12 @@ for those that a list with ``"auto"`` names (on) or names with a minus before it
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 
 from fem_impact.errors import SceneError
 
-__all__ = ["AUTO", "BARRIERS", "NAMES", "NEEDS", "check_effects"]
+__all__ = ["AUTO", "BARRIERS", "NAMES", "NEEDS", "check_effects", "grounded"]
 
 AUTO = "auto"
 BARRIERS = ("barrier-rigid", "barrier-elastic", "barrier-elastoplastic")
@@ -29,6 +29,11 @@ NEEDS = {
 _REMEDY = (
     f'Write "auto", ["auto", "NAME", "-NAME"], or the list of all effects wanted, out of: {", ".join(NAMES)}.'
 )
+
+
+def grounded(names: Sequence[str]) -> list[str]:
+    """Drop the effects that mean nothing without one that is not among them."""
+    return [name for name in names if name not in NEEDS or set(names) & set(NEEDS[name])]
 
 
 def check_effects(effects: object) -> tuple[str, ...]:
