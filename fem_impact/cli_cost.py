@@ -36,12 +36,14 @@ def cost(options: Options) -> int:
         return _paper(options, names, family)
     scene = changed_scene(options.scene, options.changes)
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
-    from fem_impact.cost import advice, measure, text_table, write_cost
+    from fem_impact.cost import advice, measure, pair_sentence, text_table, write_cost
 
     with closing(chosen_meter(options)) as meter:
         found = measure(scene, out, meter, family)
     write_cost(found, out, names)
     answers = advice(found.settings, names, target, budget)
+    if target is not None:
+        answers.append(pair_sentence(found.settings, found.quantities, names, target))
     if options.json:
         print_json({**found.to_dict(), "advice": answers})
     else:

@@ -54,7 +54,7 @@ def _say_plan(scene: Scene, options: Options) -> None:
         return
     from fem_impact.cost import plan
 
-    sentence = plan(scene, options.fidelity or None).sentence
+    sentence = plan(scene, options.fidelity or None, options.threads).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

@@ -6,6 +6,7 @@ from fem_impact.cost.document import text_table, write_cost
 from fem_impact.cost.judge import Judged, Truth, front, worst
 from fem_impact.cost.markdown import summary_markdown
 from fem_impact.cost.measure import Cost, measure
+from fem_impact.cost.pairs import best_pair, pair_sentence, verdict
 from fem_impact.cost.quantities import QUANTITIES, TARGETED, chosen
 from fem_impact.cost.settings import FAMILY, Mesh, Setting, ladder, on_mesh
 from fem_impact.cost.stored import NEARNESS, Plan, nearest, plan, summarise, summary
@@ -22,6 +23,7 @@ __all__ = [
     "Setting",
     "Truth",
     "advice",
+    "best_pair",
     "best_within",
     "cheapest",
     "chosen",
@@ -30,12 +32,14 @@ __all__ = [
     "measure",
     "nearest",
     "on_mesh",
+    "pair_sentence",
     "plan",
     "simulate_to_target",
     "summarise",
     "summary",
     "summary_markdown",
     "text_table",
+    "verdict",
     "worst",
     "write_cost",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 from fem_impact.cost.judge import Judged
@@ -14,13 +15,14 @@ from fem_impact.output import write_table, write_text
 __all__ = ["text_table", "write_cost"]
 
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
-SCALARS = ("name", "kind", "fidelity", "across", "levels", "coarser", "tip_size_m")
-COSTS = ("wall_s", "cpu_s", "element_steps", "peak_memory_MB")
+SCALARS = ("name", "kind", "fidelity", "tip_size_m")
+COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
 COLUMNS = (
     *SCALARS,
     *COSTS,
     *(f"value_{name}" for name in NAMES),
     *(f"error_{name}" for name in NAMES),
+    *(f"band_{name}" for name in NAMES),
     "front",
 )
 
@@ -37,13 +39,15 @@ def _row(setting: Judged) -> list[str | float | int | None]:
     data = setting.to_dict()
     errors = [setting.error[name] for name in NAMES]
     values = [setting.value[name] for name in NAMES]
-    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, " ".join(setting.front)]
+    bands = [setting.band.get(name) for name in NAMES]
+    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *bands, " ".join(setting.front)]
 
 
 def text_table(cost: Cost) -> str:
     """Return limits and orders, then one line a setting: times, and each quantity's error in per cent.
 
-    An asterisk marks the Pareto front of that quantity.
+    An asterisk marks the Pareto front of that quantity. The bands of the pairs of meshes follow, then what
+    leaving an effect out changes.
     """
     width = max(len(setting.name) for setting in cost.settings)
     head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
@@ -57,6 +61,12 @@ def text_table(cost: Cost) -> str:
     lines[-1] += "".join(f"{'-' if t.order is None else f'{t.order:.2f}':>11}" for t in truth)
     lines += [_line(setting, width) for setting in cost.settings if setting.kind != "effect"]
     lines += ["errors in %, the limit's uncertainty included; * on the Pareto front"]
+    pairs = [
+        _line(replace(setting, error=dict(setting.band), front=[]), width)
+        for setting in cost.settings
+        if setting.band
+    ]
+    lines += ["", "bands of the extrapolations in %, as two meshes and the range of all tell them", *pairs]
     left_out = [_line(setting, width) for setting in cost.settings if setting.kind == "effect"]
     if left_out:
         lines += ["", "changes in % by leaving an effect out, on the same mesh", *left_out]

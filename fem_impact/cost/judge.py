@@ -35,21 +35,23 @@ class Judged:
     free core, and another program beside it does not lengthen it.
 
     ``error`` holds, for each quantity, distance from the limit plus the limit's own uncertainty over the
-    scale; where an effect is left out, what that changes on the same mesh over the scale. ``front`` names
-    the quantities on whose Pareto front the setting lies.
+    scale; where an effect is left out, what that changes on the same mesh over the scale. ``band`` of a pair
+    is the uncertainty of its extrapolation over the scale, without what is known of the limit.
+    ``two_cores_s`` is the time with the two meshes of a pair side by side. ``meshes`` are those of a
+    finite-element setting, the finer first. ``front`` names the quantities on whose Pareto front it lies.
     """
 
     name: str
     kind: str
     fidelity: str
-    across: int | None
-    levels: int | None
-    coarser: int | None
+    meshes: list[dict[str, Any]]
     tip_size_m: float | None
     value: dict[str, float | None]
     error: dict[str, float | None]
+    band: dict[str, float]
     wall_s: float
     cpu_s: float
+    two_cores_s: float
     element_steps: int | None
     peak_memory_MB: float | None
     front: list[str] = field(default_factory=list)
@@ -112,12 +114,17 @@ def _truth(
 
 
 def judge(
-    setting: Setting, runs: Sequence[Outcome], truth: Mapping[str, Truth], whole: Outcome | None = None
+    setting: Setting,
+    runs: Sequence[Outcome],
+    truth: Mapping[str, Truth],
+    whole: Outcome | None = None,
+    every: Sequence[Outcome] = (),
 ) -> Judged:
     """Return a setting with its errors.
 
     ``runs`` is one outcome, or fine and coarse of a pair; ``whole`` the outcome with all effects on the same
-    mesh if the setting leaves one out: then errors of the mesh must not hide those of the effect.
+    mesh if the setting leaves one out: then errors of the mesh must not hide those of the effect. ``every``
+    holds the runs of all meshes, whose range bounds the band of a pair from below.
     """
     if whole is not None:
         truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES}
@@ -127,17 +134,22 @@ def judge(
         name=setting.name,
         kind=setting.kind,
         fidelity=setting.fidelity,
-        across=setting.mesh.across if setting.mesh else None,
-        levels=setting.mesh.levels if setting.mesh else None,
-        coarser=setting.coarser.across if setting.coarser else None,
+        meshes=[asdict(mesh) for mesh in (setting.mesh, setting.coarser) if mesh],
         tip_size_m=first["tip_size_m"],
         value=value,
         error={name: _error(number, truth[name]) for name, number in value.items()},
+        band=_band(runs, every, truth) if len(runs) == 2 else {},
         wall_s=sum(run["wall_s"] for run in runs),
         cpu_s=sum(run["cpu_s"] for run in runs),
+        two_cores_s=max(run["cpu_s"] for run in runs),
         element_steps=_total(run["element_steps"] for run in runs),
         peak_memory_MB=max((run["peak_memory_MB"] or 0.0 for run in runs), default=0.0) or None,
     )
+
+
+def _band(pair: Sequence[Outcome], every: Sequence[Outcome], truth: Mapping[str, Truth]) -> dict[str, float]:
+    others = [run for run in every if run not in pair]
+    return {name: own.uncertainty / truth[name].scale for name, own in truths(pair, others).items()}
 
 
 def _on_mesh(quantity: Quantity, whole: Outcome, truth: Truth) -> Truth:

@@ -45,6 +45,11 @@ class Cost:
     settings: list[Judged]
     failures: list[dict[str, str]]
 
+    @property
+    def quantities(self) -> dict[str, dict[str, Any]]:
+        """Return unit, limit, order, uncertainty and scale of every quantity."""
+        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in QUANTITIES}
+
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
         from fem_impact.cost.yardsticks import yardsticks
@@ -55,19 +60,19 @@ class Cost:
             "versions": installed_versions(),
             "machine": yardsticks(),
             "scene": self.scene.to_dict(),
-            "quantities": {
-                q.name: {
-                    "unit": q.unit,
-                    "limit": self.truth[q.name].value,
-                    "order": self.truth[q.name].order,
-                    "uncertainty": self.truth[q.name].uncertainty,
-                    "scale": self.truth[q.name].scale,
-                }
-                for q in QUANTITIES
-            },
+            "quantities": self.quantities,
             "settings": [setting.to_dict() for setting in self.settings],
             "failures": self.failures,
         }
+
+
+def _plain(truth: Truth) -> dict[str, float | None]:
+    return {
+        "limit": truth.value,
+        "order": truth.order,
+        "uncertainty": truth.uncertainty,
+        "scale": truth.scale,
+    }
 
 
 def measure(
@@ -116,14 +121,14 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results, family
     if len(own) < 2:
         reasons = [r.reason for r in results.values() if isinstance(r, Failure)]
         raise RunError(f"{scene.id}: no two meshes gave a result. {' '.join(reasons)}".strip())
-    truth = truths(own, [run for mesh, run in runs.items() if mesh not in family])
+    truth, every = truths(own, [run for mesh, run in runs.items() if mesh not in family]), list(runs.values())
     judged = []
     for setting in settings:
         given, whole = _given(setting, results, runs), runs.get(PLAIN)
         if setting.kind == "effect":
             judged += [judge(setting, given, truth, whole)] if given and whole else []
         elif given:
-            judged.append(judge(setting, given, truth))
+            judged.append(judge(setting, given, truth, every=every))
     failures = [
         {"setting": name, "reason": result.reason}
         for name, result in results.items()

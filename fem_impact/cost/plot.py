@@ -19,6 +19,7 @@ LOOKS = {
     "modal": ("D", "orange"),
     "mesh": ("o", "blue"),
     "pair": ("^", "green"),
+    "numerics": ("x", "vermilion"),
 }
 
 

@@ -1,10 +1,10 @@
-"""The ladder of settings: fidelities, meshes, pairs of meshes, and effects left out."""
+"""The ladder of settings: fidelities, meshes, pairs of meshes, elements and steps, and effects left out."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.scale import Job
 from fem_impact.scene import replace_all
@@ -12,18 +12,24 @@ from fem_impact.scene.effect_names import BARRIERS, grounded
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
+    from fem_impact.scene.fields import Element
 
 __all__ = ["FAMILY", "Mesh", "Setting", "ladder", "on_mesh"]
 
-Kind = Literal["rigid", "modal", "mesh", "pair", "effect"]
+Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Mesh:
-    """Cells over the diameter of the body, and how often they are split at the tip."""
+    """Cells over the diameter of the body, and how often they are split at the tip.
+
+    ``element`` and ``step`` are those of `Accuracy` where they are not the scene's own.
+    """
 
     across: int
     levels: int
+    element: Element | None = None
+    step: float | None = None
 
     def tip_size(self, diameter: float) -> float:
         """Return the element size at the tip, m."""
@@ -32,8 +38,13 @@ class Mesh:
 
 # meshes that differ in the size of all cells and in nothing else: the limit is theirs
 FAMILY = (Mesh(6, 3), Mesh(8, 3), Mesh(10, 3))
-COARSE = (Mesh(6, 2), Mesh(8, 2))
-PLAIN = Mesh(8, 2)  # the mesh on which effects are left out
+COARSE = (Mesh(6, 2), Mesh(8, 2))  # the family's own bodies with tips of twice the size
+PLAIN = Mesh(8, 2)  # the mesh on which elements, steps and effects are changed
+NUMERICS = {
+    "fully integrated": replace(PLAIN, element="full"),
+    "mean dilatation": replace(PLAIN, element="bbar"),
+    "with half the default step": replace(PLAIN, step=0.45),
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,20 +80,31 @@ def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     scene = replace_all(scene, {"save.frames": 0})
     found = [Setting(kind, kind, kind, scene) for kind in ("rigid", "modal")]
     found += [_solid(scene, mesh) for mesh in (*COARSE, *family)]
-    pairs = [(family[j], family[i]) for i in range(len(family)) for j in range(i + 1, len(family))]
-    found += [_pair(scene, fine, coarse) for fine, coarse in pairs]
+    found += [_pair(scene, fine, coarse) for fine, coarse in _pairs(family)]
+    found += [_solid(scene, mesh, words) for words, mesh in NUMERICS.items()]
     return found + _without(on_mesh(scene, PLAIN))
 
 
 def on_mesh(scene: Scene, mesh: Mesh) -> Scene:
     """Return the scene on a mesh."""
     size = mesh.tip_size(scene.projectile.diameter)
-    return replace_all(scene, {"accuracy.across": mesh.across, "accuracy.tip_size": f"{size * 1e3:.9g} mm"})
+    changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm"}
+    changes |= {"element": mesh.element} if mesh.element else {}
+    changes |= {"step": mesh.step} if mesh.step else {}
+    return replace_all(scene, {f"accuracy.{key}": value for key, value in changes.items()})
 
 
-def _solid(scene: Scene, mesh: Mesh) -> Setting:
+def _pairs(family: Sequence[Mesh]) -> list[tuple[Mesh, Mesh]]:
+    """Return fine and coarse: of the family each with each, and each with its own half as fine tip."""
+    both = [(family[j], family[i]) for i in range(len(family)) for j in range(i + 1, len(family))]
+    halved = [(mesh, replace(mesh, levels=mesh.levels - 1)) for mesh in family]
+    return [pair for pair in halved if pair[1] in COARSE] + both
+
+
+def _solid(scene: Scene, mesh: Mesh, words: str = "") -> Setting:
     size = mesh.tip_size(scene.projectile.diameter)
-    return Setting(f"solid {size * 1e3:.3g} mm", "mesh", "solid", on_mesh(scene, mesh), mesh)
+    name = f"solid {size * 1e3:.3g} mm {words}".strip()
+    return Setting(name, "numerics" if words else "mesh", "solid", on_mesh(scene, mesh), mesh)
 
 
 def _pair(scene: Scene, fine: Mesh, coarse: Mesh) -> Setting:

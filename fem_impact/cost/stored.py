@@ -51,10 +51,7 @@ class Plan:
     @property
     def meshes(self) -> list[Mesh]:
         """Return the meshes to run, fine first."""
-        one = self.setting
-        if one.across is None or one.levels is None:
-            return []
-        return [Mesh(across, one.levels) for across in (one.across, one.coarser) if across is not None]
+        return [Mesh(**mesh) for mesh in self.setting.meshes]
 
     @property
     def sentence(self) -> str:
@@ -104,6 +101,8 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     for name, mine, its in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", scene.active, other.active),
+        ("element", scene.accuracy.element, other.accuracy.element),
+        ("step", scene.accuracy.step, other.accuracy.step),
     ):
         if mine != its:
             return inf, name
@@ -123,7 +122,7 @@ def nearest(scene: Scene) -> tuple[str, float, str]:
     return name, distance, differs
 
 
-def plan(scene: Scene, fidelity: str | None = None) -> Plan:
+def plan(scene: Scene, fidelity: str | None = None, threads: int = 1) -> Plan:
     """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
 
     Raises
@@ -143,16 +142,18 @@ def plan(scene: Scene, fidelity: str | None = None) -> Plan:
     if found is None:
         raise _not_met(scene, name, front(settings, TARGETED)[-1])
     machine = summary()["machine"]["csr_ns_per_element_step"]
+    seconds = found.cpu_s if threads == 1 else found.two_cores_s
     pace = yardsticks()["csr_ns_per_element_step"] / machine
-    return Plan(target, found, name, worst(found, TARGETED), found.cpu_s * pace)
+    return Plan(target, found, name, worst(found, TARGETED), seconds * pace)
 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
     how = "is another" if distance == inf else f"is {distance:.2g} times what is allowed away in its"
     allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
     return SceneError(
-        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip and effects "
-        f"must be the same; allowed are differences (of logarithms where it is a ratio) of: {allowed}.",
+        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
+        "element and step must be the same; allowed are differences (of logarithms where it is a ratio) of: "
+        f"{allowed}.",
         key="accuracy",
         value=_written(scene),
         remedy="Run `fem-impact cost SCENE` and give the mesh it names: accuracy.tip_size and across.",

@@ -99,6 +99,10 @@ class Outcome(Mapping[str, Any]):
         """
         return cls.from_json(read_text(path), source=str(path))
 
+    def __reduce__(self) -> tuple[Any, tuple[str]]:
+        """Travel between processes as text."""
+        return Outcome.from_json, (self.to_json(),)
+
     @classmethod
     def from_json(cls, text: str, source: str = "JSON text") -> Outcome:
         """Read a record from text, as strictly as from a file."""

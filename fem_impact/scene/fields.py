@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 from fem_impact.scene.units import DIMENSIONS, format_quantity
 
@@ -146,7 +146,17 @@ ACCURACY = (
         default=2.5e-3,
         source="chosen for this package: a second contact comes 0.3-1.0 ms after the first",
     ),
+    Field(
+        "step",
+        "time step over the largest stable one",
+        "",
+        0.01,
+        0.99,
+        default=0.9,
+        source="chosen for this package; stable is 2 over the largest frequency of the assembled bodies",
+    ),
 )
+Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
 MESH = ("tip_size", "across")  # keys of accuracy that a target replaces
 SAVE = (
     Field(

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
@@ -128,6 +128,9 @@ class Impact:
 class Accuracy:
     """What the answer may cost: element size at the tip and margin of the block in m, latest time in s.
 
+    ``step`` is the time step over the largest stable one. ``element`` names the operator of cells that
+    cannot yield: with incompatible modes, fully integrated, or with mean dilatation, which yielding cells
+    always have.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
@@ -135,10 +138,13 @@ class Accuracy:
     across: int = 8
     block_margin: float = 6e-3
     max_time: float = 2.5e-3
+    step: float = 0.9
+    element: fields.Element = "incompatible"
     target: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)
+        check_choice(self.element, get_args(fields.Element), "element")
 
 
 @dataclass(frozen=True, slots=True)

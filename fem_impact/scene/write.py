@@ -50,7 +50,7 @@ def digest(scene: Scene) -> str:
 
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
-    written = _written(accuracy, fields.ACCURACY)
+    written = _written(accuracy, fields.ACCURACY) | {"element": accuracy.element}
     if accuracy.target is None:
         return written
     rest = {key: value for key, value in written.items() if key not in fields.MESH}

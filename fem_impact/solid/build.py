@@ -19,7 +19,7 @@ from fem_impact.estimates import projectile
 from fem_impact.modes import rod_modes
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.solid.elements import Kind, element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
@@ -80,11 +80,17 @@ class Body:
 
 
 def make_body(
-    name: str, mesh: HexMesh, points: Array, places: Ints, material: Elastic, yields: Bools
+    name: str,
+    mesh: HexMesh,
+    points: Array,
+    places: Ints,
+    material: Elastic,
+    yields: Bools,
+    element: Kind = "incompatible",
 ) -> Body:
-    """Return a body with its operators and masses."""
+    """Return a body with its operators and masses; ``element`` is that of cells that cannot yield."""
     C = isotropic_stiffness(material.E, material.nu)
-    K = element_stiffness(points, mesh.cells, C, "incompatible")
+    K = element_stiffness(points, mesh.cells, C, element)
     K[yields] = element_stiffness(points, mesh.cells[yields], C, "bbar")
     return Body(
         name, mesh, points, places, material, yields, K, lumped_mass(points, mesh.cells, material.rho)
@@ -95,13 +101,13 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
     rod, barrier = geometry.rod.mesh, geometry.barrier
     fine = geometry.levels > 0
     yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
-    found = [make_body("rod", rod, geometry.rod_points, layout.rod, scene.projectile.material, yields)]
+    steel, kind = scene.projectile.material, scene.accuracy.element
+    found = [make_body("rod", rod, geometry.rod_points, layout.rod, steel, yields, kind)]
     _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
     if barrier is not None:
         yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
-        found.append(
-            make_body("barrier", barrier, barrier.points, layout.barrier, scene.barrier.material, yields)
-        )
+        steel = scene.barrier.material
+        found.append(make_body("barrier", barrier, barrier.points, layout.barrier, steel, yields, kind))
     return found
 
 
@@ -339,13 +345,14 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
     n, place = layout.rod_size, layout.barrier_slice
     rod_stiffness = drawn.reduced(assembled(rod, n), layout.body_shape[1])
-    steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n])}
+    share = scene.accuracy.step
+    steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n], share)}
     if spec.loss_factor is not None:
         free = rod.places[~rod.mesh.is_hanging]
         impulses.append(_damping(spec.loss_factor, linear, rod_stiffness, mass, inverse_mass, free, steps))
     if len(bodies) == 2:
         block_stiffness = assembled(bodies[1], place.stop - n, n)
-        steps["barrier"] = stable_step(block_stiffness, inverse_mass[place])
+        steps["barrier"] = stable_step(block_stiffness, inverse_mass[place], share)
         block, outside = elastic_block(bodies[1], layout, x)
         forces.append(block)
         if spec.radiating:

@@ -17,8 +17,8 @@ ACCURACY = 1e-3  # of the largest eigenvalue; it lies far inside the safety fact
 REFERENCE = np.ascontiguousarray(reference_gradients(CORNERS))
 
 
-def stable_step(K: sp.csr_matrix, inverse_mass: Array) -> float:
-    """Return 0.9 of the step, s, at which leapfrog becomes unstable: 2 over the largest frequency.
+def stable_step(K: sp.csr_matrix, inverse_mass: Array, share: float = SAFETY) -> float:
+    """Return a share of the step, s, at which leapfrog becomes unstable: 2 over the largest frequency.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def stable_step(K: sp.csr_matrix, inverse_mass: Array) -> float:
     scaled = LinearOperator(K.shape, matvec=lambda u: root * (K @ (root * u)), dtype=np.float64)
     start = np.random.default_rng(0).normal(size=K.shape[0]) * root
     largest = eigsh(scaled, k=1, which="LA", v0=start, tol=ACCURACY, return_eigenvectors=False)[0]
-    return float(SAFETY * 2.0 / np.sqrt(largest))
+    return float(share * 2.0 / np.sqrt(largest))
 
 
 def gradient_squares(x: Array, places: NDArray[np.int64]) -> Array:

@@ -84,6 +84,8 @@ def test_a_target_that_no_setting_meets_is_refused_with_the_best(costs):
         ({"surface__friction": 0.3}, "friction"),
         ({"effects": ["vibration", "barrier-elastic"]}, "effects"),
         ({"barrier__material__yield_stress": "400 MPa"}, "yield"),
+        ({"accuracy__element": "full"}, "element"),
+        ({"accuracy__step": 0.5}, "step"),
     ],
 )
 def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
@@ -92,7 +94,7 @@ def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
         scene = scene.replace(key.replace("__", "."), value)
     words = f"nearest scene with a measured cost, t5b, is .*{differs}.*fem-impact cost"
     with pytest.raises(SceneError, match=words):
-        plan(scene.replace("accuracy", "20 %"))
+        plan(scene.replace("accuracy.target", "20 %"))
 
 
 def test_a_scene_near_a_stored_one_is_taken(costs):
@@ -115,6 +117,15 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     assert 0 < outcome["achieved_error"] < 1
     assert outcome["extrapolated"]["e_edge"] == pytest.approx(chosen.setting.value["e"])
     assert (tmp_path / "outcome.json").exists()
+
+
+def test_two_threads_run_two_meshes_side_by_side(costs, tmp_path):
+    scene = asking(0.05)
+    one, two = (achieve.simulate_to_target(scene, threads=threads) for threads in (1, 2))
+    assert plan(scene, threads=2).expected_wall_s < plan(scene).expected_wall_s
+    assert two["achieved_wall_s"] < one["achieved_wall_s"]
+    assert two["extrapolated"] == one["extrapolated"]
+    assert two["achieved_error"] == one["achieved_error"]
 
 
 def test_a_reduced_run_does_not_claim_an_achieved_error(costs):

@@ -14,6 +14,7 @@ from fem_impact.cost import (
     TARGETED,
     Mesh,
     advice,
+    best_pair,
     best_within,
     cheapest,
     chosen,
@@ -21,7 +22,9 @@ from fem_impact.cost import (
     ladder,
     measure,
     on_mesh,
+    pair_sentence,
     text_table,
+    verdict,
     worst,
     write_cost,
 )
@@ -59,12 +62,23 @@ def test_the_ladder_has_every_kind_of_setting():
     for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening", "large-rotation"):
         assert f"solid 0.594 mm without {effect}" in names
     assert "solid 0.594 mm with an elastic barrier" in names
+    assert "solid 0.594 and 0.297 mm extrapolated" in names
     for setting in ladder(SCENE):
         assert (setting.scene is None) == (setting.kind == "pair")
         if setting.kind == "mesh":
             size = 0.019 / setting.mesh.across / 2**setting.mesh.levels
             assert setting.scene.accuracy.tip_size == pytest.approx(size, rel=1e-8)
             assert setting.scene.save.frames == 0
+
+
+def test_elements_and_steps_are_rungs_of_their_own():
+    rungs = {setting.name: setting.scene.accuracy for setting in ladder(SCENE) if setting.kind == "numerics"}
+    plain = on_mesh(SCENE, Mesh(8, 2)).accuracy
+    assert rungs == {
+        "solid 0.594 mm fully integrated": replace(plain, element="full"),
+        "solid 0.594 mm mean dilatation": replace(plain, element="bbar"),
+        "solid 0.594 mm with half the default step": replace(plain, step=0.5 * plain.step),
+    }
 
 
 def test_limit_and_order_are_found(cost):
@@ -94,6 +108,31 @@ def test_a_pair_costs_both_meshes_and_assumes_first_order(cost):
     assert pair.element_steps == fine.element_steps + coarse.element_steps
     assert pair.value["e"] == pytest.approx(extrapolated(fine.value["e"], coarse.value["e"], 4 / 3))
     assert pair.value["e"] != fine.value["e"]
+    assert pair.two_cores_s == max(fine.cpu_s, coarse.cpu_s)
+
+
+def test_the_band_of_a_pair_is_twice_its_extrapolation_or_the_range_of_all_meshes(cost):
+    tips = [0.019 / across / 2**levels for across, levels in ((6, 2), (10, 3))]
+    spread = SLOPE["e_edge"] * (tips[0] - tips[1]) / TIP / 4
+    for words, mesh in (("0.396 and 0.297", Mesh(8, 3)), ("0.396 and 0.237", Mesh(10, 3))):
+        away = SLOPE["e_edge"] * mesh.tip_size(0.019) / TIP
+        band = by_name(cost, words).band["e"] * cost.truth["e"].scale
+        assert band == pytest.approx(max(2 * away, spread), rel=1e-6)
+    assert all(bool(one.band) == (one.kind == "pair") for one in cost.settings)
+
+
+def test_the_best_pair_is_the_quickest_that_meets_the_target_or_the_nearest(cost):
+    loose, strict = (best_pair(cost.settings, TARGETED, target) for target in (0.2, 0.02))
+    assert (loose.name, strict.name) == (
+        "solid 0.792 and 0.396 mm extrapolated",
+        "solid 0.396 and 0.237 mm extrapolated",
+    )
+    assert verdict(loose, cost.quantities, "e", 0.2) == "0.3000 ± 0.0594, reached: 19 %"
+    told = pair_sentence(cost.settings, cost.quantities, TARGETED, 0.02)
+    assert told.startswith("Two meshes against 2 %, solid 0.396 and 0.237 mm extrapolated: e 0.3000 ± ")
+    assert ", not reached: 11 %; " in told
+    assert best_pair([], TARGETED, 0.02) is None
+    assert pair_sentence([], {}, TARGETED, 0.02) == "No two meshes gave a result."
 
 
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):
