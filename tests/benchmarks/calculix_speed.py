@@ -1,12 +1,12 @@
-"""Time of an element-step in CalculiX' explicit dynamics, beside a SciPy CSR product and this solver (optional).
+"""Time of an element-step in CalculiX' explicit dynamics, beside a CSR product and this solver (optional).
 
     python tests/benchmarks/calculix_speed.py [ACROSS] [SLICES]
 
 One mesh for all, half an elastic bar that stretches freely, one thread. CalculiX takes the time of a run with
 the longer span less that of the shorter one, so that reading and setting up do not count, and its own step,
-which follows the deformation; this solver has incompatible modes and keeps its ledger. The last columns are what
-a microsecond of motion costs and how far the free end's motion is from this solver's. Debian's package
-calculix-ccx holds the program; nothing of this project needs it.
+which follows the deformation; this solver has incompatible modes and keeps its ledger. The last columns are
+what a microsecond of motion costs and how far the free end is from where this solver has it. Debian's
+package calculix-ccx holds the program; nothing of this project needs it.
 """
 
 import os
@@ -107,9 +107,8 @@ def main(across=8, slices=96):
             rows.append((f"CalculiX {kind}", ns, (SPANS[1] - SPANS[0]) / (many - few), top))
     else:
         print("ccx is not installed")
-    print(
-        f"{cells} cells\n{'':<20}{'ns/element-step':>16}{'of CSR':>8}{'step, ns':>10}{'ms/us':>8}{'end off, %':>12}"
-    )
+    print(f"{cells} cells")
+    print(f"{'':<20}{'ns/element-step':>16}{'of CSR':>8}{'step, ns':>10}{'ms/us':>8}{'end off, %':>12}")
     for name, ns, dt, top in rows:
         tail = "" if dt is None else f"{dt * 1e9:>10.0f}{ns * cells * 1e-12 / dt:>8.2f}"
         tail += "" if top is None else f"{100 * (top / moved - 1):>12.2f}"
