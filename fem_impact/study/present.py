@@ -1,12 +1,14 @@
-"""Films and pages of finished runs; a missing library costs a picture, never a result."""
+"""Films and pages of finished runs, drawn side by side; a missing library costs a picture, never a result."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
 from fem_impact.errors import FemImpactError
 from fem_impact.progress import CaseProgress, Meter
+from fem_impact.scale import LocalProcesses, cores
 
 FILM_FRAMES = 60
 
@@ -16,19 +18,35 @@ def present(runs: Iterable[Path], study: Path, progress: Meter) -> list[str]:
     from fem_impact.report import write_report
 
     folders, notes = list(runs), []
-    for done, run in enumerate(folders, 1):
-        if (run / "fields.vtkhdf").is_file():
-            notes += _attempt(run, _film)
-        notes += _attempt(run, write_report)
+    for done, (run, found) in enumerate(_each(folders), 1):
+        notes += found
         progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))
     notes += _attempt(study, write_report)
     return list(dict.fromkeys(notes))
 
 
-def _film(run: Path) -> tuple[str, ...]:
-    from fem_impact.render import render
+def _each(folders: Sequence[Path]) -> Iterator[tuple[Path, list[str]]]:
+    """Draw every run, several in a process a core."""
+    if len(folders) == 1:
+        yield folders[0], pictures(folders[0])
+        return
+    with LocalProcesses(max(1, min(cores(), len(folders)))) as executor:
+        drawn = [(run, executor.submit(pictures, run)) for run in folders]
+        for run, future in drawn:
+            try:
+                yield run, future.result()
+            except BrokenExecutor as error:
+                yield run, [f"{run.name}: {error}"]
 
-    return render(run, frames=FILM_FRAMES).notes
+
+def pictures(run: Path) -> list[str]:
+    """Write film and page of a run; return what could not be made."""
+    from fem_impact.render import render
+    from fem_impact.report import write_report
+
+    filmed = (run / "fields.vtkhdf").is_file()
+    notes = _attempt(run, lambda place: render(place, frames=FILM_FRAMES).notes) if filmed else []
+    return notes + _attempt(run, write_report)
 
 
 def _attempt(place: Path, make: Callable[[Path], object]) -> list[str]:

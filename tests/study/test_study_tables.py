@@ -134,3 +134,12 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
     monkeypatch.setattr(fem_impact.report, "write_report", pages.append)
     assert present([run], tmp_path, NullMeter()) == ["t4: install libegl1"]
     assert pages == [run, tmp_path]
+
+
+def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_path):
+    runs = [tmp_path / name for name in ("t4", "t5b")]
+    for run in runs:
+        run.mkdir()
+    notes = present(runs, tmp_path, NullMeter())
+    assert [note.partition(": ")[0] for note in notes] == ["t4", "t5b", tmp_path.name]
+    assert all("outcome.json" in note for note in notes[:2])
