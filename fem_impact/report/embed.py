@@ -26,7 +26,7 @@ FILMS = ("film.mp4", "film.webp", "film.gif")
 Draw = Callable[[Path, Shape], Path]
 
 
-def picture(draw: Draw, stem: Path, alt: str, caption: str) -> Markup:
+def picture(draw: Draw, stem: Path, alt: str, caption: str, since: Path | None = None) -> Markup:
     """Draw a figure twice, for desktop and phone, and return it embedded.
 
     Parameters
@@ -39,9 +39,14 @@ def picture(draw: Draw, stem: Path, alt: str, caption: str) -> Markup:
         For who cannot see it.
     caption : str
         Below the figure.
+    since : Path, optional
+        The file whose data it shows: pictures drawn after it are taken as they are.
     """
-    wide = _data(draw(stem.with_suffix(".svg"), "wide"))
-    slim = draw(stem.with_name(f"{stem.name}-narrow.svg"), "narrow")
+    if since is not None and _drawn(stem, since):
+        wide, narrow = (_data(file) for file in _files(stem))
+        return _figure(wide, narrow, alt, caption)
+    files = _files(stem)
+    wide, slim = _data(draw(files[0], "wide")), draw(files[1], "narrow")
     narrow = _data(slim)
     slim.with_suffix(".csv").unlink(missing_ok=True)  # the same numbers stand beside the wide one
     return _figure(wide, narrow, alt, caption)
@@ -49,8 +54,16 @@ def picture(draw: Draw, stem: Path, alt: str, caption: str) -> Markup:
 
 def stored_picture(stem: Path, caption: str) -> Markup:
     """Return a figure that a study drew, ``stem.svg`` and ``stem-narrow.svg``, embedded."""
-    slim = stem.with_name(f"{stem.name}-narrow.svg")
-    return _figure(_data(stem.with_suffix(".svg")), _data(slim), caption, caption)
+    wide, narrow = (_data(file) for file in _files(stem))
+    return _figure(wide, narrow, caption, caption)
+
+
+def _files(stem: Path) -> tuple[Path, Path]:
+    return stem.with_suffix(".svg"), stem.with_name(f"{stem.name}-narrow.svg")
+
+
+def _drawn(stem: Path, since: Path) -> bool:
+    return all(file.is_file() and file.stat().st_mtime > since.stat().st_mtime for file in _files(stem))
 
 
 def _figure(wide: str, narrow: str, alt: str, caption: str) -> Markup:

@@ -23,8 +23,12 @@ def notices(rows: list[Outcome]) -> Markup:
     return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
 
 
-def history_figures(outcome: Outcome, folder: Path) -> Markup:
-    """Return ledger and contact force over time, or the sentence that says why they are missing."""
+def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Markup:
+    """Return ledger and contact force over time, or the sentence that says why they are missing.
+
+    Pictures that were drawn after the run are only drawn ``again`` if that is asked for.
+    """
+    since = None if again else folder / "history.csv"
     try:
         history = read_table(folder / "history.csv")
         if outcome["E_0_J"] is None:
@@ -36,12 +40,14 @@ def history_figures(outcome: Outcome, folder: Path) -> Markup:
             "Stacked areas of the energy accounts over time",
             "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
             "Strain energies include what stays locked in.",
+            since,
         )
         force = picture(
             lambda path, shape: force_figure(history, outcome["contacts"] or [], path, shape),
             figures / "force",
             "Normal and tangential contact force over time",
             "Contact force on the whole rod; contact intervals shaded, with their normal impulse.",
+            since,
         )
     except ResultError as error:
         return section("Over time", paragraph(f"No curves over time: {error}"))

@@ -163,7 +163,7 @@ def _run(row: Outcome, folder: Path) -> Markup:
     bands = row["bands"] or {}
     e, mu = with_band(row["e_paper"], bands.get("e_paper")), with_band(row["mu"], bands.get("mu"))
     title = f"{row['scene_id']}: {row['scene_title']} (e = {e}, µ = {mu})"
-    return details(title, history_figures(row, place), _own_page(place))
+    return details(title, history_figures(row, place, again=False), _own_page(place))
 
 
 def _own_page(place: Path) -> Markup:

@@ -1,4 +1,5 @@
 import json
+import os
 import re
 from html.parser import HTMLParser
 
@@ -160,6 +161,17 @@ def test_study_report_compares_every_row(study):
     assert f"{inside} of {len(rows)}" in words
     assert words.count("outside the 95 % interval") == len(rows) - inside
     assert re.search(r"t4: 0\.08 m rod", words)
+
+
+def test_study_report_takes_pictures_that_are_younger_than_their_run(study):
+    write_report(study)
+    ledger, history = study / "t4" / "figures" / "ledger.svg", study / "t4" / "history.csv"
+    drawn = ledger.stat().st_mtime_ns
+    write_report(study)
+    assert ledger.stat().st_mtime_ns == drawn
+    os.utime(history)
+    write_report(study)
+    assert ledger.stat().st_mtime_ns > drawn
 
 
 def test_study_report_names_failures_and_notes(study):
