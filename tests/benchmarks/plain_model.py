@@ -1,0 +1,94 @@
+"""The plain full model beside the present one: errors of e and E_vib, CPU time, and its ratio at equal error.
+
+    git worktree add PLAIN c48d227
+    python tests/benchmarks/plain_model.py PLAIN OUT [SET ...]
+
+PLAIN holds the last revision before element-steps were saved: the step of the single elements' bound, the
+return to the yield surface in every element, runs that wait for the rod to rise above its crater. Both run
+with its effects on the same meshes, one process after the other; what lies in OUT is not run again. An error
+is the distance from the limit of the present model's three meshes, over the scale of the cost ladder.
+At equal error: CPU time of the plain model where the line through its two meshes, in logarithms, has the
+error of the present finer mesh, or what its meshes bound; a dash where its error does not fall.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from math import exp, log
+from pathlib import Path
+
+from fem_impact.cost import FAMILY, QUANTITIES, TARGETED, Mesh
+from fem_impact.cost.judge import truths
+from fem_impact.scene import load
+
+PRESENT = Path(__file__).parents[2]
+SETS = ("t5b", "t3-machined", "t6-17")
+# what the plain model has: its block always radiates, and nothing hardens with the rate
+EFFECTS = "vibration, friction, rod-plasticity, barrier-elastoplastic, gravity, large-rotation, radiation"
+COMPARED = (Mesh(8, 2), Mesh(8, 3))
+NAMED = {quantity.name: quantity for quantity in QUANTITIES}
+
+
+def outcome(model, name, mesh, out):
+    """Return the outcome of a set by one model, made in a process of its own unless it lies in ``out``."""
+    kind = "present" if model == PRESENT else "plain"
+    place = out / f"{kind}-{name}-{mesh.across}-{mesh.levels}"
+    if not (place / "outcome.json").exists():
+        size = mesh.tip_size(load(name).projectile.diameter) * 1e3
+        changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={size:.9g} mm", "save.frames=0"]
+        changes += [f"effects={EFFECTS}"] if model == PRESENT else []
+        words = [word for change in changes for word in ("--set", change)]
+        command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(place)]
+        alone = {"PYTHONPATH": str(model), "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
+        subprocess.run(command, cwd=model, env=os.environ | alone, check=True, stdout=subprocess.DEVNULL)
+    return json.loads((place / "outcome.json").read_text(encoding="utf-8"))
+
+
+def at_equal_error(plain, present):
+    """Return the plain model's time over the present one's, both as (error, time), or what bounds it."""
+    (coarse, short), (fine, long) = plain
+    error, time = present[1]
+    if not 0 < fine < coarse:
+        return "-"
+    if error < fine:
+        return f"> {long / time:.3g}"
+    if error > coarse:
+        return f"< {short / time:.3g}"
+    share = log(error / fine) / log(coarse / fine)
+    return f"{exp((1 - share) * log(long) + share * log(short)) / time:.3g}"
+
+
+def off(run, quantity, truth):
+    """Return the distance from the limit over the scale."""
+    return abs(NAMED[quantity].value(run) - truth.value) / truth.scale
+
+
+def told(name, plain, out):
+    """Return the lines of one set."""
+    truth = truths([outcome(PRESENT, name, mesh, out) for mesh in FAMILY])
+    runs = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
+    lines = []
+    for quantity in TARGETED:
+        limit = truth[quantity]
+        points = {model: [(off(run, quantity, limit), run["cpu_s"]) for run in runs[model]] for model in runs}
+        pairs = list(zip(points[plain], points[PRESENT], strict=True))
+        cells = [f"{100 * found:.1f} %, {cpu:.1f} s" for pair in pairs for found, cpu in pair]
+        same = " / ".join(f"{theirs[1] / ours[1]:.2g}" for theirs, ours in pairs)
+        equal = at_equal_error(points[plain], points[PRESENT])
+        known = f"{limit.value:.4f} ± {limit.uncertainty:.1g}"
+        lines.append(f"| {name} | {quantity} | {known} | {' | '.join(cells)} | {same} | {equal} |")
+    return lines
+
+
+def main(plain, out, *names):
+    """Print the table."""
+    sizes = ["0.59 mm plain", "present", "0.30 mm plain", "present"]
+    print("|", " | ".join(["set", "of", "limit", *sizes, "CPU ratio, same mesh", "at equal error"]), "|")
+    print("|", " | ".join(["---"] * 9), "|")
+    for name in names or SETS:
+        print(*told(name, Path(plain).resolve(), Path(out).resolve()), sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
