@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.plasticity import SOURCE, first_yield_ratio, hardening_of, harm_of
+from fem_impact.effects.plasticity import SOURCE, first_yield_ratio, hardening_of
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.vibration import vibration_share
-from fem_impact.estimates import normal_share
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -33,17 +31,6 @@ def compliance_share(scene: Scene) -> float:
 def yield_ratio(scene: Scene) -> float:
     """Return the peak pressure over that of first yield in the plate."""
     return first_yield_ratio(scene, scene.barrier.material, scene.projectile.material)
-
-
-def harm_elastic(scene: Scene) -> Harm:
-    """Return what a rigid plane changes."""
-    change = min(1.6 * compliance_share(scene), 1.0) * vibration_share(scene)
-    return Harm(min(change / normal_share(scene), 1.0), change)
-
-
-def harm_elastoplastic(scene: Scene) -> Harm:
-    """Return what is lost by a barrier that stays elastic."""
-    return harm_of(yield_ratio(scene), scene)
 
 
 def no_harm(scene: Scene) -> Harm:
@@ -74,8 +61,8 @@ RIGID = Effect(
     LEAST_SHARE,
     COMPLIANCE,
     compliance_share,
-    no_harm,
     fill_rigid,
+    no_harm,
 )
 ELASTIC = Effect(
     "barrier-elastic",
@@ -85,7 +72,6 @@ ELASTIC = Effect(
     LEAST_SHARE,
     COMPLIANCE,
     compliance_share,
-    harm_elastic,
     fill_elastic,
 )
 ELASTOPLASTIC = Effect(
@@ -96,6 +82,5 @@ ELASTOPLASTIC = Effect(
     1.0,
     SOURCE,
     yield_ratio,
-    harm_elastoplastic,
     fill_elastoplastic,
 )

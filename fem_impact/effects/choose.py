@@ -8,6 +8,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.effects.catalogue import EFFECTS
+from fem_impact.effects.harm import left_out
 from fem_impact.effects.share import expected_shares
 from fem_impact.effects.spec import Harm
 from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, grounded
@@ -61,24 +62,35 @@ def active(scene: Scene) -> tuple[str, ...]:
     """Return the effects in the model of a scene, in the order in which they enter it."""
     if AUTO not in scene.effects:
         return scene.effects
-    return tuple(choice.name for choice in choices(scene) if choice.on)
+    _, _, on = decided(scene)
+    return tuple(name for name in NAMES if name in on)
 
 
-@cache
 def choices(scene: Scene) -> tuple[Choice, ...]:
     """Decide every effect of a scene."""
-    whole = everything(scene)
-    number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
-    needed = _grounded({name for name in NAMES if number[name] > EFFECTS[name].threshold})
-    on = _grounded(_chosen(scene, needed))
+    number, needed, on = decided(scene)
     forced, share = {name for name in NAMES if _forced(name, scene)}, expected_shares(on)
     return tuple(
         Choice(
             *(name, name in on, name in forced, name in needed, number[name]),
-            *(EFFECTS[name].harm(whole), share.get(name)),
+            *(_harm(everything(scene), name), share.get(name)),
         )
         for name in NAMES
     )
+
+
+@cache
+def decided(scene: Scene) -> tuple[dict[str, float], set[str], set[str]]:
+    """Return the number of each effect, the effects that are needed, and those that are on."""
+    whole = everything(scene)
+    number = {name: effect.number(whole) for name, effect in EFFECTS.items()}
+    needed = _grounded({name for name in NAMES if number[name] > EFFECTS[name].threshold})
+    return number, needed, _grounded(_chosen(scene, needed))
+
+
+def _harm(whole: Scene, name: str) -> Harm:
+    told = EFFECTS[name].harm
+    return told(whole) if told else left_out(whole, name)
 
 
 def neglected(scene: Scene) -> tuple[str, ...]:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
+from fem_impact.effects.beam import bending_period
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.vibration import bending_period, vibration_share
+from fem_impact.effects.strike import strike
 from fem_impact.estimates import contact_estimate, normal_share
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def number(scene: Scene) -> float:
 
 def harm(scene: Scene) -> Harm:
     """Return the energy that should have been damped."""
-    damped = min(number(scene), 1.0) * vibration_share(scene)
+    damped = min(number(scene), 1.0) * strike(scene).E_vib
     return Harm(min(damped / normal_share(scene), 1.0), damped)
 
 
@@ -42,6 +43,6 @@ EFFECT = Effect(
     0.05,
     "a mode's energy decays like exp(-eta omega t); half of the 10 % that E_vib may be off",
     number,
-    harm,
     fill,
+    harm,
 )

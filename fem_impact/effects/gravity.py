@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import hypot
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.vibration import bending_period, vibration_share
+from fem_impact.effects.beam import bending_period
+from fem_impact.effects.spec import Effect, ModelSpec
 from fem_impact.estimates import contact_estimate
 from rigid import GRAVITY
 
@@ -18,12 +18,6 @@ def number(scene: Scene) -> float:
     """Return g (tau + T1) over the impact speed: a second contact comes a bending period later."""
     lasting = contact_estimate(scene).duration + bending_period(scene)
     return GRAVITY * lasting / hypot(scene.impact.v_n, scene.impact.v_t)
-
-
-def harm(scene: Scene) -> Harm:
-    """Return the speed gained as change of e, and its share of the vibration."""
-    gained = min(number(scene), 1.0)
-    return Harm(gained, 2 * gained * vibration_share(scene))
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -39,6 +33,5 @@ EFFECT = Effect(
     0.005,
     "speed gained by falling while the impact lasts: e moves by about as much, a quarter of 2 %",
     number,
-    harm,
     fill,
 )

@@ -34,6 +34,6 @@ EFFECT = Effect(
     0.1,
     "half-space conduction (Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), ten times as safe",
     number,
-    harm,
     fill,
+    harm,
 )

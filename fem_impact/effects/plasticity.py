@@ -6,9 +6,7 @@ from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.contact_law import thornton
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.vibration import vibration_share
+from fem_impact.effects.spec import Effect, ModelSpec
 from fem_impact.estimates import LIMIT_PRESSURE, contact_estimate
 
 if TYPE_CHECKING:
@@ -37,12 +35,6 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
     return peak / (first * material.yield_stress)
 
 
-def harm_of(ratio: float, scene: Scene) -> Harm:
-    """Return what a contact loses that stays elastic at a pressure ``ratio`` over that of first yield."""
-    change = 1 - thornton(ratio**2.5)
-    return Harm(change, change * vibration_share(scene))
-
-
 def hardening_of(material: Material) -> Hardening:
     """Return the hardening law of a material."""
     from fem_impact.solid.hardening import power_hardening
@@ -53,11 +45,6 @@ def hardening_of(material: Material) -> Hardening:
 def number(scene: Scene) -> float:
     """Return the peak pressure over that of first yield in the rod."""
     return first_yield_ratio(scene, scene.projectile.material, scene.barrier.material)
-
-
-def harm(scene: Scene) -> Harm:
-    """Return what is lost by a tip that stays elastic."""
-    return harm_of(number(scene), scene)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -73,6 +60,5 @@ EFFECT = Effect(
     1.0,
     SOURCE,
     number,
-    harm,
     fill,
 )

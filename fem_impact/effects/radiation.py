@@ -34,6 +34,6 @@ EFFECT = Effect(
     0.01,
     "Hunter 1957, J. Mech. Phys. Solids 5, 162; a share w of the normal energy changes e by about w",
     number,
-    harm,
     fill,
+    harm,
 )

@@ -14,11 +14,7 @@ from dataclasses import replace
 from math import log, sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.contact_law import thornton
-from fem_impact.effects.barrier import yield_ratio
-from fem_impact.effects.plasticity import number as rod_ratio
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.vibration import vibration_share
+from fem_impact.effects.spec import Effect, ModelSpec
 from fem_impact.estimates import contact_estimate, principal_radii
 
 if TYPE_CHECKING:
@@ -37,12 +33,6 @@ def strain_rate(scene: Scene) -> float:
 def number(scene: Scene) -> float:
     """Return the relative gain of the flow stress at the strain rate of the indentation."""
     return C * log(max(strain_rate(scene) / SLOWEST, 1.0))
-
-
-def harm(scene: Scene) -> Harm:
-    """Return 5/8 of the gain as relative change of e, and the shorter contact's vibration (tau^-4)."""
-    gain, ratio = number(scene), max(rod_ratio(scene), yield_ratio(scene))
-    return Harm(0.625 * gain * thornton(ratio**2.5), min(2 * gain, 1.0) * vibration_share(scene))
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -64,6 +54,5 @@ EFFECT = Effect(
     0.03,
     "e grows like sigma_y^(5/8) (Thornton 1997, doi:10.1115/1.2787319): 2 % of e are 3 % of sigma_y",
     number,
-    harm,
     fill,
 )

@@ -61,8 +61,8 @@ class Effect:
     threshold : number above which the effect is needed
     source : where the number and its threshold come from
     number : computes it from a scene
-    harm : what a scene loses without the effect, computed from the scene
     fill : fills its slots
+    harm : what a scene loses without the effect, computed from the scene; None: told by two strikes
     """
 
     name: str
@@ -72,5 +72,5 @@ class Effect:
     threshold: float
     source: str
     number: Callable[[Scene], float]
-    harm: Callable[[Scene], Harm]
     fill: Callable[[Scene, ModelSpec], None]
+    harm: Callable[[Scene], Harm] | None = None

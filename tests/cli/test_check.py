@@ -31,7 +31,7 @@ def test_check_tells_number_threshold_harm_and_time_of_each_effect(cli):
     lines = cli("check", "t5b", "--set", "effects=['auto', 'barrier-elastic']")[1].splitlines()
     heads = [i for i, line in enumerate(lines) if line.startswith(("  on  ", "  off "))]
     about = {lines[i].split()[1].rstrip(":"): lines[i + 1] for i in heads}
-    assert "f: 0.57, threshold 0.005; without it e changes by about 0.4, E_vib by " in about["friction"]
+    assert "f: 0.57, threshold 0.005; without it e changes by about 0.2, E_vib by " in about["friction"]
     assert about["friction"].endswith("% of the run time")
     assert "run time" not in about["gravity"] and "without it e changes" in about["gravity"]
     # a barrier is one of three: those not taken are missing nothing

@@ -59,7 +59,7 @@ def test_the_ladder_has_every_kind_of_setting():
     assert len(set(names)) == len(names)
     assert names[:3] == ["rigid", "modal", "solid 0.792 mm"]
     assert "solid 0.396 and 0.237 mm extrapolated" in names
-    for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening", "large-rotation"):
+    for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening"):
         assert f"solid 0.594 mm without {effect}" in names
     assert "solid 0.594 mm with an elastic barrier" in names
     assert "solid 0.594 and 0.297 mm extrapolated" in names

@@ -46,9 +46,9 @@ def moon(monkeypatch):
     monkeypatch.setitem(EFFECTS, EFFECT.name, EFFECT)
     for module in (effect_names, choose):
         monkeypatch.setattr(module, "NAMES", names)
-    choices.cache_clear()
+    choose.decided.cache_clear()
     yield
-    choices.cache_clear()
+    choose.decided.cache_clear()
 
 
 def scene_with(*effects, **changes):

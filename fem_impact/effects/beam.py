@@ -1,0 +1,84 @@
+"""The rod as a free beam: its periods, and its modes as the contact point sees them."""
+
+from __future__ import annotations
+
+from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.estimates import projectile
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
+__all__ = ["Beam", "beam", "bending_frequencies", "bending_period", "stretching_period"]
+
+Array = NDArray[np.float64]
+
+ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
+SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)
+STRETCHING = 20  # modes at most
+SECTION = 1.8412  # first zero of J1': above, the round section shears by itself, which the contact law holds
+
+
+class Beam(NamedTuple):
+    """Modes at the contact point: omega (k,) rad/s; displacements along t and n (k,) kg^-1/2."""
+
+    omega: Array
+    along_t: Array
+    along_n: Array
+
+
+def bending_frequencies(scene: Scene) -> Array:
+    """Return circular frequencies of free-free bending, rad/s, ascending.
+
+    The lower root of Timoshenko's dispersion at the wave numbers b of the Euler-Bernoulli modes, r = d/4:
+    w^4 r^2/s - w^2 c0^2 (1 + b^2 r^2 (1 + 1/s)) + b^4 r^2 c0^4 = 0, s = kappa G/E.
+    """
+    rod, s = scene.projectile, SHEAR / (2 * (1 + scene.projectile.material.nu))
+    b2, r2 = (ROOTS / rod.length) ** 2, (rod.diameter / 4) ** 2
+    middle = 1 + b2 * r2 * (1 + 1 / s)
+    root = 2 * b2**2 * r2 / (middle + np.sqrt(middle**2 - 4 * b2**2 * r2**2 / s))
+    return np.asarray(_bar_speed(scene) * np.sqrt(root))
+
+
+def bending_period(scene: Scene) -> float:
+    """Return the first free-free bending period, s."""
+    return 2 * pi / float(bending_frequencies(scene)[0])
+
+
+def stretching_period(scene: Scene) -> float:
+    """Return the first longitudinal period, s: 2 l / c0."""
+    return 2 * scene.projectile.length / _bar_speed(scene)
+
+
+def beam(scene: Scene) -> Beam:
+    """Return the modes of a rod at its contact point; none where it cannot vibrate.
+
+    The end of a bending mode, 2 high for a unit mass, turns by w' (1 - (w/b)^2 rho/(kappa G)) (Timoshenko),
+    which takes its share of the modal mass.
+    """
+    body, alpha, r = projectile(scene), scene.impact.angle, scene.projectile.diameter / 4
+    rho, z = (float(part) for part in body.contact_point(alpha))
+    rho = rho if alpha > 0 else 0.0  # an upright rod strikes with its whole face
+    bent, wave, shear = bending_frequencies(scene), ROOTS / body.length, _shear_speed(scene)
+    turn = 2 * wave * (1 - (bent / wave) ** 2 / (SHEAR * shear**2))
+    height = 1 / np.sqrt(body.mass * (1 + (0.5 * r * turn) ** 2))
+    count = np.arange(1, STRETCHING + 1)
+    omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
+    x = np.concatenate([height * (2 - turn * z), 0.0 * count])
+    y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
+    kept = (omega < SECTION * shear / (2 * r)) & ("vibration" in scene.active)
+    along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
+    return Beam(omega[kept], along_t[kept], along_n[kept])
+
+
+def _bar_speed(scene: Scene) -> float:
+    steel = scene.projectile.material
+    return float((steel.E / steel.rho) ** 0.5)
+
+
+def _shear_speed(scene: Scene) -> float:
+    return _bar_speed(scene) / sqrt(2 * (1 + scene.projectile.material.nu))
