@@ -12,7 +12,7 @@ from fem_impact.cost.settings import Setting
 from fem_impact.outcome import Outcome
 from fem_impact.study.richardson import SURE, UNSURE, limit
 
-__all__ = ["Judged", "Truth", "extrapolated", "front", "judge", "truths", "worst"]
+__all__ = ["Judged", "Truth", "extrapolated", "front", "judge", "pair_limit", "truths", "worst"]
 
 PAIR_ORDER = 1.0  # assumed where two meshes are all there is
 
@@ -72,6 +72,16 @@ def extrapolated(fine: float, coarse: float, ratio: float, order: float = PAIR_O
     return float(fine + (fine - coarse) / (ratio**order - 1))
 
 
+def pair_limit(fine: float, coarse: float, ratio: float) -> tuple[float, float]:
+    """Return the first-order limit of two meshes and its half-width.
+
+    The safety factor of a disbelieved order, 3 of the fine mesh's distance from it (Roache's for two grids),
+    leaves twice that distance around the limit itself; never less than the two differ by.
+    """
+    value = extrapolated(fine, coarse, ratio)
+    return value, max((UNSURE - 1) * abs(value - fine), abs(fine - coarse))
+
+
 def truths(runs: Sequence[Outcome], others: Sequence[Outcome] = ()) -> dict[str, Truth]:
     """Return the limit of every quantity from the runs of one family (two or more meshes).
 
@@ -106,8 +116,8 @@ def _truth(
         value, order, band = found.value, found.order, found.band
     else:
         first = values[sizes.index(max(sizes))]
-        value = extrapolated(last, first, max(sizes) / min(sizes))
-        order, band = None, max(UNSURE * abs(value - last), spread + abs(value - last))
+        value, half = pair_limit(last, first, max(sizes) / min(sizes))
+        order, band = None, max(half, spread) + abs(value - last)
     least = (SURE - 1) * abs(value - last)
     size = max(abs(value), abs(last))  # an extrapolation towards zero must not inflate every error
     return Truth(value, order, max(band - abs(value - last), least), quantity.scale(size, finest))

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from itertools import combinations
 from typing import TYPE_CHECKING, Any
 
+from fem_impact.cost.judge import pair_limit
 from fem_impact.cost.settings import Mesh, on_mesh
 from fem_impact.figures.lines import Panel, Series
 from fem_impact.outcome import Outcome
@@ -66,7 +68,7 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
     paper = Paper(
         "convergence",
         "What vanishing elements would give",
-        [_sentence(row) for row in rows if row["quantity"] in TOLD],
+        [*(_sentence(row) for row in rows if row["quantity"] in TOLD), *_pairs(rows)],
         (Picture("convergence", CAPTION, tuple(_panels(rows))),) if rows else (),
         (_sheet(rows),),
         ("Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",),
@@ -107,6 +109,20 @@ def _sentence(row: Row) -> str:
         f"limit {row['limit']:.4g} ({order}); at {DEFAULT * 1e3:.3g} mm, the usual mesh, "
         f"{_usual(row) - row['limit']:+.2g} off the limit."
     )
+
+
+def _pairs(rows: list[Row]) -> list[str]:
+    """Say how often two of the meshes, extrapolated with their band, hold the limit of all."""
+    held = [_holds(row, *pair) for row in rows for pair in combinations(range(len(row["values"])), 2)]
+    return (
+        [f"Two meshes, extrapolated: {sum(held)} of {len(held)} bands hold the limit of all."] if held else []
+    )
+
+
+def _holds(row: Row, coarse: int, fine: int) -> bool:
+    size, value = row["tip_size_m"], row["values"]
+    found, band = pair_limit(value[fine], value[coarse], size[coarse] / size[fine])
+    return bool(abs(found - row["limit"]) <= band + 1e-9 * abs(found))
 
 
 def _usual(row: Row) -> float:

@@ -10,7 +10,15 @@ from fem_impact.scale import Failure
 from fem_impact.scene import load
 from fem_impact.solid.geometry import levels_of
 from fem_impact.study import Request
-from fem_impact.study.convergence import LEVELS, QUANTITIES, conclude, convergence_rows, family, plan
+from fem_impact.study.convergence import (
+    LEVELS,
+    QUANTITIES,
+    _pairs,
+    conclude,
+    convergence_rows,
+    family,
+    plan,
+)
 
 NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
 
@@ -47,6 +55,14 @@ def test_every_quantity_has_its_limit():
     assert rows["mu"]["limit"] == pytest.approx(0.5)
 
 
+def test_two_meshes_are_held_to_the_limit_of_all():
+    row = {"tip_size_m": [4.0, 2.0, 1.0], "values": [0.5, 0.3, 0.2], "limit": 0.1}
+    assert _pairs([row]) == ["Two meshes, extrapolated: 3 of 3 bands hold the limit of all."]
+    astray = row | {"values": [0.5, 0.45, 0.2]}  # .45 and .5 lead to .4 and leave .1 open, the others not
+    assert _pairs([astray]) == ["Two meshes, extrapolated: 2 of 3 bands hold the limit of all."]
+    assert _pairs([]) == []
+
+
 def test_the_study_writes_table_data_and_figure(tmp_path):
     found = study(tmp_path, broken={10})
     line = next(line for line in found.text.splitlines() if line.startswith("| t5b | e |"))
@@ -57,6 +73,7 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
     assert (
         "0.3802 ± 0.025 at 0.198 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
     )
+    assert "Two meshes, extrapolated: 24 of 24 bands hold the limit of all." in found.text
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
     assert (tmp_path / "figures" / "convergence.svg").stat().st_size > 1000
     assert json.loads((tmp_path / "study.json").read_text())["sheets"][0]["rows"]
