@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Choice", "active", "choices", "neglected"]
 
+UNFELT = ("contact-heating",)  # what the motion does not feel is watched or not, never missed
+
 
 @dataclass(frozen=True, slots=True)
 class Choice:
@@ -101,7 +103,7 @@ def neglected(scene: Scene) -> tuple[str, ...]:
         for choice in choices(scene)
         if choice.needed and not choice.on and choice.name not in BARRIERS[: barrier + 1]
     ]
-    return tuple(_warning(choice) for choice in missed if choice.harm.e or choice.harm.E_vib)
+    return tuple(_warning(choice) for choice in missed if choice.name not in UNFELT)
 
 
 def everything(scene: Scene) -> Scene:
