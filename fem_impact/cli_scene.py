@@ -48,6 +48,7 @@ def _listed(scene: Scene) -> dict[str, Any]:
 
 def _statement(scene: Scene) -> dict[str, Any]:
     from fem_impact.effects import choices, neglected
+    from fem_impact.estimates import coarse_tip
 
     return {
         "scene": scene.to_dict(),
@@ -56,7 +57,7 @@ def _statement(scene: Scene) -> dict[str, Any]:
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
         "effects": [choice.told() for choice in choices(scene)],
         "validity": list(validity(scene)),
-        "warnings": list(neglected(scene)),
+        "warnings": [*neglected(scene), *coarse_tip(scene)],
     }
 
 

@@ -114,6 +114,27 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     )
 
 
+def widest_tip_size(scene: Scene) -> float:
+    """Return the largest ``accuracy.tip_size``, m, two digits, with elements no wider than the contact.
+
+    Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
+    """
+    size = contact_estimate(scene)
+    return float(f"{0.95 * sqrt(2) * min(size.a_t, size.a_b):.1e}")
+
+
+def coarse_tip(scene: Scene) -> tuple[str, ...]:
+    """Return a sentence when the contact may be narrower than an element at the tip."""
+    asked, widest = scene.accuracy.tip_size, widest_tip_size(scene)
+    if asked <= widest or scene.accuracy.target is not None:  # a target chooses its own mesh
+        return ()
+    return (
+        f"The contact, about {sqrt(2) * widest * 1e3:.2g} mm wide, may be narrower than an element at the "
+        f"tip (accuracy.tip_size = {asked * 1e3:.2g} mm): the mesh then sets E_vib and the peak force. "
+        f"Give at most {widest * 1e3:.2g} mm.",
+    )
+
+
 def require_shallow(scene: Scene) -> None:
     """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
     depth, radius = contact_estimate(scene).depth, scene.projectile.diameter / 2

@@ -10,6 +10,7 @@ import numpy as np
 import rigid
 from fem_impact.effects import Choice, choices, neglected
 from fem_impact.errors import RunError
+from fem_impact.estimates import coarse_tip
 from fem_impact.heating import flash, halves, heat_keys
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
@@ -44,7 +45,11 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     open_ledger = _open_ledger(result)
     finished = result.finished and not open_ledger
     values = provenance(
-        scene, "solid", finished, open_ledger or result.reason, warnings=[*result.warnings, *neglected(scene)]
+        scene,
+        "solid",
+        finished,
+        open_ledger or result.reason,
+        warnings=[*result.warnings, *neglected(scene), *coarse_tip(scene)],
     )
     values["effect_choices"] = [_told(choice, result.shares) for choice in choices(scene)]
     values |= _motion(scene, result)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.effects import Harm, choices, everything
+from fem_impact.estimates import widest_tip_size
 from fem_impact.outcome import Outcome
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Job, Results
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["DESIGNED", "conclude", "cost_row", "plan", "row"]
 
-TIP = "0.8 mm"  # coarse: both runs of a pair share it
+TIP = 0.8e-3  # m; coarse: both runs of a pair share it
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
 COSTED = ("t5b", "t3-machined", "t6-17")
 BASE = "t5b"
@@ -126,8 +127,14 @@ def _scenes(request: Request) -> dict[str, Scene]:
     every = {name: load(name) for name in MEASURED_SETS}
     every |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
     wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(every))
-    coarse = {"effects": "auto", "accuracy.tip_size": TIP, "save.frames": 0}
-    return {name: replace_all(every[name], coarse) for name in wanted}
+    return {name: _coarse(every[name]) for name in wanted}
+
+
+def _coarse(scene: Scene) -> Scene:
+    """Return the scene with effects chosen by themselves, on a tip as coarse as its contact allows."""
+    scene = replace_all(scene, {"effects": "auto", "save.frames": 0})
+    size = min(TIP, widest_tip_size(scene))
+    return replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
 
 
 def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
@@ -171,5 +178,7 @@ def _paper(rows: list[list[Cell]], costs: list[list[Cell]]) -> Paper:
                 costs,
             ),
         ],
-        assumptions=[f"Tips of {TIP}: the difference of a pair counts here, not its value."],
+        assumptions=[
+            f"Tips of {TIP * 1e3:g} mm, less under a smaller contact: differences count here, not values."
+        ],
     )

@@ -11,7 +11,14 @@ import pytest
 from fem_impact.contact_law import thornton
 from fem_impact.effects import EFFECTS, choices, neglected, specify
 from fem_impact.effects.vibration import bending_period
-from fem_impact.estimates import contact_estimate, contact_modulus, effective_mass, principal_radii
+from fem_impact.estimates import (
+    coarse_tip,
+    contact_estimate,
+    contact_modulus,
+    effective_mass,
+    principal_radii,
+    widest_tip_size,
+)
 from fem_impact.scene import Scene, load
 from fem_impact.scene.effect_names import NAMES
 from fem_impact.solid.build import build
@@ -292,6 +299,16 @@ def test_a_soft_plate_limits_the_pressure():
     assert work == pytest.approx(0.5 * effective_mass(stated) * stated.impact.v_n**2)
     slow = replace(stated, impact=replace(stated.impact, v_n=-1e-3))
     assert contact_estimate(slow).pressure < 2.8 * 320e6
+
+
+def test_an_element_wider_than_the_contact_is_doubted():
+    gentle = load("t5b").replace("impact.v_n", "-0.05 m/s").replace("accuracy.tip_size", "0.8 mm")
+    size, widest = contact_estimate(gentle), widest_tip_size(gentle)
+    assert 1.25 * size.a_t < widest <= sqrt(2) * size.a_t
+    (told,) = coarse_tip(gentle)
+    assert f"at most {widest * 1e3:.2g} mm" in told
+    assert coarse_tip(gentle.replace("accuracy.tip_size", f"{widest} m")) == ()
+    assert coarse_tip(load("t5b").replace("accuracy.tip_size", "0.8 mm")) == ()
 
 
 def test_edge_radii_of_profile_b():
