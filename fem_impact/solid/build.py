@@ -360,16 +360,13 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])
-    forces += zones
-    beyond = [force for force in forces if force.body == "barrier"]
     return Model(
         geometry=geometry,
         layout=layout,
         mass=mass,
         inverse_mass=inverse_mass,
         drawn=drawn,
-        forces=[*(force for force in forces if force.body == "rod"), *beyond],
-        aside=len(beyond) or len(zones),
+        forces=[*forces, *zones],
         impulses=impulses,
         hanging=hanging,
         zones=zones,

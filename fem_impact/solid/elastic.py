@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -9,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts
+from fem_impact.solid.items import Accounts, Part
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.slices import SliceOperator
@@ -33,8 +34,12 @@ class ElasticRod:
     d: Array
     y: Array
 
-    def add_force(self, state: State) -> None:
-        """Add the elastic forces of the rod's linear part."""
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the product with the stiffness."""
+        return [self._multiply]
+
+    def _multiply(self, state: State) -> None:
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
@@ -44,7 +49,10 @@ class ElasticRod:
         self.nose.add_to(self.d, self.y)
         self.drawn.draw_in(d)
         self.drawn.gather(y)
-        self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def collect(self, state: State) -> None:
+        """Add the elastic forces."""
+        self.frame.add_force(self.d, self.y, state.force[: len(self.d)])
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""
@@ -63,11 +71,18 @@ class ElasticBlock:
     d: Array
     y: Array
 
-    def add_force(self, state: State) -> None:
-        """Add the elastic forces of block and boundary springs."""
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the product with the stiffness."""
+        return [self._multiply]
+
+    def _multiply(self, state: State) -> None:
         np.subtract(state.x[self.place], self.reference, out=self.d)
         self.y[:] = 0.0
         self.stiffness.add_to(self.d, self.y)
+
+    def collect(self, state: State) -> None:
+        """Add the elastic forces of block and boundary springs."""
         state.force[self.place] -= self.y
 
     def accounts(self, state: State) -> Accounts:
@@ -112,7 +127,12 @@ class Weight:
     weight: Array
     reference: Array
 
-    def add_force(self, state: State) -> None:
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return nothing: the weight is known."""
+        return []
+
+    def collect(self, state: State) -> None:
         """Add the weight."""
         state.force[: len(self.weight)] += self.weight
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.solid.kernels import inlined
 
 Array = NDArray[np.float64]
 
@@ -111,7 +111,7 @@ def hex_volume(w, row, l):  # type: ignore[no-untyped-def]
     return 8.0 * (triple(w, a1, a2, a3) + THIRD * bent)
 
 
-@kernel
+@inlined
 def gather_modes(values, factor, dof, w):  # type: ignore[no-untyped-def]
     """Fill the 21 scratch rows ``w`` with factor times the modes of a nodal vector field."""
     for c in range(3):
@@ -136,9 +136,9 @@ def gather_modes(values, factor, dof, w):  # type: ignore[no-untyped-def]
             w[o + 18 * LANES] = factor * modes[6]
 
 
-@kernel
-def scatter_modes(w, dof, force):  # type: ignore[no-untyped-def]
-    """Subtract the nodal forces whose mode sums stand in the 21 scratch rows ``w``."""
+@inlined
+def nodal_forces(w, nodal):  # type: ignore[no-untyped-def]
+    """Set the forces (3, 8, LANES) on nodes whose mode sums stand in the 21 scratch rows ``w``."""
     for c in range(3):
         for l in range(LANES):
             o = c * LANES + l
@@ -147,11 +147,11 @@ def scatter_modes(w, dof, force):  # type: ignore[no-untyped-def]
             m7 = 0.125 * w[o + 18 * LANES]
             x_top, x_low, y_top, y_low = m1 + m5, m1 - m5, m2 + m4, m2 - m4
             xy_top, xy_low = m6 + m7, m6 - m7
-            force[dof[c, 0, l]] -= -x_low - y_low - m3 + xy_low
-            force[dof[c, 1, l]] -= x_low - y_low - m3 - xy_low
-            force[dof[c, 2, l]] -= x_low + y_low - m3 + xy_low
-            force[dof[c, 3, l]] -= -x_low + y_low - m3 - xy_low
-            force[dof[c, 4, l]] -= -x_top - y_top + m3 + xy_top
-            force[dof[c, 5, l]] -= x_top - y_top + m3 - xy_top
-            force[dof[c, 6, l]] -= x_top + y_top + m3 + xy_top
-            force[dof[c, 7, l]] -= -x_top + y_top + m3 - xy_top
+            nodal[c, 0, l] = -x_low - y_low - m3 + xy_low
+            nodal[c, 1, l] = x_low - y_low - m3 - xy_low
+            nodal[c, 2, l] = x_low + y_low - m3 + xy_low
+            nodal[c, 3, l] = -x_low + y_low - m3 - xy_low
+            nodal[c, 4, l] = -x_top - y_top + m3 + xy_top
+            nodal[c, 5, l] = x_top - y_top + m3 - xy_top
+            nodal[c, 6, l] = x_top + y_top + m3 + xy_top
+            nodal[c, 7, l] = -x_top + y_top + m3 - xy_top

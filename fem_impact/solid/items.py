@@ -5,11 +5,13 @@ The loop holds two lists of these, and observers, and nothing else. An effect th
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
 from fem_impact.solid.state import State
 
 Accounts = dict[str, float]
+Part = Callable[[State], None]
 
 
 class Account(Protocol):
@@ -26,16 +28,31 @@ class Account(Protocol):
 
 
 class Force(Account, Protocol):
-    """An item that adds forces at the present positions; ``body`` is rod or barrier."""
+    """An item that adds forces at the present positions; ``body`` is rod or barrier.
+
+    Its work is done in parts that write nothing but what is their own, so that threads may share them.
+    """
 
     @property
     def body(self) -> str:
         """Return the body it acts on."""
         ...
 
-    def add_force(self, state: State) -> None:
-        """Add to ``state.force``."""
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the parts of the work, the same at every call."""
         ...
+
+    def collect(self, state: State) -> None:
+        """Add to ``state.force`` what the parts have found."""
+        ...
+
+
+def add_force(item: Force, state: State) -> None:
+    """Do all the work of one item."""
+    for part in item.parts:
+        part(state)
+    item.collect(state)
 
 
 class Impulse(Account, Protocol):

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor
 from typing import Protocol
 
-from fem_impact.solid.items import Force
+from fem_impact.solid.items import Part
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -36,29 +36,25 @@ def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
         y[i] += a * b[i]
 
 
-def _sum(items: Sequence[Force], state: State) -> None:
-    state.force[:] = 0.0
-    for item in items:
-        item.add_force(state)
+def _work(waiting: Iterator[Part], state: State) -> None:
+    for part in waiting:
+        part(state)
 
 
 def evaluate(model: Model, state: State, helper: Executor | None = None) -> None:
     """Set the forces of the present positions.
 
-    Both shares are summed apart and then added whether or not a ``helper`` takes one of them, so that
-    results are the same to the last bit.
+    A ``helper`` takes from the parts that wait as long as there are any. What they find is added in one
+    order, so results are the same to the last bit whoever did them.
     """
-    if not model.aside:
-        _sum(model.forces, state)
-    else:
-        apart, beside = model.forces[-model.aside :], state.beside()
-        done = helper.submit(_sum, apart, beside) if helper else None
-        _sum(model.forces[: -model.aside], state)
-        if done:
-            done.result()
-        else:
-            _sum(apart, beside)
-        state.force += beside.force
+    waiting = iter(model.parts)
+    done = helper.submit(_work, waiting, state) if helper else None
+    _work(waiting, state)
+    if done:
+        done.result()
+    state.force[:] = 0.0
+    for item in model.forces:
+        item.collect(state)
     model.hanging.collect(state.force)
 
 

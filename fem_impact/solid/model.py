@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.contact import ContactBook
 from fem_impact.solid.geometry import Geometry
-from fem_impact.solid.items import Account, Force, Impulse
+from fem_impact.solid.items import Account, Force, Impulse, Part
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.masspoints import MassPoints
@@ -36,7 +36,7 @@ class Model:
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
-    aside : how many of the last forces are summed apart from the others, so that a second thread may do it
+    parts : the work of all forces in parts that threads may share, the largest first
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
@@ -59,7 +59,11 @@ class Model:
     rod_stiffness: sp.csr_matrix | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
-    aside: int = 0
+    parts: Sequence[Part] = field(init=False)
+
+    def __post_init__(self) -> None:
+        whole_first = sorted((force.parts for force in self.forces), key=len)
+        object.__setattr__(self, "parts", [part for parts in whole_first for part in parts])
 
     @property
     def step(self) -> float:
@@ -82,7 +86,7 @@ class Model:
     def coasting(self) -> Model:
         """Return the rod alone, for free flight after the last contact."""
         rod_forces = [f for f in self.forces if f.body == "rod"]
-        return replace(self, forces=rod_forces, impulses=(), aside=0)
+        return replace(self, forces=rod_forces, impulses=())
 
     def ledger(self) -> Ledger:
         """Return an empty ledger over all items."""

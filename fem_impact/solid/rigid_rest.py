@@ -8,6 +8,7 @@ the angle turned in a step.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, sqrt
 from typing import ClassVar
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts
+from fem_impact.solid.items import Accounts, Part
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
@@ -51,13 +52,20 @@ class ElasticNose:
     d: Array
     y: Array
 
-    def add_force(self, state: State) -> None:
-        """Add the elastic forces."""
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the product with the stiffness."""
+        return [self._multiply]
+
+    def _multiply(self, state: State) -> None:
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
         self.nose.add_to(self.d, self.y)
-        self.frame.add_force(self.d, self.y, state.force[:n])
+
+    def collect(self, state: State) -> None:
+        """Add the elastic forces."""
+        self.frame.add_force(self.d, self.y, state.force[: len(self.d)])
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
@@ -34,13 +34,3 @@ class State:
     dt: float = 0.0
     dt_next: float = 0.0
     kick: float = 0.0
-    _beside: State | None = field(default=None, repr=False, compare=False)
-
-    def beside(self) -> State:
-        """Return the same motion with a force vector of its own, for forces summed apart from the others."""
-        if self._beside is None:
-            self._beside = State(self.x, self.v, np.zeros_like(self.force))
-        twin = self._beside
-        twin.x, twin.v, twin.kick = self.x, self.v, self.kick
-        twin.time, twin.step, twin.dt, twin.dt_next = self.time, self.step, self.dt, self.dt_next
-        return twin

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import ClassVar
 
 import numpy as np
@@ -11,12 +13,14 @@ from numpy.typing import NDArray
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
-from fem_impact.solid.items import Accounts
+from fem_impact.solid.items import Accounts, Part
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, update
+from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+PART = 16  # blocks that a thread takes at a time: 60 to 90 us of work, a call costs some
 
 
 @dataclass(slots=True)
@@ -28,6 +32,8 @@ class YieldingZone:
     body : ``rod`` or ``barrier``, names the accounts
     count : number of true elements
     blocks : their places and state
+    around : nodes (k, 3), starts and entries for `subtract_nodal`
+    room : (parts, ROWS * LANES) for each part of the update to work in
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
     rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
@@ -37,6 +43,8 @@ class YieldingZone:
     body: str
     count: int
     blocks: Blocks
+    around: tuple[Ints, Ints, Ints]
+    room: Array
     G: float
     K: float
     law: Array
@@ -60,16 +68,27 @@ class YieldingZone:
             weight=np.ascontiguousarray(weight.reshape(blocks, LANES, 8).transpose(0, 2, 1)),
             pressure=np.zeros((blocks, LANES)),
             volume=weight.sum(axis=1).reshape(blocks, LANES),
-            work=np.zeros(blocks),
-            scratch=np.zeros(ROWS * LANES),
+            work=np.zeros((blocks, LANES)),
+            nodal=np.zeros((blocks, 3, 8, LANES)),
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
-        return cls(body, len(dof), state, G, lame + 2 * G / 3, constants, rate)
+        room = np.zeros((-(-blocks // PART), ROWS * LANES))
+        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate)
 
-    def add_force(self, state: State) -> None:
-        """Advance stresses to the present positions and subtract the nodal forces."""
-        update(state.x, state.v, state.dt, state.force, self.blocks, self.G, self.K, self.law, self.rate)
+    @property
+    def parts(self) -> Sequence[Part]:
+        """Return the updates of so many blocks each."""
+        return [partial(self._advance, i) for i in range(len(self.room))]
+
+    def _advance(self, part: int, state: State) -> None:
+        first, last = PART * part, min(PART * (part + 1), len(self.blocks.dof))
+        constants = self.G, self.K, self.law, self.rate
+        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[part], first, last)
+
+    def collect(self, state: State) -> None:
+        """Subtract the nodal forces."""
+        subtract_nodal(*self.around, self.blocks.nodal.ravel(), state.force)
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""
@@ -78,7 +97,7 @@ class YieldingZone:
     def accounts(self, state: State) -> Accounts:
         """Return elastic energy and plastic work at the last force evaluation."""
         return {
-            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K)),
+            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room[0])),
             f"plastic_{self.body}": float(self.blocks.work.sum()),
         }
 
@@ -91,6 +110,16 @@ class YieldingZone:
         s = self.blocks.stress.reshape(-1, 8, 6, LANES)
         square = 1.5 * (s[:, :, :3] ** 2).sum(axis=2) + 3.0 * (s[:, :, 3:] ** 2).sum(axis=2)
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
+
+
+def _around(dof: Ints) -> tuple[Ints, Ints, Ints]:
+    """Return the nodes (k, 3) of elements ``dof`` (m, 8, 3), and the places in ``nodal`` around each."""
+    _, first, node = np.unique(dof[:, :, 0], return_index=True, return_inverse=True)
+    element, corner = np.divmod(np.arange(dof[:, :, 0].size), 8)
+    place = element // LANES * 24 * LANES + corner * LANES + element % LANES
+    order = np.argsort(node.ravel(), kind="stable")
+    start = np.concatenate([[0], np.cumsum(np.bincount(node.ravel()))])
+    return dof.reshape(-1, 3)[first], start, place[order]
 
 
 def gauss_volumes(x: Array) -> Array:

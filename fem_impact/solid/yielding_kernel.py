@@ -11,7 +11,6 @@ Cauchy stresses on current volumes elastic energy would leak by stress over modu
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -24,16 +23,18 @@ from fem_impact.solid.hexmodes import (
     cofactors,
     gather_modes,
     hex_volume,
-    scatter_modes,
+    nodal_forces,
     slope,
 )
 from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
-POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, ROWS = 0, 21, 42, 63, 72, 78, 79, 80
+POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, RETURN = 0, 21, 42, 63, 72, 78, 79, 80
+ROWS = RETURN + RETURN_ROWS
 
 
 @inlined
@@ -91,7 +92,7 @@ def _jaumann(s0, s1, s2, s3, s4, s5, w01, w12, w02):  # type: ignore[no-untyped-
     )
 
 
-@kernel
+@inlined
 def _trial(w, stress, G2, X, Y, Z):  # type: ignore[no-untyped-def]
     """Write the elastic trial deviator of one Gauss point into ``stress``."""
     for l in range(LANES):
@@ -123,60 +124,6 @@ def _trial(w, stress, G2, X, Y, Z):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _power(d, n):  # type: ignore[no-untyped-def]
-    """Return (1 + d)^n; the plastic growth of one step is small, so that a few terms are exact."""
-    if abs(d) > 0.01:
-        return (1.0 + d) ** n
-    tail = 1.0 + (n - 4.0) / 5.0 * d * (1.0 + (n - 5.0) / 6.0 * d)
-    return 1.0 + n * d * (
-        1.0 + (n - 1.0) / 2.0 * d * (1.0 + (n - 2.0) / 3.0 * d * (1.0 + (n - 3.0) / 4.0 * d * tail))
-    )
-
-
-@inlined
-def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def]
-    """Solve q - 3 G dp = sigma(strain + dp) by Newton's method from the safe (left) side."""
-    growth, n = law[1] / (1.0 + law[1] * strain), law[2]
-    dp = (q - flow) / (G3 + n * growth * flow)
-    new = flow
-    for _ in range(20):
-        new = flow * _power(growth * dp, n)
-        miss = q - G3 * dp - new
-        if abs(miss) < 1e-12 * q:
-            break
-        dp += miss / (G3 + n * growth * new / (1.0 + growth * dp))
-    return dp, new
-
-
-@inlined
-def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
-    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u), u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
-
-    Returns the increment, the stress and the flow stress at vanishing rate. Below rate_0 dt there is no rate
-    factor. Halley's method in u, in which the miss is a line less an exponential, from the lower of two
-    bounds: all of q - sigma borne by C u, or all by 3 G dp.
-    """
-    slow, growth = rate[1] * dt, law[1] / (1.0 + law[1] * strain)
-    over = q - flow * _power(growth * slow, law[2])
-    if over <= G3 * slow:
-        dp, new = _plastic_increment(q, flow, strain, G3, law)
-        return dp, new, new
-    u, dp = min(over / (rate[0] * flow), np.log(over / (G3 * slow))), slow
-    for _ in range(60):
-        dp, factor = slow * np.exp(u), 1.0 + rate[0] * u
-        new = flow * _power(growth * dp, law[2])
-        bent = (G3 + law[2] * growth * new / (1.0 + growth * dp) * factor) * dp
-        steep = bent + new * rate[0]
-        change = (q - G3 * dp - new * factor) / steep
-        change /= 1.0 + 0.5 * change * bent / steep
-        u += change
-        if abs(change) < 1e-4:
-            dp *= 1.0 + change + 0.5 * change * change  # what one more exponential would give to 1e-12
-            break
-    return dp, q - G3 * dp, (q - G3 * dp) / (1.0 + rate[0] * u)
-
-
-@inlined
 def _yielding_lanes(w, flow):  # type: ignore[no-untyped-def]
     """Return how many lanes are beyond their flow stress; counting has no branch, so lanes go together."""
     count = 0
@@ -185,34 +132,7 @@ def _yielding_lanes(w, flow):  # type: ignore[no-untyped-def]
     return count
 
 
-@kernel
-def _return_map(w, stress, weight, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
-    """Bring yielding points back to the flow stress; return the plastic work done, J.
-
-    The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate``
-    is None for a material without rate hardening: the compiler then drops that branch.
-    """
-    work = 0.0
-    for l in range(LANES):
-        if w[TRIAL2 * LANES + l] > flow[l] * flow[l]:
-            q = sqrt(w[TRIAL2 * LANES + l])
-            if rate is None:
-                dp, new = _plastic_increment(q, flow[l], strain[l], G3, law)
-                slow = new
-            else:
-                dp, new, slow = _hardened_increment(q, flow[l], strain[l], G3, law, rate, dt)
-            along = 0.0
-            for i in range(6):
-                double = 1.0 if i < 3 else 2.0
-                along += double * w[(ROTATED + i) * LANES + l] * stress[i * LANES + l]
-                stress[i * LANES + l] *= new / q
-            work += 0.5 * (new + 1.5 * along / q) * dp * weight[l]
-            strain[l] += dp
-            flow[l] = slow
-    return work
-
-
-@kernel
+@inlined
 def _add_force(w, stress, weight, pressure, X, Y, Z):  # type: ignore[no-untyped-def]
     """Add one Gauss point's stress times cofactors to the force modes."""
     for l in range(LANES):
@@ -236,7 +156,7 @@ def _add_force(w, stress, weight, pressure, X, Y, Z):  # type: ignore[no-untyped
             w[f + 18 * LANES] += Y * Z * p0 + Z * X * p1 + X * Y * p2
 
 
-@kernel
+@inlined
 def _update_pressure(w, volume, pressure, K):  # type: ignore[no-untyped-def]
     """Set the element pressures from the volume ratio."""
     for l in range(LANES):
@@ -254,8 +174,8 @@ class Blocks(NamedTuple):
     strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress at vanishing rate in Pa
     weight : (blocks, 8, LANES) reference volume of each Gauss point, m3
     pressure, volume : (blocks, LANES), Pa (tension positive), reference m3
-    work : (blocks,) plastic work so far, J
-    scratch : (ROWS * LANES,)
+    work : (blocks, LANES) plastic work so far, J
+    nodal : (blocks, 3, 8, LANES) forces of the elements on their nodes, N
     """
 
     dof: Ints
@@ -266,14 +186,16 @@ class Blocks(NamedTuple):
     pressure: Array
     volume: Array
     work: Array
-    scratch: Array
+    nodal: Array
 
 
 @kernel
-def update(x, v, dt, force, z, G, K, law, rate):  # type: ignore[no-untyped-def]
-    """Advance all blocks ``z`` by the increment ``dt v`` to ``x`` and subtract their nodal forces."""
-    w = z.scratch
-    for b in range(z.dof.shape[0]):
+def update(x, v, dt, z, G, K, law, rate, w, first, last):  # type: ignore[no-untyped-def]
+    """Advance some blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
+
+    ``w`` (ROWS * LANES,) is room to work in.
+    """
+    for b in range(first, last):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
         w[FORCE * LANES : (FORCE + 21) * LANES] = 0.0
@@ -283,9 +205,29 @@ def update(x, v, dt, force, z, G, K, law, rate):  # type: ignore[no-untyped-def]
             stress, weight, flow = z.stress[b, g], z.weight[b, g], z.flow[b, g]
             _trial(w, stress, 2.0 * G, X, Y, Z)
             if _yielding_lanes(w, flow):
-                z.work[b] += _return_map(w, stress, weight, flow, z.strain[b, g], 3.0 * G, law, rate, dt)
+                trial2, rotated = w[TRIAL2 * LANES :], w[ROTATED * LANES :]
+                strain, work, room = z.strain[b, g], z.work[b], w[RETURN * LANES :]
+                return_map(room, trial2, rotated, stress, weight, flow, strain, work, 3.0 * G, law, rate, dt)
             _add_force(w, stress, weight, z.pressure[b], X, Y, Z)
-        scatter_modes(w[FORCE * LANES :], z.dof[b], force)
+        nodal_forces(w[FORCE * LANES :], z.nodal[b])
+
+
+@kernel
+def subtract_nodal(places, start, entries, nodal, force):  # type: ignore[no-untyped-def]
+    """Subtract the forces of all elements around each node, always in the same order.
+
+    ``entries`` are the places of the first components in the flat ``nodal``, in rows over nodes.
+    """
+    for i in range(len(places)):
+        t, b, n = 0.0, 0.0, 0.0
+        for p in range(start[i], start[i + 1]):
+            k = entries[p]
+            t += nodal[k]
+            b += nodal[k + 8 * LANES]
+            n += nodal[k + 16 * LANES]
+        force[places[i, 0]] -= t
+        force[places[i, 1]] -= b
+        force[places[i, 2]] -= n
 
 
 @kernel
@@ -298,9 +240,9 @@ def _add_energy(sums, stress, weight, G4):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def elastic_energy(x, z, G, K):  # type: ignore[no-untyped-def]
+def elastic_energy(x, z, G, K, w):  # type: ignore[no-untyped-def]
     """Return the elastic energy, J, of all blocks ``z`` at the positions ``x`` of the last update."""
-    w, sums = z.scratch, z.scratch[FORCE * LANES : (FORCE + 1) * LANES]
+    sums = w[FORCE * LANES : (FORCE + 1) * LANES]
     sums[:] = 0.0
     for b in range(z.dof.shape[0]):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])

@@ -119,7 +119,7 @@ class Column:
         self.pots = Dashpots(held, damping[held], inverse[held])
         self.model = SimpleNamespace(
             forces=[self.block],
-            aside=0,
+            parts=self.block.parts,
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
             hanging=Hanging.of([(mesh.tie, places)]),
@@ -183,6 +183,6 @@ def test_dashpots_never_add_energy_however_long_the_step():
 def test_weight_and_its_potential():
     weight = Weight(np.array([-3.0, 0.0, -4.0]), np.zeros(3))
     state = shapes.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))
-    weight.add_force(state)
+    weight.collect(state)
     assert state.force == pytest.approx([-3.0, 0.0, -4.0, 0.0])
     assert weight.accounts(state)["gravity"] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)

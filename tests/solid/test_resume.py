@@ -101,7 +101,7 @@ WORK_SPACE = {
         "ElasticNose.d",
         "ElasticNose.y",
     ),
-    *("ElasticBlock.d", "ElasticBlock.y", "Blocks.pressure", "Blocks.scratch", "State._beside"),
+    *("ElasticBlock.d", "ElasticBlock.y", "Blocks.pressure", "Blocks.nodal", "YieldingZone.room"),
     *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner")),
     *("SurfaceContact.normals", "HistoryWriter._due", "FieldWriter._begun", "FieldWriter._shapes"),
 }

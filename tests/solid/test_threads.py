@@ -23,7 +23,7 @@ def test_threads_do_not_change_a_bit():
     alone, one = _after(300, None)
     with ThreadPoolExecutor(1) as helper:
         shared, two = _after(300, helper)
-    assert {force.body for force in alone.forces[-alone.aside :]} == {"barrier"} and alone.book.touching
+    assert len(alone.parts) > len(alone.forces) and alone.book.touching
     assert all(zone.plastic_strain().max() > 0 for zone in alone.zones)
     for name in ("x", "v", "force"):
         assert np.array_equal(getattr(one, name), getattr(two, name)), name

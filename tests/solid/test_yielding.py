@@ -9,8 +9,9 @@ import solid_shapes as shapes
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
 from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
 from fem_impact.solid.hexmodes import LANES, dummy_element
+from fem_impact.solid.items import add_force
+from fem_impact.solid.plastic_return import RETURN_ROWS, _hardened_increment, return_map
 from fem_impact.solid.yielding import YieldingZone
-from fem_impact.solid.yielding_kernel import _hardened_increment
 
 E, NU = shapes.E, shapes.NU
 LAME, G = lame_constants(E, NU)
@@ -43,7 +44,7 @@ class Rig:
         self.state.v[: step.size] = step / DT
         self.state.x[: step.size] += step
         self.state.force[:] = 0.0
-        self.zone.add_force(self.state)
+        add_force(self.zone, self.state)
         now = -self.state.force[self.places]
         self.work += 0.5 * float(((self.force + now) * step.reshape(-1, 3)).sum())
         self.force = now
@@ -204,6 +205,28 @@ def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over):
     dp, new, slow = _hardened_increment(q, flow, strain, 3 * G, law, rate, dt)
     assert new == pytest.approx(q - 3 * G * dp, rel=1e-10)
     assert new == pytest.approx(slow * (1 + 0.022 * max(np.log(dp / dt), 0.0)), rel=1e-10)
+
+
+@pytest.mark.parametrize("strain", [0.0, 0.02, 1.0])
+def test_lanes_together_return_like_one_alone(strain):
+    """Elastic, slow, usual and far trials side by side; the mean stress does the work of the increment."""
+    law, rate, dt = np.array([320e6, 640.0, 0.1]), np.array([0.022, 1.0]), 2.5e-8
+    yield_stress = law[0] * (1 + law[1] * strain) ** law[2]
+    q = yield_stress * (1 + np.array([-0.5, -1e-12, *np.logspace(-12, 0, LANES - 2)]))
+    stress, rotated = np.zeros((6, LANES)), np.zeros((6, LANES))
+    stress[3], rotated[3] = q / np.sqrt(3), 0.9 * q / np.sqrt(3)  # shear
+    flow, strains, work = np.full(LANES, yield_stress), np.full(LANES, strain), np.zeros(LANES)
+    room, weight = np.zeros(RETURN_ROWS * LANES), np.full(LANES, 2e-12)
+    flat = stress.ravel()
+    return_map(room, q**2, rotated.ravel(), flat, weight, flow, strains, work, 3 * G, law, rate, dt)
+    for l in range(LANES):
+        alone = 0.0, q[l], yield_stress
+        if l > 1:
+            alone = _hardened_increment(q[l], yield_stress, strain, 3 * G, law, rate, dt)
+        assert strains[l] - strain == pytest.approx(alone[0], rel=1e-9, abs=4e-16)
+        assert flat[3 * LANES + l] * np.sqrt(3) == pytest.approx(alone[1], rel=1e-12)
+        assert flow[l] == pytest.approx(alone[2], rel=1e-12)
+        assert work[l] == pytest.approx(0.5 * (alone[1] + 0.9 * q[l]) * alone[0] * 2e-12, rel=1e-9)
 
 
 def test_below_the_slowest_rate_the_factor_is_one():

@@ -1,0 +1,206 @@
+"""Return of the trial stress to the flow stress, for one Gauss point of a block of elements.
+
+Points that flow as most do go together, lane beside lane, in plain arithmetic that the compiler turns into
+vectors; the few others go one by one.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+import numpy as np
+
+from fem_impact.solid.hexmodes import LANES
+from fem_impact.solid.kernels import inlined, kernel
+
+SMALL = 0.01  # growth of the flow stress' base in one step up to which a few terms of its power are exact
+# scratch rows: 1 for lanes that go together, trial stress, growth, unknown and its last change, increment,
+# new over trial stress, stress before the increment along the trial stress
+TOGETHER, SIZE, GROWTH, UNKNOWN, CHANGE, GAIN, SHARE, ALONG, RETURN_ROWS = 0, 1, 2, 3, 4, 5, 6, 7, 8
+CLOSE = 1e-4  # change of the unknown after which one more term of its exponential is exact to 1e-12
+LN2 = 0.6931471805599453
+FEW, MOST = 8, 60  # steps of the iteration of lanes together, and of one
+
+
+@inlined
+def _series(d, n):  # type: ignore[no-untyped-def]
+    """Return (1 + d)^n for abs(d) up to ``SMALL``."""
+    tail = 1.0 + (n - 4.0) / 5.0 * d * (1.0 + (n - 5.0) / 6.0 * d)
+    return 1.0 + n * d * (
+        1.0 + (n - 1.0) / 2.0 * d * (1.0 + (n - 2.0) / 3.0 * d * (1.0 + (n - 3.0) / 4.0 * d * tail))
+    )
+
+
+@inlined
+def _power(d, n):  # type: ignore[no-untyped-def]
+    """Return (1 + d)^n; the plastic growth of one step is nearly always small."""
+    return _series(d, n) if abs(d) <= SMALL else (1.0 + d) ** n
+
+
+@inlined
+def _exp(u):  # type: ignore[no-untyped-def]
+    """Return e^u, to 1e-13 up to u = 60, in plain arithmetic: no call, so that lanes go together."""
+    y = u / 256.0
+    tail = 1.0 + y / 6.0 * (1.0 + y / 7.0 * (1.0 + y / 8.0 * (1.0 + y / 9.0 * (1.0 + y / 10.0))))
+    z = 1.0 + y * (1.0 + y / 2.0 * (1.0 + y / 3.0 * (1.0 + y / 4.0 * (1.0 + y / 5.0 * tail))))
+    z = z * z
+    z = z * z
+    z = z * z
+    z = z * z
+    z = z * z
+    z = z * z
+    z = z * z
+    return z * z
+
+
+@inlined
+def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def]
+    """Solve q - 3 G dp = sigma(strain + dp) by Newton's method from the safe (left) side."""
+    growth, n = law[1] / (1.0 + law[1] * strain), law[2]
+    dp = (q - flow) / (G3 + n * growth * flow)
+    new = flow
+    for _ in range(20):
+        new = flow * _power(growth * dp, n)
+        miss = q - G3 * dp - new
+        if abs(miss) < 1e-12 * q:
+            break
+        dp += miss / (G3 + n * growth * new / (1.0 + growth * dp))
+    return dp, new
+
+
+@inlined
+def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u), u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
+
+    Returns the increment, the stress and the flow stress at vanishing rate. Below rate_0 dt there is no rate
+    factor. Halley's method in u, in which the miss is a line less an exponential, from the lower of two
+    bounds: all of q - sigma borne by C u, or all by 3 G dp.
+    """
+    slow, growth = rate[1] * dt, law[1] / (1.0 + law[1] * strain)
+    over = q - flow * _power(growth * slow, law[2])
+    if over <= G3 * slow:
+        dp, new = _plastic_increment(q, flow, strain, G3, law)
+        return dp, new, new
+    u, dp = min(over / (rate[0] * flow), np.log(over / (G3 * slow))), slow
+    for _ in range(MOST):
+        dp, factor = slow * np.exp(u), 1.0 + rate[0] * u
+        new = flow * _power(growth * dp, law[2])
+        bent = (G3 + law[2] * growth * new / (1.0 + growth * dp) * factor) * dp
+        steep = bent + new * rate[0]
+        change = (q - G3 * dp - new * factor) / steep
+        change /= 1.0 + 0.5 * change * bent / steep
+        u += change
+        if abs(change) <= CLOSE:
+            dp *= 1.0 + change + 0.5 * change * change
+            break
+    return dp, q - G3 * dp, (q - G3 * dp) / (1.0 + rate[0] * u)
+
+
+@inlined
+def _start(w, trial2, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Say which lanes go together and where they start; return how many they are.
+
+    These are beyond their flow stress and faster than rate_0. The numbers of the others are harmless.
+    """
+    slope, n, C, slow, count = law[1], law[2], rate[0], rate[1] * dt, 0
+    for l in range(LANES):
+        growth, q = slope / (1.0 + slope * strain[l]), sqrt(trial2[l])
+        over = q - flow[l] * _series(growth * slow, n)
+        together = over > G3 * slow
+        w[TOGETHER * LANES + l] = 1.0 if together else 0.0
+        w[SIZE * LANES + l] = q if together else 1.5 * flow[l]
+        w[GROWTH * LANES + l] = growth
+        w[GAIN * LANES + l] = over / (G3 * slow) if together else 1.0
+        count += together
+    bits = w[GAIN * LANES : (GAIN + 1) * LANES].view(np.int64)
+    for l in range(LANES):
+        # the logarithm to .03, straight between powers of two as the number's bits are; then, from where
+        # 3 G dp would bear all, one step of the method, in which no exponential is needed
+        u, dragged = LN2 * (bits[l] * 2.0**-52 - 1022.96), C * flow[l]
+        over = w[SIZE * LANES + l] - flow[l]
+        steep = over + dragged
+        change = -dragged * u / steep
+        u += change / (1.0 + 0.5 * change * over / steep)
+        w[UNKNOWN * LANES + l] = max(0.0, min(u, over / dragged))
+    return count
+
+
+@inlined
+def _improve(w, flow, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Make one step of `_hardened_increment` in all lanes; return how many have still to go on."""
+    n, C, slow, count = law[2], rate[0], rate[1] * dt, 0
+    for l in range(LANES):
+        u, q, growth = w[UNKNOWN * LANES + l], w[SIZE * LANES + l], w[GROWTH * LANES + l]
+        dp, factor = slow * _exp(u), 1.0 + C * u
+        new = flow[l] * _series(growth * dp, n)
+        bent = (G3 + n * growth * new / (1.0 + growth * dp) * factor) * dp
+        steep = bent + new * C
+        change = (q - G3 * dp - new * factor) / steep
+        change /= 1.0 + 0.5 * change * bent / steep
+        w[UNKNOWN * LANES + l] = u + change
+        w[GAIN * LANES + l] = dp * (1.0 + change + 0.5 * change * change)
+        w[CHANGE * LANES + l] = abs(change)
+        count += (w[TOGETHER * LANES + l] > 0.0) & (abs(change) > CLOSE)
+    return count
+
+
+@inlined
+def _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Return the lanes that go together; their trial stress falls to the flow stress."""
+    if not _start(w, trial2, flow, strain, G3, law, rate, dt):
+        return
+    for _ in range(FEW):
+        if not _improve(w, flow, G3, law, rate, dt):
+            break
+    C = rate[0]
+    # loops over few arrays each: the compiler checks every pair of them for overlap, or gives up
+    for l in range(LANES):
+        exact = (w[CHANGE * LANES + l] <= CLOSE) & (w[GROWTH * LANES + l] * w[GAIN * LANES + l] <= SMALL)
+        together = (w[TOGETHER * LANES + l] > 0.0) & exact
+        w[GAIN * LANES + l] = w[GAIN * LANES + l] if together else 0.0
+        new = w[SIZE * LANES + l] - G3 * w[GAIN * LANES + l]
+        flow[l] = new / (1.0 + C * w[UNKNOWN * LANES + l]) if together else flow[l]
+        w[SHARE * LANES + l] = new / w[SIZE * LANES + l]
+    for l in range(LANES):
+        trial2[l] = 0.0 if w[GAIN * LANES + l] > 0.0 else trial2[l]
+        strain[l] += w[GAIN * LANES + l]
+    for l in range(LANES):
+        along = rotated[l] * stress[l] + rotated[LANES + l] * stress[LANES + l]
+        along += rotated[2 * LANES + l] * stress[2 * LANES + l]
+        shear = rotated[3 * LANES + l] * stress[3 * LANES + l]
+        shear += rotated[4 * LANES + l] * stress[4 * LANES + l]
+        shear += rotated[5 * LANES + l] * stress[5 * LANES + l]
+        w[ALONG * LANES + l] = (1.5 * along + 3.0 * shear) / w[SIZE * LANES + l]
+    for l in range(LANES):
+        new = w[SIZE * LANES + l] * w[SHARE * LANES + l]
+        work[l] += 0.5 * (new + w[ALONG * LANES + l]) * w[GAIN * LANES + l] * weight[l]
+    for i in range(6):
+        for l in range(LANES):
+            stress[i * LANES + l] *= w[SHARE * LANES + l]
+
+
+@kernel
+def return_map(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt):  # type: ignore[no-untyped-def]
+    """Bring the lanes of one Gauss point beyond their flow stress back to it; add to the plastic ``work``, J.
+
+    The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate``
+    is None for a material without rate hardening: the compiler then drops that branch.
+    """
+    if rate is not None:
+        _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt)
+    for l in range(LANES):
+        if trial2[l] > flow[l] * flow[l]:
+            q = sqrt(trial2[l])
+            if rate is None:
+                dp, new = _plastic_increment(q, flow[l], strain[l], G3, law)
+                slow = new
+            else:
+                dp, new, slow = _hardened_increment(q, flow[l], strain[l], G3, law, rate, dt)
+            along = 0.0
+            for i in range(6):
+                double = 1.0 if i < 3 else 2.0
+                along += double * rotated[i * LANES + l] * stress[i * LANES + l]
+                stress[i * LANES + l] *= new / q
+            work[l] += 0.5 * (new + 1.5 * along / q) * dp * weight[l]
+            strain[l] += dp
+            flow[l] = slow
