@@ -1,4 +1,4 @@
-"""What vanishing elements would give: measured sets on a self-similar family of meshes, with limits."""
+"""What vanishing elements would give: measured sets on a family of meshes, with limits."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
-# cells over the diameter of the body; every one is split as often, so all meshes of a set are alike
+# cells over the diameter of the body; every one is split as often, so all plates and bodies of a set are
+# alike (the tip's outer cells are not: one ring carries the edge on every mesh)
 ACROSS, LEVELS = (6, 8, 10, 12), 3
 QUICK_ACROSS, QUICK_LEVELS = (6, 8, 10), 2
 DEFAULT = 0.019 / 8 / 2**3  # m, tip of the measured sets at their own accuracy
@@ -43,7 +44,7 @@ QUANTITIES = {
 
 
 def family(scene: Scene, across: Iterable[int], levels: int) -> list[Scene]:
-    """Return the scene on meshes that differ in the size of all cells and in nothing else."""
+    """Return the scene on meshes with these cells across the body, each split as often."""
     plain = replace_all(scene, {"save.frames": 0})
     return [on_mesh(plain, Mesh(cells, levels)) for cells in across]
 
