@@ -60,8 +60,8 @@ def _verdicts(quantities: dict[str, Any], pair: Judged) -> list[str]:
 
 
 def _columns(groups: list[list[Judged]]) -> list[str]:
-    """Return names of settings from cheap to dear, without those that leave an effect out."""
-    kinds = ("rigid", "modal", "mesh", "pair", "numerics")
+    """Return names of settings from cheap to dear, without pairs and those that leave an effect out."""
+    kinds = ("rigid", "modal", "mesh", "numerics")
     named = {one.name: one for settings in groups for one in settings if one.kind in kinds}
     return sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
 
