@@ -42,6 +42,7 @@ GAUSS_PRESSURE = """\
 """
 SPHERE = "tests/verify/test_verify_oblique_sphere.py"
 RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
+HEATING = "tests/heating/test_heating.py"
 UNIT = "        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)\n"
 FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
 MUTANTS = (
@@ -142,6 +143,34 @@ MUTANTS = (
         "share = min(1.0, f * pressed / size)",
         "share = min(0.9, f * pressed / size)",
         f"{SPHERE}::test_the_reversal_of_steel",
+    ),
+    Mutant(
+        "rates that soften: sign of the rate term in the radial return",
+        "fem_impact/solid/yielding_kernel.py",
+        "slow * np.exp(u), 1.0 + rate[0] * u",
+        "slow * np.exp(u), 1.0 - rate[0] * u",
+        f"{YIELDING}::test_the_increment_obeys_its_law_however_far_the_trial_is_out",
+    ),
+    Mutant(
+        "rate hardening by the strain of a step, not by its rate",
+        "fem_impact/solid/yielding_kernel.py",
+        "slow, growth = rate[1] * dt,",
+        "slow, growth = rate[1] * 1e-6,",
+        f"{YIELDING}::test_strip_pulled_at_a_constant_rate",
+    ),
+    Mutant(
+        "flash temperature with twice the Peclet number",
+        "fem_impact/heating.py",
+        "V) * a / (2 * body.diffusivity)",
+        "V) * a / body.diffusivity",
+        f"{HEATING}::test_moving_source_beside_the_exact_one",
+    ),
+    Mutant(
+        "flash temperature as if each body took all the heat",
+        "fem_impact/heating.py",
+        "np.divide(resting * moving, total,",
+        "np.divide(0.5 * total * total, total,",
+        f"{HEATING}::test_a_short_flash_is_shared_by_effusivity",
     ),
 )
 
