@@ -146,17 +146,17 @@ MUTANTS = (
     ),
     Mutant(
         "rates that soften: sign of the rate term in the radial return",
-        "fem_impact/solid/yielding_kernel.py",
+        "fem_impact/solid/plastic_return.py",
         "slow * np.exp(u), 1.0 + rate[0] * u",
         "slow * np.exp(u), 1.0 - rate[0] * u",
         f"{YIELDING}::test_the_increment_obeys_its_law_however_far_the_trial_is_out",
     ),
     Mutant(
-        "rate hardening by the strain of a step, not by its rate",
-        "fem_impact/solid/yielding_kernel.py",
-        "slow, growth = rate[1] * dt,",
-        "slow, growth = rate[1] * 1e-6,",
-        f"{YIELDING}::test_strip_pulled_at_a_constant_rate",
+        "rate hardening by the strain of a step, not by its rate, eight lanes together",
+        "fem_impact/solid/plastic_return.py",
+        "n, C, slow, count = law[2], rate[0], rate[1] * dt, 0",
+        "n, C, slow, count = law[2], rate[0], rate[1] * 1e-6, 0",
+        f"{YIELDING}::test_lanes_together_return_like_one_alone",
     ),
     Mutant(
         "flash temperature with twice the Peclet number",

@@ -55,6 +55,12 @@ DESIGNED: Mapping[str, Mapping[str, Any]] = {
         "barrier.material.E": "10000 GPa",
         **_yield("barrier", 90000.0),
     },
+    "plastic-rod": {
+        "projectile.material.E": "3 GPa",
+        "projectile.material.nu": 0.35,
+        "projectile.material.rho": "1180 kg/m3",
+        **_yield("projectile", 70.0),
+    },
     "stub-on-lead": {"projectile.length": "30 mm", **_speed(0.2), **_yield("barrier", 10.0)},
     "hard-gentle": {**_speed(0.05), **_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
 }

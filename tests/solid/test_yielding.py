@@ -204,6 +204,7 @@ def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over):
     q, rate = flow * (1 + over), np.array([0.022, 1.0])
     dp, new, slow = _hardened_increment(q, flow, strain, 3 * G, law, rate, dt)
     assert new == pytest.approx(q - 3 * G * dp, rel=1e-10)
+    assert slow == pytest.approx(law[0] * (1 + law[1] * (strain + dp)) ** law[2], rel=1e-10)
     assert new == pytest.approx(slow * (1 + 0.022 * max(np.log(dp / dt), 0.0)), rel=1e-10)
 
 
