@@ -48,7 +48,7 @@ class Options(argparse.Namespace):
     readme: str = ""
     quick: bool = False
     workers: int | None = None
-    threads: int = 1
+    threads: int | None = None
     scheduler: str = ""
     target: str = ""
     budget: str = ""
@@ -132,7 +132,12 @@ def _add_run(commands: Commands) -> None:
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
-    parser.add_argument("--threads", type=int, choices=[1, 2], default=1, help="threads (default: 1)")
+    parser.add_argument(
+        "--threads",
+        type=int,
+        choices=[1, 2],
+        help="threads (default: 2 where a core is free, 1 with a target; not a bit changes)",
+    )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(
         "--checkpoint",

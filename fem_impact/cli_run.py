@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,7 +23,8 @@ __all__ = ["run"]
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
-    _say_plan(scene, options)
+    threads = options.threads or _threads(scene)
+    _say_plan(scene, options, threads)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.simulate import simulate
 
@@ -35,7 +37,7 @@ def run(options: Options) -> int:
             progress=meter,
             resume=options.resume,
             checkpoint_s=options.checkpoint,
-            threads=options.threads,
+            threads=threads,
         )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None
@@ -48,13 +50,19 @@ def run(options: Options) -> int:
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
-def _say_plan(scene: Scene, options: Options) -> None:
+def _threads(scene: Scene) -> int:
+    """Return 2 where a second core has been free; a target's plan must not depend on who else computes."""
+    spare = (os.cpu_count() or 1) - os.getloadavg()[0]
+    return 2 if scene.accuracy.target is None and spare >= 1 else 1
+
+
+def _say_plan(scene: Scene, options: Options, threads: int) -> None:
     """Before the work: what the measured costs chose for the error that the scene allows."""
     if scene.accuracy.target is None:
         return
     from fem_impact.cost import plan
 
-    sentence = plan(scene, options.fidelity or None, options.threads).sentence
+    sentence = plan(scene, options.fidelity or None, threads).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

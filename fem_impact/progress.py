@@ -15,6 +15,7 @@ __all__ = [
     "Progress",
     "TerminalMeter",
     "clock_text",
+    "compiling",
     "describe",
     "meter_for",
 ]
@@ -34,6 +35,11 @@ class Progress:
     contact: str
     eta_s: float | None = None
     note: str = ""
+
+
+def compiling(end_time_s: float, seconds: int) -> Progress:
+    """Return what a run tells before it compiles for so many seconds."""
+    return Progress(0.0, end_time_s, 0, 0.0, f"compiling the kernels, once, about {seconds} s")
 
 
 @dataclass(frozen=True, slots=True)

@@ -127,7 +127,7 @@ def _compute(
     if fidelity == "modal":
         from fem_impact import modal
 
-        return modal.reduce(scene, modal.solve(scene))
+        return modal.reduce(scene, modal.solve(scene, progress))
     from fem_impact.reduce import reduce
     from fem_impact.solid.run import solve
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, inf, sin
 
@@ -14,7 +15,9 @@ from fem_impact.contact_law import ContactLaw, contact_law
 from fem_impact.estimates import contact_estimate
 from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
 from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.progress import Progress, compiling
 from fem_impact.scene import Scene
+from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.separation import HORIZON
 
 __all__ = ["ModalResult", "plastic_work", "reach", "solve"]
@@ -22,6 +25,7 @@ __all__ = ["ModalResult", "plastic_work", "reach", "solve"]
 Array = NDArray[np.float64]
 
 STEPS = 1000  # over the estimated contact
+COMPILE = 6  # s, about, once
 FASTEST = 0.1  # of a step, rad of the highest mode
 
 
@@ -63,8 +67,10 @@ class ModalResult:
         return float(self.energies.sum())
 
 
-def solve(scene: Scene) -> ModalResult:
-    """Compute an impact; the modes of a new rod are computed first."""
+def solve(scene: Scene, progress: Callable[[Progress], None] | None = None) -> ModalResult:
+    """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles."""
+    if progress is not None and not compiled_before("march.drop"):
+        progress(compiling(scene.accuracy.max_time, COMPILE))
     rod, law = modal_rod(scene), contact_law(scene)
     dt = contact_estimate(scene).duration / STEPS
     dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt

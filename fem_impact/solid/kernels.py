@@ -41,9 +41,9 @@ def _keep_compiled_code() -> None:
 _keep_compiled_code()
 
 
-def compiled_before() -> bool:
-    """Return whether compiled kernels of an earlier run of these sources lie in the cache."""
-    return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob("yielding_kernel.update-*.nbi"))
+def compiled_before(name: str = "yielding_kernel.update") -> bool:
+    """Return whether a kernel that an earlier run of these sources compiled lies in the cache."""
+    return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob(f"{name}-*.nbi"))
 
 
 def kernel(function: F) -> F:

@@ -15,7 +15,7 @@ import numpy as np
 
 from fem_impact.effects import specify
 from fem_impact.modes import Flight, RigidMotion
-from fem_impact.progress import Progress
+from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL, Checkpoint
 from fem_impact.solid.doubts import doubts
@@ -132,7 +132,7 @@ def solve(
 
 def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch) -> Meter:
     if not compiled_before():
-        progress(Progress(0.0, scene.accuracy.max_time, 0, 0.0, "compiling the kernels, once, about 20 s"))
+        progress(compiling(scene.accuracy.max_time, 20))
     return Meter(progress, watch, model, scene.accuracy.max_time, scene.id)
 
 
