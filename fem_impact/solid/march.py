@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from concurrent.futures import Executor
+from collections.abc import Sequence
 from typing import Protocol
 
-from fem_impact.solid.items import Part
+from fem_impact.solid.helper import Helper, share
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -36,25 +35,15 @@ def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
         y[i] += a * b[i]
 
 
-def _work(waiting: Iterator[Part], state: State) -> None:
-    for part in waiting:
-        part(state)
-
-
-def evaluate(model: Model, state: State, helper: Executor | None = None) -> None:
+def evaluate(model: Model, state: State, helper: Helper | None = None) -> None:
     """Set the forces of the present positions.
 
-    A ``helper`` takes from the parts that wait as long as there are any. What they find is added in one
-    order, so results are the same to the last bit whoever did them.
+    A ``helper`` shares the work. What the parts find is added in one order, body by body, so results are the
+    same to the last bit whoever did them.
     """
-    waiting = iter(model.parts)
-    done = helper.submit(_work, waiting, state) if helper else None
-    _work(waiting, state)
-    if done:
-        done.result()
+    share(model.parts, state, helper)
     state.force[:] = 0.0
-    for item in model.forces:
-        item.collect(state)
+    share(model.sums, state, helper)
     model.hanging.collect(state.force)
 
 
@@ -71,7 +60,7 @@ def advance(model: Model, state: State) -> None:
     state.step += 1
 
 
-def march(model: Model, state: State, observers: Sequence[Observer], helper: Executor | None = None) -> None:
+def march(model: Model, state: State, observers: Sequence[Observer], helper: Helper | None = None) -> None:
     """Step until an observer says stop.
 
     Velocities stand half a step behind positions, so the first kick from the given start velocity is

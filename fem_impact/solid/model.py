@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +26,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+def _collect(forces: Sequence[Force], state: State) -> None:
+    for force in forces:
+        force.collect(state)
+
+
 @dataclass(frozen=True, slots=True)
 class Model:
     """Everything that does not change during a run.
@@ -37,6 +43,7 @@ class Model:
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
     parts : the work of all forces in parts that threads may share, the largest first
+    sums : what adds the parts' forces up, one for each body, which share no unknowns
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
@@ -60,10 +67,13 @@ class Model:
     steps: Mapping[str, float]
     start: tuple[Array, Array]
     parts: Sequence[Part] = field(init=False)
+    sums: Sequence[Part] = field(init=False)
 
     def __post_init__(self) -> None:
         whole_first = sorted((force.parts for force in self.forces), key=len)
         object.__setattr__(self, "parts", [part for parts in whole_first for part in parts])
+        bodies = [[force for force in self.forces if force.body == body] for body in ("rod", "barrier")]
+        object.__setattr__(self, "sums", [partial(_collect, forces) for forces in bodies if forces])
 
     @property
     def step(self) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import resource
 import sys
 from collections.abc import Callable
-from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -19,6 +18,7 @@ from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL, Checkpoint
 from fem_impact.solid.doubts import doubts
+from fem_impact.solid.helper import Helper
 from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -166,8 +166,8 @@ def _result(
     return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
 
-def _helper(threads: int) -> AbstractContextManager[Executor | None]:
-    return ThreadPoolExecutor(1) if threads > 1 else nullcontext()
+def _helper(threads: int) -> AbstractContextManager[Helper | None]:
+    return Helper() if threads > 1 else nullcontext()
 
 
 def _warm_up(model: Model) -> None:

@@ -177,3 +177,11 @@ def test_energy_and_momentum(v_n, v_t, omega, f, frequency, along, plastic):
     gained = 0.178 * np.array([found.V_n + v_n, found.V_t + v_t])
     assert impulse == pytest.approx(gained, abs=3e-3 * abs(gained).max())
     assert abs(impulse[1]) <= f * impulse[0] * (1 + 1e-9) + 1e-12
+
+
+@pytest.mark.parametrize("before", [True, False])
+def test_a_first_run_says_that_it_compiles(monkeypatch, before):
+    monkeypatch.setattr("fem_impact.modal.impact.compiled_before", lambda name: before)
+    said = []
+    solve(load("t5b"), said.append)
+    assert ["compiling" in progress.contact for progress in said] == [True] * (not before)
