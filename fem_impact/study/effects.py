@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.effects import Harm, choices, everything
+from fem_impact.effects import EFFECTS, Harm, choices, everything
+from fem_impact.effects.strike import Strike, strike
 from fem_impact.estimates import widest_tip_size
 from fem_impact.outcome import Outcome
 from fem_impact.output.tables import Cell
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from fem_impact.progress import Meter
     from fem_impact.scene import Scene
 
-__all__ = ["DESIGNED", "conclude", "cost_row", "plan", "row"]
+__all__ = ["DESIGNED", "conclude", "cost_row", "expected_row", "plan", "row"]
 
 TIP = 0.8e-3  # m; coarse: both runs of a pair share it
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
@@ -92,7 +93,12 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
         for change, effects in _changes(scene)
         if isinstance(run := results[f"{name}{change}"], Outcome)
     ]
-    return publish(_paper(rows, costs), request, results)
+    beside = [
+        expected_row(name, whole, strike(everything(scenes[name])))
+        for name, (_, whole) in pairs.items()
+        if isinstance(whole, Outcome)
+    ]
+    return publish(_paper(rows, costs, beside), request, results)
 
 
 def row(name: str, auto: Mapping[str, Any], whole: Mapping[str, Any]) -> list[Cell]:
@@ -107,10 +113,21 @@ def row(name: str, auto: Mapping[str, Any], whole: Mapping[str, Any]) -> list[Ce
 
 
 def told(scene: Scene, effects: Sequence[str]) -> Harm:
-    """Return what the catalogue expects of a change of one effect; of another barrier, that of this one."""
-    barrier = next(name for name in scene.active if name in BARRIERS)
+    """Return the changes of e and E_vib that are expected of a change of one effect.
+
+    They are those of two strikes; of an effect that a strike does not hold, their sizes alone.
+    """
     changed = effects[-1].removeprefix("-")
-    return next(c.harm for c in choices(scene) if c.name == (barrier if changed in BARRIERS else changed))
+    if EFFECTS[changed].harm and changed not in BARRIERS:
+        return next(choice.harm for choice in choices(scene) if choice.name == changed)
+    before, after = strike(scene), strike(replace(scene, effects=tuple(effects)))
+    return Harm(after.e - before.e, after.E_vib - before.E_vib)
+
+
+def expected_row(name: str, whole: Mapping[str, Any], told: Strike) -> list[Cell]:
+    """Return e and E_vib of a run beside those of a strike; vibration as found over expected."""
+    vib = whole["E_vib_over_E_0"]
+    return [name, whole["e_edge"], told.e, vib, told.E_vib, vib / told.E_vib if told.E_vib else None]
 
 
 def cost_row(name: str, run: Mapping[str, Any], base: Mapping[str, Any], harm: Harm) -> list[Cell]:
@@ -155,7 +172,13 @@ def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
     return found
 
 
-def _paper(rows: list[list[Cell]], costs: list[list[Cell]]) -> Paper:
+def _within(factor: float, beside: list[list[Cell]]) -> int:
+    """Return how many scenes vibrate within a factor of what was expected."""
+    ratios = [line[-1] for line in beside if isinstance(line[-1], float)]
+    return sum(1 / factor <= ratio <= factor for ratio in ratios)
+
+
+def _paper(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Cell]]) -> Paper:
     beyond = [str(line[0]) for line in rows if line[-1] == "beyond"]
     cheaper = [line for line in rows if isinstance(line[6], float) and line[6] < 1]
     columns = (
@@ -170,6 +193,8 @@ def _paper(rows: list[list[Cell]], costs: list[list[Cell]]) -> Paper:
             f"{len(rows) - len(beyond)} of {len(rows)} scenes agree with everything on within {limits}.",
             f"{len(cheaper)} of {len(rows)} take less processor time.",
             *([f"Beyond: {', '.join(beyond)}."] if beyond else []),
+            f"E_vib is met by a quick strike within a factor of two in {_within(2, beside)}, of three in "
+            f"{_within(3, beside)} of {len(beside)} scenes.",
         ],
         sheets=[
             Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", columns, rows),
@@ -182,6 +207,12 @@ def _paper(rows: list[list[Cell]], costs: list[list[Cell]]) -> Paper:
                     *("change of e", "e expected", "change of E_vib/E_0", "E_vib/E_0 expected"),
                 ),
                 costs,
+            ),
+            Sheet(
+                "expected",
+                "Everything on beside the quick strike that `check` tells changes from.",
+                ("scene", "e", "e expected", "E_vib/E_0", "E_vib/E_0 expected", "found over expected"),
+                beside,
             ),
         ],
         assumptions=[

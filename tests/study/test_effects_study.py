@@ -6,10 +6,11 @@ from math import isclose
 import pytest
 
 from fem_impact.effects import Harm, choices, everything
+from fem_impact.effects.strike import Strike, strike
 from fem_impact.scene import BARRIERS, MEASURED_SETS, load
 from fem_impact.simulate import simulate
 from fem_impact.study import Request
-from fem_impact.study.effects import COSTED, DESIGNED, cost_row, plan, row, told
+from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_row, plan, row, told
 
 RUN = {
     "e_edge": 0.4,
@@ -68,9 +69,17 @@ def test_costs_are_ratios():
 def test_a_change_stands_beside_what_was_expected_of_it():
     scene = replace(load("t5b"), effects=("auto",))
     harm = {choice.name: choice.harm for choice in choices(scene)}
-    assert told(scene, ("auto", "-friction")) == harm["friction"]
-    assert told(scene, ("auto", "gravity")) == harm["gravity"]
-    assert told(scene, ("auto", "barrier-rigid")) == harm["barrier-elastoplastic"]
+    slippery, plane = (replace(scene, effects=("auto", word)) for word in ("-friction", "barrier-rigid"))
+    base = strike(scene)
+    assert told(scene, slippery.effects).e == strike(slippery).e - base.e
+    assert told(scene, plane.effects).E_vib == strike(plane).E_vib - base.E_vib
+    assert abs(told(scene, slippery.effects).e) == pytest.approx(harm["friction"].e, rel=0.05)
+    assert told(scene, ("auto", "radiation")) == harm["radiation"]
+
+
+def test_vibration_stands_beside_what_was_expected():
+    assert expected_row("x", RUN, Strike(0.5, 1e-3, 9.0)) == ["x", 0.4, 0.5, 2e-3, 1e-3, 2.0]
+    assert expected_row("x", RUN, Strike(0.5, 0.0, 9.0))[-1] is None
 
 
 def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
