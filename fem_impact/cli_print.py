@@ -45,6 +45,7 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     lines += [_motion(record, *row) for row in (restitution, *_MOTION)]
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
+    lines += ["", _share(record, "friction, plate's top 0.1 mm", "W_skin_over_E_0")]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
     lines += _accuracy(record)
     lines += ["", *(f"note: {sentence}" for sentence in _sentences(record))]

@@ -101,6 +101,7 @@ def _energies(result: SolidResult, values: Values) -> Values:
         "E_vib": vibration,
         "E_vib_floor": floor,
         "W_friction": a["friction"],
+        "W_skin": a["friction"] + result.skin_share * a["plastic_barrier"],
         "E_plastic_rod": a["plastic_rod"],
         "E_plastic_barrier": a["plastic_barrier"],
         "E_locked_rod": a["strain_rod"] - result.flight.strain,

@@ -18,6 +18,7 @@ REASONS = {
     "E_locked_rod_over_E_0": "a local contact law knows no residual stress",
     "E_locked_barrier_over_E_0": "a local contact law knows no residual stress",
     "W_radiated_over_E_0": "a local contact law sends no waves into the barrier",
+    "W_skin_over_E_0": "a local contact law does not say how deep it flows",
     "W_closing_over_E_0": "no contact nodes close",
     "effect_choices": "effects are weighed for the finite elements; `fem-impact check` lists them",
     "W_damping_over_E_0": "the reduced model has no material damping",

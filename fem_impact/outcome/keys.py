@@ -7,7 +7,7 @@ from typing import Literal
 
 __all__ = ["ARMS", "KEYS", "SCHEMA_VERSION", "Key", "Kind"]
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 """Raised whenever a key is renamed, removed or changes its meaning; added keys raise it too."""
 
 ARMS = ("paper", "edge", "impulse")
@@ -131,6 +131,7 @@ ENERGY = (
     _fraction("E_vib_floor", "Numerical floor under which a vibration energy means nothing"),
     Key("E_vib_below_floor", "flag", "", "True when E_vib is below its floor.", nullable=True),
     _fraction("W_friction", "Work turned to heat by friction at the contact"),
+    _fraction("W_skin", "Friction work and plastic work of the barrier down to 0.1 mm below its surface"),
     _fraction("E_plastic_rod", "Plastic work in the rod"),
     _fraction("E_plastic_barrier", "Plastic work in the barrier"),
     _fraction("E_locked_rod", "Strain energy locked in by residual stress in the rod"),

@@ -38,8 +38,8 @@ MOTION = (
 )  # fmt: skip
 ENERGY = (
     "E_0_J", "E_r_over_E_0", "E_vib_over_E_0", "E_vib_check_over_E_0", "E_vib_floor_over_E_0",
-    "W_friction_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0", "E_locked_rod_over_E_0",
-    "E_locked_barrier_over_E_0", "W_radiated_over_E_0", "W_closing_over_E_0", "W_damping_over_E_0",
+    "W_friction_over_E_0", "W_skin_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0",
+    "E_locked_rod_over_E_0", "E_locked_barrier_over_E_0", "W_radiated_over_E_0", "W_closing_over_E_0", "W_damping_over_E_0",
     "E_hourglass_over_E_0", "residual_over_E_0",
 )  # fmt: skip
 COST = (
@@ -92,7 +92,7 @@ def _heat(outcome: Outcome) -> Markup:
     """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
     if outcome["flash_bound_K"] is None:
         return Markup("")
-    shares = ("W_friction_over_E_0", "E_lt_edge_over_E_0", "E_lt_less_vibration_over_E_0")
+    shares = ("W_friction_over_E_0", "W_skin_over_E_0", "E_lt_edge_over_E_0", "E_lt_less_vibration_over_E_0")
     told = key_table(outcome, (*shares, *(key.name for key in HEATING[:-1])))
     bound = paragraph("The bound for a safety case holds under these assumptions:")
     return join([told, bound, bullets(ASSUMPTIONS)])

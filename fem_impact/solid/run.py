@@ -25,6 +25,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.observers import Meter, Watch
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.shares import run_time_shares
+from fem_impact.solid.skinwork import skin_share
 from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
 from fem_impact.sources import stamp
@@ -54,6 +55,7 @@ class SolidResult:
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
+    skin_share : share of the barrier's plastic work that lies right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     vibration_check : twice the mean vibrational kinetic energy over a half-period, J, or None
     heat : the contact's patch and friction power over time, or None
@@ -70,6 +72,7 @@ class SolidResult:
     worst: float
     motion: RigidMotion
     flight: Flight
+    skin_share: float
     peak_force: float
     vibration_check: float | None
     finished: bool
@@ -152,6 +155,7 @@ def _result(
         worst=ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
+        skin_share=skin_share(model),
         peak_force=looking.peak.largest,
         vibration_check=None,
         finished=stop.finished,

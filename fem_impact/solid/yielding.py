@@ -105,6 +105,11 @@ class YieldingZone:
         """Return the mean equivalent plastic strain (count,) of each element."""
         return np.asarray(self.blocks.strain.mean(axis=1).ravel()[: self.count])
 
+    def spent(self) -> tuple[Array, Array]:
+        """Return volume times plastic strain (count, 8), m3, of Gauss points, and plastic work (count,), J."""
+        strain = (self.blocks.weight * self.blocks.strain).transpose(0, 2, 1).reshape(-1, 8)
+        return strain[: self.count], self.blocks.work.ravel()[: self.count]
+
     def mises(self) -> Array:
         """Return the mean von Mises stress (count,), Pa, of each element."""
         s = self.blocks.stress.reshape(-1, 8, 6, LANES)

@@ -38,6 +38,7 @@ QUANTITIES = {
     "E_r/E_0": "E_r_over_E_0",
     "vibration/E_0": "E_vib_over_E_0",
     "friction/E_0": "W_friction_over_E_0",
+    "friction and skin/E_0": "W_skin_over_E_0",
     "plastic rod/E_0": "E_plastic_rod_over_E_0",
     "plastic barrier/E_0": "E_plastic_barrier_over_E_0",
 }

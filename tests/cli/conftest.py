@@ -16,7 +16,7 @@ def an_outcome(**changed):
     """Return a complete outcome; what a test does not set is a plausible value of its kind."""
     kinds = {"text": "text", "texts": [], "flag": True, "count": 3, "number": 0.25}
     values = {key.name: kinds[key.kind] for key in KEYS if key.kind in kinds and not key.nullable}
-    values |= {"versions": {}, "contacts": [], "schema_version": 1, "finished": True, "fidelity": "solid"}
+    values |= {"versions": {}, "contacts": [], "schema_version": 2, "finished": True, "fidelity": "solid"}
     values |= {"scene_id": "t5b", "E_vib_below_floor": False, "E_0_J": 0.39, "mu": 0.5, "bands": {"mu": 0.01}}
     values |= changed
     unknown = {

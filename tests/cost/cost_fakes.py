@@ -17,7 +17,7 @@ def run(scene, fidelity="solid", out=None, progress=None, resume=False, checkpoi
     values |= {
         "versions": {},
         "contacts": [],
-        "schema_version": 1,
+        "schema_version": 2,
         "scene_id": scene.id,
         "fidelity": fidelity,
     }

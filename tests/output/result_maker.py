@@ -147,7 +147,7 @@ NUMBERS = {
     "gamma_per_m0_3815": 19.1, "v_n_m_per_s": -1.485, "v_t_m_per_s": -1.485, "V_n_m_per_s": 0.312,
     "V_t_m_per_s": -0.412, "Omega_rad_per_s": 5.1, "mu": 0.597, "mu_c": 0.665, "E_0_J": E_0,
     "E_r_over_E_0": 0.06, "E_vib_over_E_0": 0.0004, "E_vib_check_over_E_0": 0.00043,
-    "E_vib_floor_over_E_0": 0.00002, "W_friction_over_E_0": 0.29, "E_plastic_rod_over_E_0": 0.03,
+    "E_vib_floor_over_E_0": 0.00002, "W_friction_over_E_0": 0.29, "W_skin_over_E_0": 0.41, "E_plastic_rod_over_E_0": 0.03,
     "E_plastic_barrier_over_E_0": 0.57, "E_locked_rod_over_E_0": 0.021, "E_locked_barrier_over_E_0": 0.0236,
     "W_radiated_over_E_0": 0.004, "W_closing_over_E_0": 0.001, "residual_over_E_0": 2e-6,
     "marker_V_n_m_per_s": 0.315, "marker_V_t_m_per_s": -0.409, "marker_Omega_rad_per_s": 5.2,
@@ -172,7 +172,7 @@ def values(**changes):
     """Every key of a whole, valid record."""
     whole = {key.name: _default(key) for key in KEYS} | NUMBERS
     whole |= {
-        "schema_version": 1, "fidelity": "solid", "scene_id": "t5b",
+        "schema_version": 2, "fidelity": "solid", "scene_id": "t5b",
         "created_utc": "2026-01-05T10:20:30+00:00",
         "scene_title": "0.08 m rod, tip B, machined plate, 45 deg, 2.1 m/s", "scene_digest": "ab" * 32,
         "versions": {"python": "3.11.7", "numpy": "2.4.6", "fem-impact": "0.1.0"}, "finished": True,

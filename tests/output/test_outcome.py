@@ -56,7 +56,7 @@ def test_replace_drops_the_reason_of_a_known_key(record):
         ({"steps": -1}, r'"steps" = -1 must be a whole number'),
         ({"finished": None}, r'"finished" = None must not be null'),
         ({"fidelity": "liquid"}, r'"fidelity" = liquid must be one of rigid, modal, solid'),
-        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 1'),
+        ({"schema_version": 99}, r'"schema_version" = 99 is not the version 2'),
         ({"muu": 1.0}, r'unknown key "muu". Did you mean "mu"'),
         ({"effects": "friction"}, r'"effects" = friction must be a list of texts'),
         ({"contacts": [{"start_s": 0.0}]}, r"entries of exactly start_s, end_s"),

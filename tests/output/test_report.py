@@ -209,7 +209,7 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, "\"schema\" = 'other/2' is not"),
         ({"rows": "none"}, '"rows" must be a list'),
-        ({"rows": [{"schema_version": 1}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 2}]}, r"rows\[0\]: key .* is missing"),
         ({"comparison": [{"set": "t2"}]}, r'comparison\[0\] lacks the key "quantity"'),
     ],
 )

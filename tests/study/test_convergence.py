@@ -73,7 +73,7 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
     assert (
         "0.3802 ± 0.025 at 0.198 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
     )
-    assert "Two meshes, extrapolated: 24 of 24 bands hold the limit of all." in found.text
+    assert "Two meshes, extrapolated: 27 of 27 bands hold the limit of all." in found.text
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
     assert (tmp_path / "figures" / "convergence.svg").stat().st_size > 1000
     assert json.loads((tmp_path / "study.json").read_text())["sheets"][0]["rows"]
