@@ -30,7 +30,7 @@ def skin_share(model: Model) -> float:
 def _share_above(zone: YieldingZone, nodes: Array) -> float:
     """Return the share above `DEPTH` of elements whose nodes lie ``nodes`` (m, 8), m, under the surface.
 
-    Within an element work divides as plastic strain does; that of a Gauss point is spread over half the height.
+    Within an element work divides as plastic strain does; a Gauss point's is spread over half the height.
     """
     top, bottom = nodes.min(axis=1)[:, None], nodes.max(axis=1)[:, None]
     middle = 0.5 * (top + bottom)

@@ -106,7 +106,7 @@ class YieldingZone:
         return np.asarray(self.blocks.strain.mean(axis=1).ravel()[: self.count])
 
     def spent(self) -> tuple[Array, Array]:
-        """Return volume times plastic strain (count, 8), m3, of Gauss points, and plastic work (count,), J."""
+        """Return volume times plastic strain (count, 8), m3, at Gauss points; plastic work (count,), J."""
         strain = (self.blocks.weight * self.blocks.strain).transpose(0, 2, 1).reshape(-1, 8)
         return strain[: self.count], self.blocks.work.ravel()[: self.count]
 
