@@ -27,6 +27,7 @@ __all__ = ["PROBLEM"]
 Array = NDArray[np.float64]
 
 TOLERANCE = 0.005  # of c0
+JUDGED, SHORT = 0.2 + 1e-9, "waves so short are up to 1 % slow even with 24 cells across"
 LONGITUDINAL, FLEXURAL = 2, 0  # components of the axis that move
 
 
@@ -91,7 +92,11 @@ def solve(p: Values) -> Solved:
         for component, (name, speed) in exact.items():
             found = bar.frequency(k, component) / k / c0
             label = f"{name} c/c0 at radius/wavelength {ratio:.3g}"
-            checks.append(Check(label, "1", found, speed, TOLERANCE, "absolute"))
+            checks.append(
+                Check(label, "1", found, speed, TOLERANCE, "absolute")
+                if ratio <= JUDGED
+                else Check.shown(label, "1", found, speed, SHORT)
+            )
     return Solved(tuple(checks), 0, bar.cells)
 
 
@@ -101,8 +106,7 @@ PROBLEM = Problem(
     (
         steel.diameter(),
         *steel.elastic(),
-        # beyond it even 24 cells leave waves up to 1 % slow
-        Parameter("ratio", "largest radius over wavelength", 0.2, 0.01, 0.2),
+        Parameter("ratio", "largest radius over wavelength, judged up to 0.2", 0.2, 0.01, 0.5),
         steel.across(low=8),
         Parameter("aspect", "height of a slice over diameter / across (runs take 1)", 1.0, 0.1, 4.0),
     ),

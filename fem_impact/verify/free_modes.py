@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 import meshes
-from fem_impact.errors import SceneError
 from fem_impact.modes import rod_modes
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.march import march
@@ -133,13 +132,7 @@ def solve(p: Values) -> Solved:
     SceneError
         If the bar is too stubby or too slender.
     """
-    low, high = (share * p["diameter"] for share in SLENDER)
-    if not low <= p["length"] <= high:
-        raise SceneError(
-            f"must be {SLENDER[0]:g} to {SLENDER[1]:g} diameters, here {low:g} to {high:g} m.",
-            key="length",
-            value=p["length"],
-        )
+    steel.slender(p, "diameter", *SLENDER)
     exact = cylinder_frequencies(p["E"], p["nu"], p["rho"], p["length"], p["diameter"] / 2)
     model = bar_of(p)
     checks = _eigen_checks(frequencies(model), exact)

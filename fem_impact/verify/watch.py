@@ -1,4 +1,4 @@
-"""Observers of the verification: contact force and mechanical energy, every step."""
+"""Observers of the verification: contact force and mechanical energy; runs of bodies that yield."""
 
 from __future__ import annotations
 
@@ -6,12 +6,15 @@ from collections.abc import Callable
 
 import numpy as np
 
+from fem_impact.errors import RunError
 from fem_impact.solid.contact.book import IMPULSE_N
 from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+from fem_impact.solid.stepguard import StepGuard
 
-__all__ = ["Force", "Until"]
+__all__ = ["Force", "Until", "follow"]
 
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
@@ -71,3 +74,17 @@ class Until:
         found = self.ledger.sample(state)
         self.most = max(self.most, sum(found[name] for name in MECHANICAL) / self.ledger.start)
         return state.time >= self.end or self.done()
+
+
+def follow(model: Model, state: State, until: Until) -> None:
+    """March a body that yields to its end, the step following its cells.
+
+    Raises
+    ------
+    RunError
+        If a cell folds or is crushed.
+    """
+    guard = StepGuard(model, every=1)
+    march(model, state, [guard, until])
+    if guard.reason:
+        raise RunError(guard.reason)

@@ -14,9 +14,9 @@ import numpy as np
 from calculix import Strike, run
 
 from fem_impact.solid.elements import lumped_mass
-from fem_impact.verify import verify
+from fem_impact.verify import problem, verify
 from fem_impact.verify.bodies import placed
-from fem_impact.verify.square_bar import NU, RHO, E, square_bar
+from fem_impact.verify.square_bar import square_bar
 from fem_impact.verify.tilted_bar import ANGLE, SPEED
 
 END = 3e-4  # s
@@ -24,16 +24,17 @@ END = 3e-4  # s
 
 def main(cells=4, friction=0.0, stiffness=2.6e13, stick=0.1):
     """Write the deck, run it where CalculiX is installed, print both rebounds."""
-    mesh = square_bar(int(cells), 12 * int(cells))
+    p = problem("tilted-bar").values({"cells": cells, "f": friction, "element": 0})
+    mesh, metal = square_bar(p), (p["E"], p["nu"], p["rho"])
     points, end = placed(mesh.points, ANGLE, 1e-7), np.flatnonzero(mesh.points[:, 2] == 0.0)
     velocity = (-SPEED * sin(ANGLE), 0.0, -SPEED * cos(ANGLE))
     contact = (friction, stiffness, stick)
-    found = run(Strike(points, mesh.cells, end, velocity, (E, NU, RHO), *contact, END))
+    found = run(Strike(points, mesh.cells, end, velocity, metal, *contact, END))
     if found is None:
         return
-    mass = np.bincount(mesh.cells.ravel(), lumped_mass(points, mesh.cells, RHO).ravel())
+    mass = np.bincount(mesh.cells.ravel(), lumped_mass(points, mesh.cells, p["rho"]).ravel())
     theirs = mass @ found[1] / mass.sum()
-    ours = verify("tilted-bar", {"cells": cells, "f": friction, "element": 0})
+    ours = verify("tilted-bar", p)
     print(f"CalculiX: V_n {theirs[2]:.4f} m/s, V_t {theirs[0]:.4f} m/s")
     print(*(f"{c.name}: {c.computed:.4f} {c.unit}" for c in ours.checks), sep="\n")
 

@@ -12,6 +12,7 @@ import pytest
 from fem_impact.verify import reference
 from fem_impact.verify.reference.bar import strike
 from fem_impact.verify.reference.beam import bending_modes
+from fem_impact.verify.reference.bricks import Bar, rebound, wall_stress
 from fem_impact.verify.reference.cylinder import cylinder_frequencies
 from fem_impact.verify.reference.hertz import contact_modulus, hertz, radiated_share
 from fem_impact.verify.reference.oblique import oblique_drop, oblique_rod
@@ -24,7 +25,17 @@ from rigid import Projectile
 
 STEEL = (219e9, 0.29, 7850.0)
 RADIUS = 9.5e-3
-FREE = ("__future__", "collections", "dataclasses", "functools", "math", "numpy", "scipy", "skfem")
+FREE = (
+    "__future__",
+    "collections",
+    "dataclasses",
+    "functools",
+    "itertools",
+    "math",
+    "numpy",
+    "scipy",
+    "skfem",
+)
 NAMES = [name for _, name, _ in pkgutil.iter_modules(reference.__path__)]
 
 
@@ -47,6 +58,26 @@ def test_bar():
     found = strike(219e9, 7850.0, pi * RADIUS**2, 0.24, 2.0)
     assert found.force == pytest.approx(23512, abs=0.5)
     assert found.duration == pytest.approx(90.88e-6, abs=5e-9)
+
+
+SQUARE, METAL = (0.019, 0.24), (206e9, 0.29, 7850.0)
+
+
+@pytest.mark.validation
+@pytest.mark.parametrize(
+    ("kind", "printed", "digits"),
+    [("full", 120.576703e6, 1e-8), ("bbar", 120.5744e6, 5e-7), ("incompatible", 120.5780e6, 5e-7)],
+)
+def test_bricks_have_the_wall_stress_of_public_codes(kind, printed, digits):
+    crossing = 2 * 0.24 / sqrt(206e9 / 7850)
+    found = wall_stress(Bar(*SQUARE, (12, 144), *METAL, kind), 3.0, 7e-8, 0.15 * crossing, 0.85 * crossing)
+    assert found == pytest.approx(printed, rel=digits)
+
+
+@pytest.mark.parametrize(("f", "printed"), [(0.0, 1.403), (0.2, 1.91)])
+def test_bricks_on_springs_have_the_rebound_of_public_codes(f, printed):
+    found = rebound(Bar(*SQUARE, (4, 48), *METAL), 20 * pi / 180, 3.0, f, (2.6e13, 0.1), 4e-4)
+    assert found == pytest.approx(printed, rel=0.015)
 
 
 def test_hertz():

@@ -34,7 +34,7 @@ def test_slices_of_the_shortest_bar_are_as_low_as_its_waves_need():
 
 @pytest.mark.parametrize("length", ["47 mm", "0.6 m"])
 def test_a_bar_too_stubby_or_too_slender_is_refused(length):
-    with pytest.raises(SceneError, match=r"2.5 to 30 diameters"):
+    with pytest.raises(SceneError, match=r"2.5 to 30 times the diameter"):
         verify("modes", {"length": length})
 
 

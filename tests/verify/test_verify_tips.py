@@ -2,6 +2,7 @@
 
 import pytest
 
+from fem_impact.errors import SceneError
 from fem_impact.verify import problem, verify
 from fem_impact.verify.bodies import rigid_of
 from fem_impact.verify.spheres import ball_mass, plain_hertz, sphere_model
@@ -43,6 +44,25 @@ def test_the_closing_loss_shrinks_with_the_cells():
     models = [sphere_model({**p, "cells": cells}, touch, 4.0) for cells in (2, 4)]
     coarse, fine = (run_strike(m, touch.duration, touch.duration).closing for m in models)
     assert fine == pytest.approx(0.25 * coarse, rel=0.3)
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "words"),
+    [
+        ("hertz", {"speed": 30.0}, "0.005 to 0.12 of the ball"),
+        ("hertz", {"speed": 1e-3}, "0.005 to 0.12 of the ball"),
+        ("oblique-sphere", {"speed": 100.0}, "0.005 to 0.12 of the ball"),
+        ("sears", {"speed": 50.0}, "Take a lower speed"),
+        ("sears", {"tip_radius": "3 mm"}, "a nose of more than a radius"),
+        ("sears", {"length": "50 mm"}, "3.5 to 100 times the diameter"),
+        ("thornton", {"slowest": 1e-3}, "nothing yields"),
+        ("thornton", {"fastest": 2.0}, "above the slowest"),
+        ("thornton", {"fastest": 100.0}, "not crushed"),
+    ],
+)
+def test_a_contact_that_the_reference_does_not_cover_is_refused(name, change, words):
+    with pytest.raises(SceneError, match=words):
+        verify(name, change)
 
 
 @pytest.mark.validation

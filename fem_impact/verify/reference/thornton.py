@@ -1,6 +1,9 @@
-"""Restitution of an elastic, perfectly plastic sphere: Thornton (1997, J. Appl. Mech. 64, 383), and a fit.
+"""Restitution of an elastic, perfectly plastic sphere: Thornton's law, and a fit.
 
-The paper is cited so, beside finite elements, by Zhang & Vu-Quoc (2002, Int. J. Impact Eng. 27, 317-341).
+C. Thornton, Coefficient of restitution for collinear collisions of elastic-perfectly plastic spheres, J.
+Appl. Mech. 64(2), 383-386, 1997. Title, pages and year agree in independent reference lists; the paper and
+its DOI (10.1115/1.2787319, from memory) were not at hand, so the law is held to its own limits: e = 1 at
+first yield, e going as v^(-1/4) far above.
 
 Also the speeds between which a contact is fully plastic and small, where restitution goes as v^(-1/4).
 """
@@ -58,8 +61,9 @@ def fitted_restitution(speed: float, first_yield: float) -> float:
     """Return e of finite-element runs of elastic, perfectly plastic spheres, 2.08 (v_y / v)^(1/4).
 
     v_y is the speed of first yield, peak pressure 1.6 times the yield stress; the fit holds for contacts that
-    are fully plastic and small. It is ascribed to Wu, Li & Thornton (Int. J. Impact Eng. 28, 2003); the
-    paper was not at hand, so nothing is judged by it.
+    are fully plastic and small. From memory it is that of Wu, Li & Thornton (Rebound behaviour of spheres for
+    plastic impacts, Int. J. Impact Eng. 28, 929-946, 2003); neither the paper nor a list that cites it was at
+    hand, so nothing is judged by it.
 
     Examples
     --------

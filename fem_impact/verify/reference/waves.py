@@ -95,7 +95,8 @@ def flexural_speed(ratio: float, nu: float) -> float:
     >>> [round(flexural_speed(r, 0.29), 4) for r in (0.1, 0.2, 0.5)]
     [0.27, 0.4138, 0.5448]
     """
-    return _first_root(_flexural, 0.01, 0.999 * _speeds(nu)[1], 2 * pi * ratio, nu)
+    k = 2 * pi * ratio  # a slender beam has k / 2
+    return _first_root(_flexural, 0.1 * min(k, 1.0), 0.999 * _speeds(nu)[1], k, nu)
 
 
 def rayleigh_speed(nu: float) -> float:
