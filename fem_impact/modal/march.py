@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from fem_impact.contact_law import ContactLaw
 from fem_impact.solid.contact.book import FAINT, MERGE_GAP
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.solid.kernels import allocating_kernel, inlined
 
 __all__ = ["MOST_CONTACTS", "Bounds", "Start", "drop"]
 
@@ -116,7 +116,7 @@ def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, large
     return count
 
 
-@kernel
+@allocating_kernel
 def drop(
     start: Start,
     law: ContactLaw,

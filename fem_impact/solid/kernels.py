@@ -16,6 +16,8 @@ F = TypeVar("F", bound=Callable[..., Any])
 # Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
 # vector width of the machine. NaN stays visible, because a diverging run must be seen.
 FAST = {"contract", "arcp", "nsz"}
+KEPT = {"cache": True, "nogil": True}
+COUNTLESS = {"_nrt": False}
 
 
 def _cache_folder() -> Path:
@@ -47,10 +49,23 @@ def compiled_before(name: str = "yielding_kernel.update") -> bool:
 
 
 def kernel(function: F) -> F:
-    """Compile a hot loop, cached on disk across runs; it lets other threads run beside it."""
-    return cast(F, numba.njit(cache=True, nogil=True, fastmath=FAST, error_model="numpy")(function))
+    """Compile a hot loop, cached on disk across runs; it lets other threads run beside it.
+
+    It makes no arrays. So it needs no counts of references to them, which in short loops over views cost as
+    much as the arithmetic, and which threads would take from each other.
+    """
+    return _compiled(function, **KEPT, **COUNTLESS)
+
+
+def allocating_kernel(function: F) -> F:
+    """Compile a loop that makes arrays."""
+    return _compiled(function, **KEPT)
 
 
 def inlined(function: F) -> F:
     """Compile a helper that every caller absorbs."""
-    return cast(F, numba.njit(fastmath=FAST, error_model="numpy", forceinline=True)(function))
+    return _compiled(function, forceinline=True, **COUNTLESS)
+
+
+def _compiled(function: F, **options: Any) -> F:
+    return cast(F, numba.njit(fastmath=FAST, error_model="numpy", **options)(function))

@@ -17,7 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem_impact.solid.kernels import kernel
+from fem_impact.solid.kernels import allocating_kernel
 from meshes import RodMesh
 
 Array = NDArray[np.float64]
@@ -94,7 +94,7 @@ class MassPoints:
         return sp.csr_matrix(P.T @ K @ P)
 
 
-@kernel
+@allocating_kernel
 def add_linear(out, into, amount, rows):  # type: ignore[no-untyped-def]
     """Add amount[c] out (into . rows) to the rows of each component c, in all layers but the first."""
     n, layers = len(out) // 3, rows.shape[1]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_impact.solid.hexmodes import CORNERS, reference_gradients
-from fem_impact.solid.kernels import kernel
+from fem_impact.solid.kernels import allocating_kernel
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def gradient_squares(x: Array, places: NDArray[np.int64]) -> Array:
     return squares
 
 
-@kernel
+@allocating_kernel
 def _gradient_squares(x, places, reference, squares):  # type: ignore[no-untyped-def]
     J, C = np.empty((3, 3)), np.empty((3, 3))
     for e in range(len(places)):

@@ -45,6 +45,7 @@ STEPS, TURNS = 400, 100
 class Timed:
     """A force under the clock."""
 
+    body: str
     collect: Callable[[State], None]
     parts: tuple[()] = ()
 
@@ -115,7 +116,7 @@ def part_times(model: Model, state: State) -> dict[str, float]:
         return clocked
 
     forces = [
-        Timed(timed(f"{type(force).__name__} of the {force.body}", partial(add_force, force)))
+        Timed(force.body, timed(f"{type(force).__name__} of the {force.body}", partial(add_force, force)))
         for force in model.forces
     ]
     watched = replace(model, forces=forces)  # type: ignore[arg-type]

@@ -120,6 +120,7 @@ class Column:
         self.model = SimpleNamespace(
             forces=[self.block],
             parts=self.block.parts,
+            sums=[self.block.collect],
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
             hanging=Hanging.of([(mesh.tie, places)]),

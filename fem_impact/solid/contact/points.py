@@ -18,7 +18,7 @@ from fem_impact.solid.contact.book import (
 )
 from fem_impact.solid.contact.impulses import relative
 from fem_impact.solid.contact.search import bilinear, locate
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.solid.kernels import allocating_kernel, inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,7 +93,7 @@ def _enter(k, slave, gap, band, motion, c):  # type: ignore[no-untyped-def]
     return True
 
 
-@kernel
+@allocating_kernel
 def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # type: ignore[no-untyped-def]
     """Collect contacts of rod nodes with barrier quads; returns their number."""
     x, top, count = motion.x, 0.0, 0
@@ -139,7 +139,7 @@ def _reach(rod, x, height):  # type: ignore[no-untyped-def]
     return low_t, high_t, low_b, high_b
 
 
-@kernel
+@allocating_kernel
 def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
     """Append contacts of barrier nodes with rod quads; returns the new number."""
     x, first, top = motion.x, len(rod.places), 0.0
@@ -166,7 +166,7 @@ def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # t
     return count
 
 
-@kernel
+@allocating_kernel
 def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
     """Fill the step's record with impulses on the rod and work; remember the impulses."""
     x = motion.x
