@@ -9,7 +9,7 @@ import pytest
 from fem_impact.contact_law import contact_law
 from fem_impact.effects import everything
 from fem_impact.effects.beam import beam
-from fem_impact.effects.strike import DRAGGED, Touch, strike
+from fem_impact.effects.strike import Touch, strike
 from fem_impact.estimates import normal_share
 from fem_impact.modal import modal_rod
 from fem_impact.scene import load, replace_all
@@ -78,10 +78,10 @@ def test_a_contact_loads_once_and_gives_back_less():
 
 def test_a_surface_that_yields_bears_less_than_coulomb():
     law = contact_law(load("t5b"))._replace(friction=0.57)
-    for sliding, ratio in ((-0.3, 0.1), (-9.0, DRAGGED), (3.0, -DRAGGED)):
+    for sliding, ratio in ((-0.3, 0.1), (-9.0, 0.389), (3.0, -0.389)):
         touch = Touch(law)
         force, side = touch.press(20 * law.yield_depth, 1.0, sliding, 1.0)
-        assert side / force == pytest.approx(ratio)
+        assert side / force == pytest.approx(ratio, rel=1e-3)
     # unloaded to half the force, the same area holds nearly as much: Coulomb's limit is back
     half = next(d for d in np.linspace(20, 0, 2000) if touch._normal(d * law.yield_depth) < 0.5 * force)
     now, side = touch.press(half * law.yield_depth, -1.0, 3.0, 1.0)
