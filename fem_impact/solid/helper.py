@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import deque
+from collections.abc import Callable, Sequence
 from functools import partial
 from queue import SimpleQueue
 from threading import Thread
@@ -53,15 +54,22 @@ class Helper:
 
 
 def share(parts: Sequence[Part], state: State, helper: Helper | None) -> None:
-    """Do all parts; a helper takes from those that wait as long as there are any."""
-    waiting = iter(parts)
+    """Do all parts, from the first on; a helper does them from the last on until they meet.
+
+    So each thread does nearly the same parts in every step, and their data stay in its caches.
+    """
+    waiting = deque(parts)
     if helper is not None:
-        helper.begin(partial(_work, waiting, state))
-    _work(waiting, state)
+        helper.begin(partial(_work, waiting.pop, state))
+    _work(waiting.popleft, state)
     if helper is not None:
         helper.finish()
 
 
-def _work(waiting: Iterator[Part], state: State) -> None:
-    for part in waiting:
+def _work(take: Callable[[], Part], state: State) -> None:
+    while True:
+        try:
+            part = take()
+        except IndexError:  # none is left; to ask before would not be safe, for the other thread takes too
+            return
         part(state)

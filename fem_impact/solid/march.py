@@ -42,7 +42,6 @@ def evaluate(model: Model, state: State, helper: Helper | None = None) -> None:
     same to the last bit whoever did them.
     """
     share(model.parts, state, helper)
-    state.force[:] = 0.0
     share(model.sums, state, helper)
     model.hanging.collect(state.force)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+def clear(state: State) -> None:
+    """Set the sum of forces to zero; no other part touches it."""
+    state.force[:] = 0.0
+
+
 def _collect(forces: Sequence[Force], state: State) -> None:
     for force in forces:
         force.collect(state)
@@ -42,7 +48,7 @@ class Model:
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
-    parts : the work of all forces in parts that threads may share, the largest first
+    parts : the work before forces are summed, which threads may share: body by body, the largest at both ends
     sums : what adds the parts' forces up, one for each body, which share no unknowns
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
@@ -70,9 +76,9 @@ class Model:
     sums: Sequence[Part] = field(init=False)
 
     def __post_init__(self) -> None:
-        whole_first = sorted((force.parts for force in self.forces), key=len)
-        object.__setattr__(self, "parts", [part for parts in whole_first for part in parts])
         bodies = [[force for force in self.forces if force.body == body] for body in ("rod", "barrier")]
+        rod, barrier = (sorted((force.parts for force in forces), key=len) for forces in bodies)
+        object.__setattr__(self, "parts", [*chain(*rod), clear, *reversed([*chain(*barrier)])])
         object.__setattr__(self, "sums", [partial(_collect, forces) for forces in bodies if forces])
 
     @property

@@ -6,12 +6,16 @@ move work from friction into plastic work right below, and only both together se
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.model import Model
-from fem_impact.solid.yielding import YieldingZone
+
+if TYPE_CHECKING:
+    from fem_impact.solid.yielding import YieldingZone
 
 Array = NDArray[np.float64]
 
