@@ -33,6 +33,15 @@ def test_a_sphere_that_sticks_gives_its_tangential_energy_back():
     assert e["tangential restitution, plain"].computed < e["tangential restitution, plain"].reference - 0.02
 
 
+def test_a_blow_that_sticks_on_a_rigid_plane_is_shown_unless_it_slides():
+    kinds = [
+        {c.name: c.kind for c in verify("oblique-sphere", {**COARSE, "block": 0, "f": f}).checks}
+        for f in (0.02, 0.9)
+    ]
+    assert [k["tangential restitution"] for k in kinds] == ["absolute", "shown"]
+    assert [k["impulse ratio mu / f"] for k in kinds] == ["absolute", "shown"]
+
+
 @pytest.mark.validation
 @pytest.mark.parametrize(("degrees", "plain"), [(5, 0.740), (20, 0.594), (40, 0.781)])
 def test_alumina(degrees, plain):

@@ -13,7 +13,7 @@ from fem_impact.verify.reference.finite_sphere_shear import ball_shear
 from fem_impact.verify.reference.hertz import hertz
 from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
 
-__all__ = ["SphereRebound", "oblique_sphere", "reversal"]
+__all__ = ["SphereRebound", "oblique_ball", "oblique_sphere", "reversal"]
 
 STEPS = 4000
 INERTIA = 0.4  # K^2 of a solid sphere
