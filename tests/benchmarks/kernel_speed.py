@@ -3,11 +3,13 @@
 Run ``python tests/benchmarks/kernel_speed.py [SCENE]``; all rows come from one process, so the ratios mean
 something even on a busy machine. Parts of a scene are timed while it runs, for yielding depends on the
 increment: lower deciles of CPU time over steps in the contact. The last two rows are wall times of whole
-steps, by turns with one thread and with two, and need two free cores.
+steps, by turns with one thread and with two, and need two free cores; below them stands what two threads gain
+that share nothing.
 """
 
 from __future__ import annotations
 
+import copy
 import os
 import sys
 import time
@@ -141,6 +143,23 @@ def thread_times(model: Model, state: State) -> list[float]:
     return best
 
 
+def machine_gain(zone: YieldingZone, state: State) -> float:
+    """Return how much more two threads do than one, each updating a zone and state of its own: the limit."""
+    work = [partial(add_force, copy.deepcopy(zone), copy.deepcopy(state)) for _ in range(2)]
+    alone = together = float("inf")
+    with Helper() as helper:
+        for _ in range(2 * TURNS):
+            begun = time.perf_counter_ns()
+            work[0]()
+            alone = min(alone, time.perf_counter_ns() - begun)
+            begun = time.perf_counter_ns()
+            helper.begin(work[1])
+            work[0]()
+            helper.finish()
+            together = min(together, time.perf_counter_ns() - begun)
+    return 2 * alone / together
+
+
 def scene_rows(model: Model, state: State) -> list[Row]:
     """Return the parts of a scene's step, those of the rod and of the barrier over their own elements."""
     rod, barrier = model.geometry.rod.mesh, model.geometry.barrier
@@ -154,11 +173,9 @@ def scene_rows(model: Model, state: State) -> list[Row]:
         count = whole[body] - yielding.get(body, 0) if body in whole else sum(whole.values())
         count = yielding[body] if name.startswith(YieldingZone.__name__) else count
         table.append((name, count, ns / count, ns / count / product))
-    every = sum(whole.values())
-    for words, ns in zip(
-        ("one thread (wall)", "two threads (wall)"), thread_times(model, state), strict=True
-    ):
-        table.append((f"whole step, {words}", every, ns / every, ns / every / product))
+    every, (one, two) = sum(whole.values()), thread_times(model, state)
+    table.append(("whole step, one thread (wall)", every, one / every, one / every / product))
+    table.append((f"two threads (wall), gain {one / two:.2f}", every, two / every, two / every / product))
     return table
 
 
@@ -174,6 +191,9 @@ def main(name: str = "t5b") -> None:
     print(f"{'part':<42}{'elements':>9}{'ns/element-step':>17}{'of CSR':>8}")
     for part, count, ns, ratio in [*bar_rows(), *scene_rows(model, state)]:
         print(f"{part:<42}{count:9d}{ns:17.1f}{ratio:8.2f}")
+    if model.zones:
+        gain = machine_gain(model.zones[-1], state)
+        print(f"two threads that share nothing gain {gain:.2f} on this machine at this time")
 
 
 if __name__ == "__main__":
