@@ -40,7 +40,7 @@ def _pairs(scenes: Scenes) -> str:
     """Return the table of the best pair of each scene, and how many meet `WANTED`."""
     found = {name: best_pair(settings, TARGETED, WANTED) for name, (_, settings) in scenes.items()}
     rows = [(name, scenes[name][0], pair) for name, pair in found.items() if pair]
-    head = ["set", "meshes, mm", *TARGETED, "off the limit, bands", "s on two cores"]
+    head = ["set", "meshes, mm", *TARGETED, "off the limit, of both bands", "s on two cores"]
     body = [[name, _sizes(pair), *_verdicts(q, pair), f"{pair.two_cores_s:.3g}"] for name, q, pair in rows]
     met = {name: sum(pair.band[name] <= WANTED for *_, pair in rows) for name in TARGETED}
     words = " and ".join(f"{name} in {count}" for name, count in met.items())
@@ -54,8 +54,10 @@ def _sizes(pair: Judged) -> str:
 def _verdicts(quantities: dict[str, Any], pair: Judged) -> list[str]:
     told = [verdict(pair, quantities, name, WANTED) for name in TARGETED]
     away = [abs((pair.value[name] or 0.0) - quantities[name]["limit"]) for name in TARGETED]
-    bands = [pair.band[name] * quantities[name]["scale"] for name in TARGETED]
-    shares = [f"{gap / band:.1f}" if band else "-" for gap, band in zip(away, bands, strict=True)]
+    both = [
+        pair.band[name] * quantities[name]["scale"] + quantities[name]["uncertainty"] for name in TARGETED
+    ]
+    shares = [f"{gap / band:.1f}" if band else "-" for gap, band in zip(away, both, strict=True)]
     return [*told, " / ".join(shares)]
 
 

@@ -12,13 +12,22 @@ Quantities = Mapping[str, Mapping[str, float]]  # with the scale of each
 
 
 def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
-    """Return the quickest pair on two cores whose bands meet the target, else that with the least band."""
+    """Return the quickest pair on two cores whose bands meet the target.
+
+    If none does, that of meshes widest apart, the finer if there are two: scatter of the values moves its
+    limit least, and a choice by the smallest band would choose agreement by chance.
+    """
     pairs = [one for one in settings if one.band]
-    open_by = {one.name: max(one.band[name] for name in names) for one in pairs}
-    good = [one for one in pairs if open_by[one.name] <= target]
+    good = [one for one in pairs if all(one.band[name] <= target for name in names)]
     if good:
         return min(good, key=lambda one: one.two_cores_s)
-    return min(pairs, key=lambda one: open_by[one.name], default=None)
+    return max(pairs, key=_apart, default=None)
+
+
+def _apart(pair: Judged) -> tuple[float, int]:
+    """Return the ratio of the meshes of a pair, and how fine the finer is."""
+    fine, coarse = (mesh["across"] * 2 ** mesh["levels"] for mesh in pair.meshes)
+    return fine / coarse, fine
 
 
 def pair_sentence(
