@@ -74,7 +74,7 @@ def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, 
     energy = Until(
         model.ledger(), LONGEST * time, lambda: bool(state.time - APART * time > book.last_touch > 0), 20
     )
-    follow(model, state, energy)
+    follow(model, state, energy, every=20)
     worst = energy.ledger.worst / energy.ledger.start
     return rigid_of(model, state).V_n / v, worst, state.step, len(model.geometry.rod.mesh.cells)
 

@@ -76,15 +76,15 @@ class Until:
         return state.time >= self.end or self.done()
 
 
-def follow(model: Model, state: State, until: Until) -> None:
-    """March a body that yields to its end, the step following its cells.
+def follow(model: Model, state: State, until: Until, every: int) -> None:
+    """March a body that yields to its end, the step following its cells ``every`` so many steps.
 
     Raises
     ------
     RunError
         If a cell folds or is crushed.
     """
-    guard = StepGuard(model, every=1)
+    guard = StepGuard(model, every)
     march(model, state, [guard, until])
     if guard.reason:
         raise RunError(guard.reason)
