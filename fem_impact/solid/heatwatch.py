@@ -81,7 +81,8 @@ class HeatWatch:
         if span >= WINDOW:
             heat, self.taken = book.friction - self.taken, book.friction
             self.power.append(2 * heat / span)
-            self.speed.append(heat / self.pushed if self.pushed > 0 else 0.0)
+            # without friction round-off may be below zero, and a speed is not
+            self.speed.append(max(heat, 0.0) / self.pushed if self.pushed > 0 else 0.0)
             self.patch.append(2 * self.surface.close())
             self.t.append(state.time)
             self.pushed = 0.0

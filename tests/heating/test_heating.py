@@ -121,6 +121,13 @@ def test_the_watch_finds_all_heat_and_the_patch(barrier, tip):
     assert found["E_lt_less_vibration_over_E_0"] == pytest.approx(less)
 
 
+def test_round_off_is_no_sliding_speed():
+    """Without friction the heat is round-off of either sign."""
+    effects = ("vibration", "friction", "barrier-elastic", "contact-heating")
+    watch = solid_scenes.run(*effects, length=0.08, f=0.0, tip=1.6e-3, max_time=1.5e-4).heat
+    assert min(watch.power) < 0 <= min(watch.speed)
+
+
 def test_heat_does_not_act_on_the_motion():
     effects = ("vibration", "friction", "barrier-rigid")
     changes = {"length": 0.08, "tip": 1.6e-3, "max_time": 5e-5}
