@@ -1,7 +1,7 @@
 """Plastic work in the uppermost layer of the barrier, which slip at the contact cannot be told from.
 
 Under a sticking tip the plate shears in a layer for whose thickness its material has no length: finer meshes
-move work from friction into plastic work right below, and only both together settle.
+move work from friction into plastic work right below.
 """
 
 from __future__ import annotations
