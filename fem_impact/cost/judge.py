@@ -83,7 +83,7 @@ def pair_limit(fine: float, coarse: float, ratio: float) -> tuple[float, float]:
 
 
 def truths(runs: Sequence[Outcome], others: Sequence[Outcome] = ()) -> dict[str, Truth]:
-    """Return the limit of every quantity from the runs of one family (two or more meshes).
+    """Return the limit of every quantity from runs on two or more meshes.
 
     The uncertainty of a limit is what Eca and Hoekstra's band leaves beyond the finest mesh's own
     distance from it. With two meshes the order is assumed, the safety factor is that of a disbelieved fit,

@@ -87,7 +87,7 @@ def measure(
     Raises
     ------
     RunError
-        Fewer than two meshes of the family gave a result, so nothing is known of the limit.
+        Fewer than two meshes gave a result, so nothing is known of the limit.
     """
     settings = ladder(scene, family)
     jobs = [job for setting in settings if (job := setting.job)]
@@ -99,7 +99,7 @@ def measure(
     finally:
         if executor is None:
             owned.shutdown(cancel_futures=True)
-    return conclude(scene, settings, results, family)
+    return conclude(scene, settings, results)
 
 
 def _compile(scene: Scene, executor: Executor) -> None:
@@ -110,19 +110,18 @@ def _compile(scene: Scene, executor: Executor) -> None:
         executor.submit(compute, Job("compilation", brief)).result()
 
 
-def conclude(scene: Scene, settings: Sequence[Setting], results: Results, family: Sequence[Mesh]) -> Cost:
+def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cost:
     """Judge the runs of a ladder."""
     runs: dict[Mesh, Outcome] = {}
     for setting in settings:
         found = _result(setting, results)
         if setting.kind == "mesh" and setting.mesh and isinstance(found, Outcome) and found["finished"]:
             runs[setting.mesh] = found
-    own = [runs[mesh] for mesh in family if mesh in runs]
-    if len(own) < 2:
+    every = list(runs.values())
+    if len(every) < 2:
         reasons = [r.reason for r in results.values() if isinstance(r, Failure)]
         raise RunError(f"{scene.id}: no two meshes gave a result. {' '.join(reasons)}".strip())
-    truth, every = truths(own, [run for mesh, run in runs.items() if mesh not in family]), list(runs.values())
-    judged = []
+    truth, judged = truths(every), []
     for setting in settings:
         given, whole = _given(setting, results, runs), runs.get(PLAIN)
         if setting.kind == "effect":

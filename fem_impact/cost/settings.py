@@ -36,7 +36,7 @@ class Mesh:
         return float(diameter / self.across / 2**self.levels)
 
 
-# meshes whose cells are split as often: the limit is theirs
+# meshes whose cells are split as often; cells at the tip are alike only where a mesh is split once more
 FAMILY = (Mesh(6, 3), Mesh(8, 3), Mesh(10, 3))
 COARSE = (Mesh(6, 2), Mesh(8, 2))  # the family's own bodies with tips of twice the size
 PLAIN = Mesh(8, 2)  # the mesh on which elements, steps and effects are changed

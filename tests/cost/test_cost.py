@@ -180,12 +180,19 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
     assert found.truth["e"].order is not None
 
 
-def test_two_meshes_assume_an_order_and_say_none(fake, tmp_path):
-    found = measure(SCENE, tmp_path, NullMeter(), (Mesh(8, 3), Mesh(16, 3)), Here())
-    assert found.truth["e"].order is None
-    assert abs(found.truth["e"].value - LIMIT["e_edge"]) <= found.truth["e"].uncertainty
+def test_two_meshes_assume_an_order_and_say_none():
+    found = truths([run(on_mesh(SCENE, Mesh(across, 3))) for across in (8, 16)])["e"]
+    assert found.order is None
+    assert abs(found.value - LIMIT["e_edge"]) <= found.uncertainty
     finest = SLOPE["e_edge"] * (0.019 / 128 / TIP)
-    assert found.truth["e"].uncertainty == pytest.approx(2 * finest)
+    assert found.uncertainty == pytest.approx(2 * finest)
+
+
+def test_the_limit_rests_on_every_mesh_that_ran(fake, tmp_path):
+    """One mesh of the family and the two coarse ones tell an order."""
+    found = measure(SCENE, tmp_path, NullMeter(), FAMILY[:1], Here()).truth["e"]
+    assert found.order == pytest.approx(1.0, abs=1e-3)
+    assert found.value == pytest.approx(LIMIT["e_edge"], abs=1e-4)
 
 
 def test_two_meshes_that_agree_by_chance_prove_nothing():
@@ -201,15 +208,15 @@ def replace_e(mesh, e):
 
 def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
     def failing(scene, fidelity="solid", **options):
-        if fidelity == "solid" and scene.accuracy.across > limit:
+        if fidelity == "solid" and scene.accuracy.across > most:
             raise RunError("out of patience.")
         return run(scene, fidelity)
 
     monkeypatch.setattr(fem_impact.simulate, "simulate", failing)
-    limit = 8
+    most = 8
     found = measure(SCENE, tmp_path, NullMeter(), executor=Here())
     assert found.failures == [{"setting": "t5b: solid 0.237 mm", "reason": "out of patience."}]
-    limit = 6
+    most = 5
     other = replace(SCENE, id="other")
     with pytest.raises(RunError, match=r"other: no two meshes gave a result. out of patience"):
         measure(other, tmp_path, NullMeter(), executor=Here())
