@@ -12,6 +12,7 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
+from fem_impact.cores import cores
 from fem_impact.errors import RunError
 
 if TYPE_CHECKING:
@@ -52,7 +53,7 @@ def run(options: Options) -> int:
 
 def _threads(scene: Scene) -> int:
     """Return 2 where a second core has been free; a target's plan must not depend on who else computes."""
-    spare = (os.cpu_count() or 1) - os.getloadavg()[0]
+    spare = cores() - os.getloadavg()[0]
     return 2 if scene.accuracy.target is None and spare >= 1 else 1
 
 

@@ -11,10 +11,10 @@ from pathlib import Path
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
+from fem_impact.cores import cores
 from fem_impact.errors import RunError, SceneError, did_you_mean
 from fem_impact.outcome import utc_now
 from fem_impact.output import read_text, write_text
-from fem_impact.scale import cores
 from fem_impact.stress import CASES, Row, run_cases
 from fem_impact.stress.page import MARKS, page, told
 from fem_impact.verify.page import put_page

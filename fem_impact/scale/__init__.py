@@ -3,7 +3,7 @@
 from fem_impact.scale.cluster import on_scheduler
 from fem_impact.scale.crowd import Estimate, estimate
 from fem_impact.scale.job import Failure, Job
-from fem_impact.scale.local import LocalProcesses, cores
+from fem_impact.scale.local import LocalProcesses
 from fem_impact.scale.run import Results, run_jobs
 from fem_impact.scale.store import STORE, Store
 
@@ -15,7 +15,6 @@ __all__ = [
     "LocalProcesses",
     "Results",
     "Store",
-    "cores",
     "estimate",
     "on_scheduler",
     "run_jobs",

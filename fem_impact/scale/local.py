@@ -11,17 +11,14 @@ from multiprocessing import connection, get_context, parent_process
 from multiprocessing.connection import Connection
 from typing import Any, ParamSpec, TypeVar
 
-__all__ = ["LocalProcesses", "cores"]
+from fem_impact.cores import cores
+
+__all__ = ["LocalProcesses"]
 
 P = ParamSpec("P")
 T = TypeVar("T")
 TRIES = 2  # a process may be killed for memory that others took; a job that kills two is at fault
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
-def cores() -> int:
-    """Return how many processor cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 class LocalProcesses(Executor):

@@ -6,9 +6,10 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
 
+from fem_impact.cores import cores
 from fem_impact.errors import FemImpactError
 from fem_impact.progress import CaseProgress, Meter
-from fem_impact.scale import LocalProcesses, cores
+from fem_impact.scale import LocalProcesses
 
 FILM_FRAMES = 60
 

@@ -39,7 +39,7 @@ def test_changes_are_applied_and_filed_apart(cli, stand):
     ("asked", "load_average", "threads"), [((), 0.9, 2), ((), 1.1, 1), (("--threads", "1"), 0.0, 1)]
 )
 def test_a_second_thread_where_a_core_is_free(cli, stand, monkeypatch, asked, load_average, threads):
-    monkeypatch.setattr("os.cpu_count", lambda: 2)
+    monkeypatch.setattr("fem_impact.cli_run.cores", lambda: 2)
     monkeypatch.setattr("os.getloadavg", lambda: (load_average, 0.0, 0.0))
     cli("run", "t5b", *asked)
     assert stand.calls[0][2]["threads"] == threads
