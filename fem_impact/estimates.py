@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from rigid import Projectile
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
+SECTION = 1.8412  # first zero of J1': where the round section begins to shear by itself
 FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
 
 
@@ -64,6 +65,20 @@ def arms(scene: Scene) -> tuple[float, float]:
     """Return (d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
     d_c, d_d = projectile(scene).arms(scene.impact.angle)
     return float(d_c) if scene.impact.angle > 0 else 0.0, float(d_d)
+
+
+def shear_speed(scene: Scene) -> float:
+    """Return the speed of shear waves in the rod, m/s."""
+    steel = scene.projectile.material
+    return sqrt(steel.E / (2 * (1 + steel.nu) * steel.rho))
+
+
+def section_frequency(scene: Scene) -> float:
+    """Return the circular frequency, rad/s, above which the rod's modes deform the section.
+
+    Such modes are local: what they yield to a point load is the business of the contact law.
+    """
+    return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
 
 
 def effective_mass(scene: Scene) -> float:

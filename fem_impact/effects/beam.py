@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.estimates import projectile
+from fem_impact.estimates import projectile, section_frequency, shear_speed
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -20,7 +20,6 @@ Array = NDArray[np.float64]
 ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
 SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)
 STRETCHING = 20  # modes at most
-SECTION = 1.8412  # first zero of J1': above, the round section shears by itself, which the contact law holds
 
 
 class Beam(NamedTuple):
@@ -63,14 +62,14 @@ def beam(scene: Scene) -> Beam:
     body, alpha, r = projectile(scene), scene.impact.angle, scene.projectile.diameter / 4
     rho, z = (float(part) for part in body.contact_point(alpha))
     rho = rho if alpha > 0 else 0.0  # an upright rod strikes with its whole face
-    bent, wave, shear = bending_frequencies(scene), ROOTS / body.length, _shear_speed(scene)
+    bent, wave, shear = bending_frequencies(scene), ROOTS / body.length, shear_speed(scene)
     turn = 2 * wave * (1 - (bent / wave) ** 2 / (SHEAR * shear**2))
     height = 1 / np.sqrt(body.mass * (1 + (0.5 * r * turn) ** 2))
     count = np.arange(1, STRETCHING + 1)
     omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
     x = np.concatenate([height * (2 - turn * z), 0.0 * count])
     y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
-    kept = (omega < SECTION * shear / (2 * r)) & ("vibration" in scene.active)
+    kept = (omega < section_frequency(scene)) & ("vibration" in scene.active)
     along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
     return Beam(omega[kept], along_t[kept], along_n[kept])
 
@@ -78,7 +77,3 @@ def beam(scene: Scene) -> Beam:
 def _bar_speed(scene: Scene) -> float:
     steel = scene.projectile.material
     return float((steel.E / steel.rho) ** 0.5)
-
-
-def _shear_speed(scene: Scene) -> float:
-    return _bar_speed(scene) / sqrt(2 * (1 + scene.projectile.material.nu))

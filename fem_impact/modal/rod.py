@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.effects import specify
-from fem_impact.estimates import principal_radii, projectile
-from fem_impact.scene import Accuracy, Barrier, Impact, Material, Projectile, Scene, Surface
+from fem_impact.estimates import principal_radii, projectile, section_frequency
+from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Scene, Surface
 from fem_impact.solid.build import build
 from fem_impact.solid.rodview import RodView
 
@@ -20,7 +20,6 @@ __all__ = ["ModalRod", "modal_rod"]
 Array = NDArray[np.float64]
 
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
-SECTION = 1.8412  # first zero of J1': where the round section begins to shear by itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,18 +63,9 @@ def _touch(scene: Scene) -> tuple[Array, Array, Array]:
     near = np.linalg.norm(from_touch, axis=1) < AROUND * scene.projectile.diameter
     affine = np.column_stack([np.ones(near.sum()), from_touch[near][:, [0, 2]]])
     at_touch = np.linalg.pinv(affine)[0]
-    kept = omega < section_frequency(scene.projectile.material, scene.projectile.diameter)
+    kept = omega < section_frequency(scene)
     x, _, z = np.einsum("n,ncm->cm", at_touch, shape[near][:, :, kept])
     return omega[kept], x, z
-
-
-def section_frequency(material: Material, diameter: float) -> float:
-    """Return the circular frequency, rad/s, above which modes deform the section.
-
-    Such modes are local: what they yield to a point load is the business of the contact law.
-    """
-    shear_speed = sqrt(material.E / (2 * (1 + material.nu) * material.rho))
-    return SECTION * shear_speed / (diameter / 2)
 
 
 def _elastic(rod: Projectile) -> Projectile:
