@@ -69,6 +69,15 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
 
 
 @inlined
+def _correction(q, dp, new, factor, growth, G3, n, C):  # type: ignore[no-untyped-def]
+    """Return Halley's change of u = ln(dp / (rate_0 dt)) where q - 3 G dp = new * factor is missed."""
+    bent = (G3 + n * growth * new / (1.0 + growth * dp) * factor) * dp
+    steep = bent + new * C
+    change = (q - G3 * dp - new * factor) / steep
+    return change / (1.0 + 0.5 * change * bent / steep)
+
+
+@inlined
 def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Solve q - 3 G dp = sigma(strain + dp) (1 + C u), u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
 
@@ -85,10 +94,7 @@ def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-
     for _ in range(MOST):
         dp, factor = slow * np.exp(u), 1.0 + rate[0] * u
         new = flow * _power(growth * dp, law[2])
-        bent = (G3 + law[2] * growth * new / (1.0 + growth * dp) * factor) * dp
-        steep = bent + new * rate[0]
-        change = (q - G3 * dp - new * factor) / steep
-        change /= 1.0 + 0.5 * change * bent / steep
+        change = _correction(q, dp, new, factor, growth, G3, law[2], rate[0])
         u += change
         if abs(change) <= CLOSE:
             dp *= 1.0 + change + 0.5 * change * change
@@ -133,10 +139,7 @@ def _improve(w, flow, G3, law, rate, dt):  # type: ignore[no-untyped-def]
         u, q, growth = w[UNKNOWN * LANES + l], w[SIZE * LANES + l], w[GROWTH * LANES + l]
         dp, factor = slow * _exp(u), 1.0 + C * u
         new = flow[l] * _series(growth * dp, n)
-        bent = (G3 + n * growth * new / (1.0 + growth * dp) * factor) * dp
-        steep = bent + new * C
-        change = (q - G3 * dp - new * factor) / steep
-        change /= 1.0 + 0.5 * change * bent / steep
+        change = _correction(q, dp, new, factor, growth, G3, n, C)
         w[UNKNOWN * LANES + l] = u + change
         w[GAIN * LANES + l] = dp * (1.0 + change + 0.5 * change * change)
         w[CHANGE * LANES + l] = abs(change)
