@@ -129,6 +129,16 @@ ACCURACY = (
         source="chosen for this package; check its cost with a second value",
     ),
     Field(
+        "grid_shift",
+        "place of a meshed barrier's grid along t, in cells at the contact",
+        "",
+        0.0,
+        1.0,
+        high_open=True,
+        default=0.0,
+        source="chosen for this package: no place is better; runs at 0 and 0.5 differ by the scatter of both",
+    ),
+    Field(
         "block_margin",
         "width of the barrier block beyond its fine zone",
         "length",
@@ -157,7 +167,7 @@ ACCURACY = (
     ),
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
-MESH = ("tip_size", "across")  # keys of accuracy that a target replaces
+MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 SAVE = (
     Field(
         "frames",

@@ -131,11 +131,13 @@ class Accuracy:
     ``step`` is the time step over the largest stable one. ``element`` names the operator of cells that
     cannot yield: with incompatible modes, fully integrated, or with mean dilatation, which yielding cells
     always have.
+    ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
     tip_size: float = 0.35e-3
     across: int = 8
+    grid_shift: float = 0.0
     block_margin: float = 6e-3
     max_time: float = 2.5e-3
     step: float = 0.9

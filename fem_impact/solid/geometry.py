@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import cos, sin
 from typing import TYPE_CHECKING
 
@@ -106,7 +106,8 @@ def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, flo
     slide = max(slide, DRAG * t) if scene.impact.v_t else 0.0
     box = Zone(np.zeros(3), np.eye(3), np.array([-t - reach - slide, 0.0, -n]), np.array([t, b, 0.0]))
     margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
+    h = base / 2**levels
     low = np.array([-t - reach - slide - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
-    block = meshes.block(low, high, base, zone=box, levels=levels)
-    return meshes.with_thin_skin(block, base / 2**levels, SKIN)
+    block = meshes.with_thin_skin(meshes.block(low, high, base, zone=box, levels=levels), h, SKIN)
+    return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))

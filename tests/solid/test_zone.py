@@ -1,10 +1,14 @@
 """The fine zone of the barrier: where its surface may flow."""
 
+import numpy as np
 import pytest
+import solid_scenes as scenes
 
 from fem_impact.estimates import contact_estimate
+from fem_impact.reduce import reduce
 from fem_impact.scene import load
 from fem_impact.solid.geometry import DRAG, SLIDE, build_geometry, half_widths
+from fem_impact.solid.run import solve
 
 SCENE = load("t6-17").replace("accuracy.tip_size", "0.6 mm")
 
@@ -38,3 +42,17 @@ def test_it_follows_a_long_slide():
     half = _half_width(steep, build_geometry(steep, 2e-6, True))
     assert slide > DRAG * half
     assert _reach(steep)[0] >= 1 + slide / half
+
+
+def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
+    here, there = (build_geometry(SCENE.replace("accuracy.grid_shift", s), 2e-6, True) for s in (0, 0.5))
+    moved = there.barrier.points - here.barrier.points
+    assert np.allclose(moved, [0.5 * here.tip_size, 0, 0], rtol=0, atol=1e-15)
+    assert np.array_equal(here.barrier.cells, there.barrier.cells)
+    assert np.array_equal(here.rod_points, there.rod_points)
+
+
+def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
+    still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
+    e = [reduce(s, solve(s))["e_edge"] for s in (still, still.replace("accuracy.grid_shift", 0.5))]
+    assert 0 < abs(e[1] - e[0]) < 0.002
