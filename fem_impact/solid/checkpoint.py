@@ -1,7 +1,8 @@
 """Checkpoints: everything that moves in a run, in one file that is whole or not there.
 
 The file is a mark of 8 bytes, the SHA-256 of the rest, and an archive of plain arrays (npz, never objects).
-Saved after the forces of a step are known, so a run goes on with the kick of that step.
+Saved after the forces of a step are known, so a run goes on with the kick of that step. Of the step at which
+a run ends there is none: one killed while it writes its results would go on past its end.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ import hashlib
 import time as clock
 import zipfile
 import zlib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -55,12 +56,14 @@ class Checkpoint:
     stamp : scene and sources that a run must have to go on from it
     holders : everything that moves, by name
     interval : s of wall time
+    over : whether an observer before this one has ended the run
     """
 
     path: Path
     stamp: str
     holders: Mapping[str, Moving]
     interval: float
+    over: Callable[[], bool]
     every: int = 100
     due: float = field(init=False)
 
@@ -68,8 +71,8 @@ class Checkpoint:
         self.due = clock.monotonic() + self.interval
 
     def observe(self, state: State) -> bool:
-        """Save when it is due."""
-        if clock.monotonic() >= self.due:
+        """Save when it is due and the run goes on."""
+        if clock.monotonic() >= self.due and not self.over():
             self.save()
             self.due = clock.monotonic() + self.interval
         return False

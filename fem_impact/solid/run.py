@@ -119,7 +119,8 @@ def solve(
     _warm_up(model)
     clock = Stopwatch()
     if out is not None:
-        saved = Checkpoint(out / CHECKPOINT, stamp(scene), looking.holders(model, state, clock), interval)
+        holders = looking.holders(model, state, clock)
+        saved = Checkpoint(out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason))
         observers.append(saved)
         if resume:
             saved.restore()

@@ -138,7 +138,7 @@ STATE = State(np.arange(30.0), np.ones(30), np.zeros(30), 1e-5, 7, 1e-8, 1e-8, 1
 
 def checkpoint(stamp="scene 1\nsources 2\n"):
     """A checkpoint of a small state."""
-    return Checkpoint(Path("run.checkpoint"), stamp, {"0-State": STATE}, 1.0)
+    return Checkpoint(Path("run.checkpoint"), stamp, {"0-State": STATE}, 1.0, lambda: False)
 
 
 @pytest.mark.parametrize("how", SETTINGS)

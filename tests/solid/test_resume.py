@@ -73,6 +73,16 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
     same_frames(read_fields(parts / "fields.vtkhdf"), read_fields(whole / "fields.vtkhdf"))
 
 
+def test_killed_after_its_last_step_a_run_does_not_go_on_past_its_end(tmp_path):
+    scene = short(SETS[1])
+    expected = solve(scene, tmp_path, interval=0.0)  # a checkpoint whenever one may be written
+    history = (tmp_path / "history.csv").read_bytes()
+    found = solve(scene, tmp_path, resume=True)
+    assert found.steps == expected.steps
+    assert outcome_numbers(found) == outcome_numbers(expected)
+    assert (tmp_path / "history.csv").read_bytes() == history
+
+
 def test_a_resumed_run_can_tell_its_drift_before_the_next_sample(tmp_path):
     scene = short(SETS[3])
     scene = replace(scene, save=replace(scene.save, history_every=5000))
