@@ -14,6 +14,9 @@ FloatArray = npt.NDArray[np.float64]
 
 # A turn of the polyline above this is an edge of the body, not a step of a smooth curve.
 CORNER = np.deg2rad(12.0)
+# A grid can turn from face to side where the line itself has turned by this much, so far from the axis.
+FIRST, LAST = np.deg2rad([16.0, 64.0])
+OFF_AXIS = 0.66
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,24 +85,45 @@ class Meridian:
         turn = np.abs(np.diff(self.slope))
         return np.asarray(self.arc[1:-1][turn > CORNER])
 
-    def shoulder(self) -> float:
-        """Arc length at which the line has turned half-way from face to side, m.
+    def shoulder(self, near: FloatArray | None = None, cell: float = 0.0) -> float:
+        """Arc length where a grid turns from the face to the side, m.
 
-        For pointed tips: not nearer to the axis than 0.6 of the radius, which keeps the face cells wide.
+        Half-way, where the line has turned by 45 degrees, and for pointed tips not nearer to the axis than
+        0.6 of the radius, which keeps the face cells wide. With `near`, (rho, z) in m, it moves so that the
+        place closest to that is the middle of a `cell` (m): next to the turn if that can lie there, otherwise
+        some whole cells away; nothing moves where the line is too flat, too steep or too sharp for it.
         """
+        middle = max(
+            self._turned(np.pi / 4.0), float(np.interp(0.6 * self.radius, self.line[:, 0], self.arc))
+        )
+        if near is None:
+            return middle
+        wanted = self.arc_at(near)
+        beside = wanted + 0.5 * cell * (1.0 if wanted < middle + 0.25 * cell else -1.0)
+        if self.at(np.array(beside))[0] < OFF_AXIS * self.radius:
+            beside = wanted + cell * (np.ceil((middle - wanted) / cell - 0.5) + 0.5)
+        return float(beside if self._turned(FIRST) <= beside <= self._turned(LAST) else middle)
+
+    def arc_at(self, point: FloatArray) -> float:
+        """Arc length of the place closest to a point (rho, z) in m, m."""
+        step = np.diff(self.line, axis=0)
+        length = np.hypot(*step.T)
+        along = np.clip(((point - self.line[:-1]) * step).sum(axis=1) / length**2, 0.0, 1.0)
+        near = int(np.linalg.norm(self.line[:-1] + along[:, None] * step - point, axis=1).argmin())
+        return float(self.arc[near] + along[near] * length[near])
+
+    def _turned(self, angle: float) -> float:
+        """Arc length at which the line has turned by an angle from the face, m."""
         slope, arc = self.slope, self.arc
         middle = 0.5 * (arc[1:] + arc[:-1])
-        after = int(np.argmax(slope >= np.pi / 4.0)) if np.any(slope >= np.pi / 4.0) else len(slope)
+        after = int(np.argmax(slope >= angle)) if np.any(slope >= angle) else len(slope)
         if after in (0, len(slope)) or slope[after] - slope[after - 1] > CORNER:
-            turned = float(arc[after])
-        else:
-            pair = slice(after - 1, after + 1)
-            turned = float(np.interp(np.pi / 4.0, slope[pair], middle[pair]))
-        return max(turned, float(np.interp(0.6 * self.radius, self.line[:, 0], arc)))
+            return float(arc[after])
+        pair = slice(after - 1, after + 1)
+        return float(np.interp(angle, slope[pair], middle[pair]))
 
-    def inward(self, arc: float) -> FloatArray:
-        """(2,) unit normal into the body, the bisector at an edge."""
-        reach = 1e-6 * self.radius
+    def inward(self, arc: float, reach: float) -> FloatArray:
+        """(2,) unit vector into the body, square to the mean of the chords over `reach` (m) to both sides."""
         sides = self.at(np.array([arc - reach, arc, arc + reach]))
         step = np.diff(sides, axis=0)
         step = step / np.hypot(*step.T)[:, None]

@@ -2,7 +2,8 @@
 
 The plug carries the inner part of the section and ends in the point C of the half plane; the layer
 leaves the face, turns around the edge and runs up the side. Plug, face layer and side layer meet in C,
-one layer deep, so the grid at the surface itself is regular all along the meridian.
+one layer deep, so the grid at the surface itself is regular all along the meridian. The turn lies where the
+rod touches, and cells next to it are one pitch long on both sides: meshes of any pitch are alike there.
 """
 
 from dataclasses import dataclass
@@ -11,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from meshes.meridian import Meridian
+from meshes.section import Section
 
 __all__ = ["Nose", "inner_corner", "lay_nose"]
 
@@ -18,6 +20,10 @@ FloatArray = npt.NDArray[np.float64]
 
 # Depth of C below the surface over the depth that gives an even layer: by the same scan as the section.
 DEPTH = 0.85
+# Over the arc of the face: how far the nodes inside its outermost cells may move outwards, because cells lean
+# with them, and how far in they may lie, because the rest of the face is theirs.
+LEAN = 0.145
+FURTHEST_IN = 0.56
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +45,7 @@ class Nose:
     side: FloatArray
 
 
-def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, pitch: float) -> Nose:
+def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pitch: float) -> Nose:
     """Lay the nose grid.
 
     Parameters
@@ -47,22 +53,23 @@ def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, 
     meridian : Meridian
     height : float, m
         Where the body begins.
-    share : (p,) float64
-        Radius of the plug's nodes over the plug's radius, 0 to 1.
-    plug : float
-        Radius of the plug over the radius of the rod, at the body.
+    split : float, m
+        Arc length at which the layer turns from the face to the side, see `Meridian.shoulder`.
+    half : Section
+        Section of the body.
     pitch : float, m
         Wanted height of the rows.
     """
     curve = meridian.extended(height)
-    split = curve.shoulder()
-    layer = (1.0 - plug) * meridian.radius
-    corner = inner_corner(meridian, plug)
+    share = half.radius[: half.plug_nodes] / half.plug
+    layer = (1.0 - half.plug) * meridian.radius
+    corner = inner_corner(meridian, split, half.plug)
     deep = corner - curve.at(np.array(split))
     length = curve.arc[-1] - split
     rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
-    side = curve.at(_along(split, curve.arc[-1], rows, curve.corners()))
-    face = curve.at(split * share)
+    side = curve.at(_along(split, curve.arc[-1], rows, pitch, curve.corners()))
+    inside = float(np.clip(1.0 - pitch / split, FURTHEST_IN, half.inner + LEAN))
+    face = curve.at(split * np.interp(share, [0.0, half.inner, 1.0], [0.0, inside, 1.0]))
     pole = max(layer, float(corner[1]))
     bottom = np.stack([corner[0] * share, pole + (corner[1] - pole) * share], axis=1)
     fade = np.linspace(0.0, 1.0, rows + 1)
@@ -70,12 +77,15 @@ def lay_nose(meridian: Meridian, height: float, share: FloatArray, plug: float, 
     return Nose(face, _filled(bottom, wall, share, height), side)
 
 
-def inner_corner(meridian: Meridian, plug: float) -> FloatArray:
-    """(2,) point C (rho, z) where plug, face layer and side layer meet, m; arguments as in `lay_nose`."""
+def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
+    """(2,) point C (rho, z), m, where plug, face layer and side layer meet.
+
+    `split` is the arc length of the turn, m; `plug` the radius of the plug over that of the rod.
+    """
     curve = meridian.extended(meridian.height + meridian.radius)
-    split = curve.shoulder()
-    depth = _depth(curve, split, (1.0 - plug) * meridian.radius)
-    return np.asarray(curve.at(np.array(split)) + depth * curve.inward(split))
+    layer = (1.0 - plug) * meridian.radius
+    depth = _depth(curve, split, layer)
+    return np.asarray(curve.at(np.array(split)) + depth * curve.inward(split, 0.5 * layer))
 
 
 def _depth(meridian: Meridian, split: float, layer: float) -> float:
@@ -85,12 +95,13 @@ def _depth(meridian: Meridian, split: float, layer: float) -> float:
     return DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
 
 
-def _along(start: float, end: float, rows: int, corners: FloatArray) -> FloatArray:
-    """(rows + 1,) arc lengths in even steps, moved so that a row falls on each edge of the body."""
+def _along(start: float, end: float, rows: int, pitch: float, corners: FloatArray) -> FloatArray:
+    """(rows + 1,) arc lengths: a pitch, then even steps; or even ones with a row on each edge."""
     even = np.linspace(start, end, rows + 1)
     inside = corners[(corners > start + 0.3 * (even[1] - start)) & (corners < end - 0.3 * (even[1] - start))]
     if not len(inside):
-        return even
+        first = min(pitch, 1.2 * (even[1] - start))
+        return np.concatenate([[start], np.linspace(start + first, end, rows)])
     row = np.clip(np.rint((inside - start) / (even[1] - start)), 1, rows - 1)
     row, first = np.unique(row, return_index=True)
     places = np.concatenate([[start], inside[first], [end]])

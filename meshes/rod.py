@@ -66,7 +66,8 @@ def rod(
     slice_length : float, m, optional
         Wanted height of the slices (default: diameter / across); adjusted to divide the body evenly.
     zone, levels, buffer
-        See `refine`; the zone is in the rod frame. The nose is made long enough to hold the refinement.
+        See `refine`; the zone is in the rod frame. The nose is made long enough to hold the refinement, and
+        where its shape allows it the zone's centre lies in the middle of a finest cell.
     nose : bool
         False: only slices, from a flat face at z = 0 (the meridian then gives the radius alone).
 
@@ -81,14 +82,16 @@ def rod(
     wanted = pitch if slice_length is None else slice_length
     if not nose and zone is not None:
         raise MeshError("a rod of slices alone cannot be refined: leave the zone out or keep the nose")
-    start = _body_start(shape, half.plug, pitch, zone, levels, buffer) if nose else 0.0
+    near = None if zone is None else _meridional(zone.centre)
+    split = shape.shoulder(near, pitch / 2**levels)
+    start = _body_start(shape, split, half.plug, pitch, zone, levels, buffer) if nose else 0.0
     count = _slices(length, start, wanted, pitch)
     slab = (length - start) / count
     points, cells = _body(half, shape.radius, start, slab, count)
     body_cells = np.arange(len(cells)).reshape(count, -1).T
     body_nodes = np.arange(len(points)).reshape(count + 1, -1).T
     if nose:
-        points, cells = _with_nose(half, shape, start, pitch, points, cells)
+        points, cells = _with_nose(half, shape, start, split, pitch, points, cells)
     mesh = from_cells(points, cells, _tag)
     require_positive(mesh)
     if zone is not None and levels:
@@ -99,11 +102,16 @@ def rod(
     return RodMesh(mesh, body_nodes, body_cells, slab, start)
 
 
+def _meridional(point: FloatArray) -> FloatArray:
+    """(2,) distances of a point from the axis and from the tip, m."""
+    return np.array([np.hypot(point[0], point[1]), point[2]])
+
+
 def _body_start(
-    shape: Meridian, plug: float, pitch: float, zone: Zone | None, levels: int, buffer: int
+    shape: Meridian, split: float, plug: float, pitch: float, zone: Zone | None, levels: int, buffer: int
 ) -> float:
     """Where the slices can begin: past the tip's shape and past all cells that are to be split, m."""
-    inner = float(inner_corner(shape, plug)[1])
+    inner = float(inner_corner(shape, split, plug)[1])
     start = max(shape.height + pitch, inner + 1.5 * pitch, 2.0 * shape.radius / 3.0)
     if zone is None or levels == 0:
         return start
@@ -135,11 +143,17 @@ def _body(half: Section, radius: float, start: float, slab: float, count: int) -
 
 
 def _with_nose(
-    half: Section, shape: Meridian, start: float, pitch: float, points: FloatArray, cells: IntArray
+    half: Section,
+    shape: Meridian,
+    start: float,
+    split: float,
+    pitch: float,
+    points: FloatArray,
+    cells: IntArray,
 ) -> tuple[FloatArray, IntArray]:
     """Append the nose below the body; its last row is the body's first layer."""
     inner = half.plug_nodes
-    grid = lay_nose(shape, start, half.radius[:inner] / half.plug, half.plug, pitch)
+    grid = lay_nose(shape, start, split, half, pitch)
     rows = len(grid.side) - 1
     first = len(points)
     below = first + np.arange(inner)

@@ -31,6 +31,8 @@ class Section:
         Cells, counter-clockwise; those inside the circle of radius `plug` first.
     plug : float
         Radius of the circle inside the outer ring.
+    inner : float
+        Where the ring inside that circle begins on the symmetry plane, over the circle's radius.
     plug_nodes, plug_quads : int
         How many nodes and cells lie in or on that circle.
     """
@@ -38,6 +40,7 @@ class Section:
     unit: FloatArray
     quads: IntArray
     plug: float
+    inner: float
     plug_nodes: int
     plug_quads: int
 
@@ -84,10 +87,12 @@ def section(across: int) -> Section:
         If `across` is odd or below 6: an inner and an outer ring around a core need that many.
     """
     core, rings = core_and_rings(across)
-    unit = np.concatenate([_core(core), _rings(core, rings)])
+    plug = max(PLUG, 1.0 - 2.0 / across)  # cells of fine sections are alike in depth
+    unit = np.concatenate([_core(core), _rings(core, rings, plug)])
     quads = _quads(core, rings)
     outer = 2 * core
-    return Section(unit, quads, PLUG, len(unit) - outer - 1, len(quads) - outer)
+    inner = 1.0 - (1.0 - CORE / plug) / (rings - 1)
+    return Section(unit, quads, plug, inner, len(unit) - outer - 1, len(quads) - outer)
 
 
 def _core(n: int) -> FloatArray:
@@ -107,14 +112,14 @@ def _rim(n: int) -> IntArray:
     return np.concatenate([right, top, left])
 
 
-def _rings(n: int, rings: int) -> FloatArray:
+def _rings(n: int, rings: int, plug: float) -> FloatArray:
     """(rings (2 n + 1), 2) ring nodes, each ring from +x to -x; the last two are circles."""
     angle = np.linspace(0.0, np.pi, 2 * n + 1)
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
     circle[[0, -1], 1] = 0.0
     start = _core(n)[_rim(n)]
     weight = np.arange(1, rings) / (rings - 1)
-    inner = start + weight[:, None, None] * (PLUG * circle - start)
+    inner = start + weight[:, None, None] * (plug * circle - start)
     return np.asarray(np.concatenate([inner, circle[None]]).reshape(-1, 2))
 
 

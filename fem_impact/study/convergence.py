@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from itertools import combinations
+from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cost.judge import pair_limit
@@ -24,10 +25,8 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
-# cells over the diameter of the body; every one is split as often, so all plates and bodies of a set are
-# alike (the tip's outer cells are not: one ring carries the edge on every mesh)
-ACROSS, LEVELS = (6, 8, 10, 12), 3
-QUICK_ACROSS, QUICK_LEVELS = (6, 8, 10), 2
+MESHES = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))  # alike in body, tip and barrier
+PLACES = (0.0, 0.5)  # of the barrier's grid under the rod; a mesh's value is the mean
 DEFAULT = 0.019 / 8 / 2**3  # m, tip of the measured sets at their own accuracy
 TOLD = ("e", "mu", "vibration/E_0")
 CAPTION = "Each quantity against the size of the elements; rings: limits for vanishing elements."
@@ -44,29 +43,34 @@ QUANTITIES = {
 }
 
 
-def family(scene: Scene, across: Iterable[int], levels: int) -> list[Scene]:
-    """Return the scene on meshes with these cells across the body, each split as often."""
-    plain = replace_all(scene, {"save.frames": 0})
-    return [on_mesh(plain, Mesh(cells, levels)) for cells in across]
+def jobs_of(name: str, quick: bool) -> list[list[Job]]:
+    """Return the jobs of a set: for each mesh, from coarse to fine, one a place of the barrier's grid.
+
+    The quick study leaves out the finest mesh and the second place.
+    """
+    plain = replace_all(load(name), {"save.frames": 0})
+    scenes = [on_mesh(plain, mesh) for mesh in (MESHES[:-1] if quick else MESHES)]
+    places = PLACES[:1] if quick else PLACES
+    return [[_job(scene.replace("accuracy.grid_shift", place)) for place in places] for scene in scenes]
 
 
-def jobs_of(name: str, quick: bool) -> list[Job]:
-    """Return the jobs of a set, one a mesh, from coarse to fine."""
-    scenes = family(load(name), *((QUICK_ACROSS, QUICK_LEVELS) if quick else (ACROSS, LEVELS)))
-    return [Job(f"{name}-{scene.accuracy.across}", scene) for scene in scenes]
+def _job(scene: Scene) -> Job:
+    size, place = scene.accuracy.tip_size * 1e3, scene.accuracy.grid_shift
+    return Job(f"{scene.id}-{size:.3f}-{place:g}", scene)
 
 
 def plan(request: Request, results: Results) -> list[Job]:
     """Return the jobs of the sets that are asked for, or of `SETS`."""
-    return [job for name in request.ids or SETS for job in jobs_of(name, request.quick)]
+    return [job for name in request.ids or SETS for mesh in jobs_of(name, request.quick) for job in mesh]
 
 
 def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
     """Extrapolate every quantity of every set; write table, data and figure."""
     rows = []
     for name in request.ids or SETS:
-        runs = [results[job.name] for job in jobs_of(name, request.quick)]
-        rows += convergence_rows(name, [run for run in runs if isinstance(run, Outcome)])
+        runs = [[results[job.name] for job in mesh] for mesh in jobs_of(name, request.quick)]
+        done = [[run for run in mesh if isinstance(run, Outcome)] for mesh in runs]
+        rows += convergence_rows(name, [mesh for mesh in done if mesh])
     paper = Paper(
         "convergence",
         "What vanishing elements would give",
@@ -80,14 +84,19 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
     return publish(paper, request, results)
 
 
-def convergence_rows(name: str, runs: Sequence[Outcome]) -> list[Row]:
-    """Return one row a quantity; none when fewer than three meshes are there."""
-    if len(runs) < 3:
+def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row]:
+    """Return one row a quantity; none when fewer than three meshes are there.
+
+    ``meshes`` are, from coarse to fine, the outcomes of a mesh at its places of the barrier's grid.
+    """
+    if len(meshes) < 3:
         return []
-    sizes = [run["tip_size_m"] for run in runs]
+    sizes = [runs[0]["tip_size_m"] for runs in meshes]
+    costs = [sum(run["cpu_s"] for run in runs) for runs in meshes]
     return [
-        {"set": name, "quantity": words, "tip_size_m": sizes, "cpu_s": [run["cpu_s"] for run in runs]}
-        | _limit(sizes, [run[key] for run in runs])
+        {"set": name, "quantity": words, "tip_size_m": sizes, "cpu_s": costs}
+        | _limit(sizes, [fmean(run[key] for run in runs) for runs in meshes])
+        | {"apart": [max(run[key] for run in runs) - min(run[key] for run in runs) for runs in meshes]}
         for words, key in QUANTITIES.items()
     ]
 
@@ -144,10 +153,12 @@ def _sheet(rows: list[Row]) -> Sheet:
         "order",
         "band",
         "scatter",
+        "places apart",
     )
     return Sheet(
         "convergence",
-        "Values by the element at the tip; order – is none",
+        "Values by the element at the tip, means over two places of the barrier's grid; order – is none; "
+        "places apart: their difference on the finest mesh",
         columns,
         [_line(r, sizes) for r in rows],
     )
@@ -156,7 +167,7 @@ def _sheet(rows: list[Row]) -> Sheet:
 def _line(row: Row, sizes: list[float]) -> list[Cell]:
     values = dict(zip(row["tip_size_m"], row["values"], strict=True))
     found = (row[key] for key in ("limit", "order", "band", "scatter"))
-    return [row["set"], row["quantity"], *(values.get(size) for size in sizes), *found]
+    return [row["set"], row["quantity"], *(values.get(size) for size in sizes), *found, row["apart"][-1]]
 
 
 def _panels(rows: list[Row]) -> list[Panel]:

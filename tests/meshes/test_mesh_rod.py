@@ -171,3 +171,17 @@ def test_slices_alone_make_a_flat_bar():
 def test_impossible_rods_are_refused(change, words):
     with pytest.raises(meshes.MeshError, match=words):
         meshes.rod(**{"meridian": plain(), "length": LENGTH, **change})
+
+
+@pytest.mark.parametrize("degrees", [17.0, 25.0, 37.0, 45.0, 60.0])
+@pytest.mark.parametrize(("across", "levels"), [(8, 2), (12, 2), (8, 3)])
+def test_the_contact_lies_in_the_middle_of_a_cell_between_cells_of_one_size(degrees, across, levels):
+    meridian = edge_radius()
+    zone = contact_zone(meridian, np.deg2rad(degrees))
+    mesh = meshes.rod(meridian, LENGTH, across, zone=zone, levels=levels).mesh
+    place = zone.local(mesh.points[mesh.free_skin])
+    along = np.sort(place[(place[:, 1] == 0.0) & (np.abs(place[:, 2]) < 0.5e-3), 0])
+    size = 2.0 * RADIUS / across / 2**levels
+    first = int(np.searchsorted(along, 0.0))
+    assert along[first] == pytest.approx(-along[first - 1], rel=0.3)
+    assert np.diff(along[first - 2 : first + 2]) == pytest.approx([size] * 3, rel=0.16)

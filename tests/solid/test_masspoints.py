@@ -81,14 +81,14 @@ def test_a_motion_of_the_whole_section_is_left_alone(drawn):
 
 
 def test_mass_and_inertia_of_a_scenes_rod():
-    """Layers of lumped mass along the axis leave h^2 / (6 k^2) of the inertia too much."""
+    """Layers of lumped mass along the axis leave up to h^2 / (6 k^2) of the inertia too much."""
     short = {"length": 0.08, "across": 8}
     made = model("vibration", "barrier-rigid", **short)
     places = made.layout.rod[~made.geometry.rod.mesh.is_hanging]
     found = rigid_motion(made.start[0][places], made.start[1][places], made.mass[places[:, 0]])
     rod = projectile(scene("vibration", "barrier-rigid", **short))
     assert found.mass == pytest.approx(rod.mass, rel=1e-12)
-    assert found.inertia / found.mass == pytest.approx(rod.k2, rel=1e-3)
+    assert 0.0 < found.inertia / found.mass - rod.k2 < made.geometry.rod.slice_length**2 / 6.0
 
 
 def test_a_turned_rod_has_no_force():

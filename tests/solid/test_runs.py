@@ -14,6 +14,7 @@ from fem_impact.reduce import reduce
 from fem_impact.solid import build as built
 from fem_impact.solid.build import START_GAP
 from fem_impact.solid.contact import PlaneContact
+from fem_impact.solid.geometry import to_barrier_frame
 from fem_impact.solid.march import advance, evaluate, march
 from fem_impact.solid.run import solve
 from meshes import SKIN
@@ -25,7 +26,7 @@ YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "ra
 
 @pytest.fixture(scope="module")
 def elastic():
-    return scenes.run(*PLANE, "large-rotation")
+    return scenes.run(*PLANE, "large-rotation", tip=0.3e-3, across=8)
 
 
 @pytest.fixture(scope="module")
@@ -37,17 +38,17 @@ def _outcome(result):
     return reduce(result.scene, result)
 
 
-def test_elastic_frictionless_long_rod_touches_twice(elastic):
-    """Reference: e .853, E_bend .058 (Hertz and beam); e .851, E_vib .060 (CalculiX)."""
+def test_elastic_frictionless_long_rod_touches_twice_and_grazes_between(elastic):
+    """Reference: e .826, .0134 N s in the graze (modes, Hertz); without it e .851, E_vib .060 (CalculiX)."""
     found = _outcome(elastic)
     assert elastic.finished
-    assert len(found["contacts"]) == 2
-    assert found["e_edge"] == pytest.approx(0.855, abs=0.025)
-    assert 0.050 < found["E_vib_over_E_0"] < 0.065
-    first, second = found["contacts"]
+    assert found["e_edge"] == pytest.approx(0.826, abs=0.02)
+    assert 0.060 < found["E_vib_over_E_0"] < 0.075
+    first, graze, second = found["contacts"]
     assert first["end_s"] == pytest.approx(125e-6, abs=15e-6)
     assert second["start_s"] == pytest.approx(348e-6, abs=15e-6)
-    assert first["impulse_n_Ns"] == pytest.approx(0.39, abs=0.03)
+    assert first["impulse_n_Ns"] == pytest.approx(0.37, abs=0.03)
+    assert graze["impulse_n_Ns"] == pytest.approx(0.0134, abs=0.01)
     assert second["impulse_n_Ns"] == pytest.approx(0.26, abs=0.03)
 
 
@@ -75,9 +76,10 @@ def test_energies_are_those_of_the_whole_rod(elastic):
     assert elastic.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert elastic.E_0 == pytest.approx(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2), rel=1e-6)
     gained = elastic.motion.V_n - impact.v_n
-    assert sum(i.impulse_n for i in elastic.model.book.intervals) == pytest.approx(
-        rod.mass * gained, rel=1e-6
-    )
+    book = elastic.model.book
+    assert 2 * book.impulse[1] == pytest.approx(rod.mass * gained, rel=1e-6)
+    # faint touches belong to no interval
+    assert sum(i.impulse_n for i in book.intervals) == pytest.approx(rod.mass * gained, rel=5e-5)
     inertia = rod.mass * rod.k2
     assert elastic.motion.inertia == pytest.approx(inertia, rel=5e-3)
 
@@ -269,39 +271,34 @@ def test_body_and_tip_operators_are_the_assembled_rod():
 
 
 def _between(share):
-    """Make meshes whose node nearest to the lowest point stands a share of a cell beside it."""
+    """Make meshes whose lowest point stands a share of a cell beside the middle of a cell."""
     real = built.build_geometry
 
     def made(scene, gap, meshed, vibrating):
         base = scene.projectile.diameter / scene.accuracy.across
         h = base / 2 ** round(np.log2(base / scene.accuracy.tip_size))
-        turn = share * h / scene.projectile.tip_radius
-        other = replace(scene, impact=replace(scene.impact, angle=scene.impact.angle + turn))
-        geometry = real(other, gap, meshed)
-        (t, b, n), c, s = geometry.rod_points.T, np.cos(turn), np.sin(turn)
-        points = np.stack([c * t - s * n, b, s * t + c * n], axis=1)
+        angle, turn = scene.impact.angle, share * h / scene.projectile.tip_radius
+        # the middle of a cell is the lowest point of a rod that stands a little steeper
+        geometry = real(replace(scene, impact=replace(scene.impact, angle=angle + turn)), gap, meshed)
+        rho, z = projectile(scene).contact_point(angle)
+        lowest = np.array([float(rho), 0.0, float(z)])
+        points = (geometry.rod.mesh.points - lowest) @ to_barrier_frame(angle).T
         points[:, 2] += gap - points[:, 2].min()
-        lowest = points[np.argmin(points[:, 2]), 0]
-        assert abs(lowest) == pytest.approx(share * h, abs=0.02 * h)
+        nearest = points[np.argmin(points[:, 2]), 0]
+        assert abs(nearest) == pytest.approx((0.5 - share) * h, abs=0.04 * h)
         return replace(geometry, rod_points=points)
 
     return made
 
 
-@pytest.mark.parametrize(
-    ("effects", "change"),
-    [((*PLANE, "friction"), 0.002), ((*PLANE, "friction", "rod-plasticity"), 0.02)],
-)
-def test_a_node_on_the_lowest_point_or_beside_it(effects, change, monkeypatch):
-    stated = scenes.scene(*effects, length=0.08, v_n=-2.1, v_t=-2.1)
-    found = []
-    for share in (0.0, 0.48):
-        monkeypatch.setattr(built, "build_geometry", _between(share))
-        found.append(_outcome(solve(stated)))
-        monkeypatch.undo()
-    assert found[0]["E_0_J"] == pytest.approx(found[1]["E_0_J"], rel=1e-9)
-    assert abs(found[0]["e_edge"] - found[1]["e_edge"]) < change
-    assert abs(found[0]["mu"] - found[1]["mu"]) < change
+def test_a_contact_in_the_middle_of_a_cell_is_nearest_to_that_of_finer_cells(monkeypatch):
+    stated = {"length": 0.08, "v_n": -2.1, "v_t": -2.1}
+    finer = _outcome(scenes.run(*PLANE, "friction", **stated, tip=0.4e-3))
+    middle = _outcome(scenes.run(*PLANE, "friction", **stated))
+    monkeypatch.setattr(built, "build_geometry", _between(0.48))
+    on_node = _outcome(solve(scenes.scene(*PLANE, "friction", **stated)))
+    assert abs(middle["e_edge"] - finer["e_edge"]) < 0.02 < abs(on_node["e_edge"] - finer["e_edge"])
+    assert abs(middle["mu"] - finer["mu"]) < 0.01 < abs(on_node["mu"] - finer["mu"])
 
 
 def test_gravity_is_an_account_of_its_own():

@@ -7,48 +7,50 @@ from study_fakes import outcome
 
 from fem_impact.progress import NullMeter
 from fem_impact.scale import Failure
-from fem_impact.scene import load
-from fem_impact.solid.geometry import levels_of
 from fem_impact.study import Request
 from fem_impact.study.convergence import (
-    LEVELS,
+    MESHES,
     QUANTITIES,
     _pairs,
     conclude,
     convergence_rows,
-    family,
+    jobs_of,
     plan,
 )
 
 NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
 
 
-def run(size):
-    values = NUMBERS | {"tip_size_m": size, "e_paper": 0.4 - 100.0 * size, "cpu_s": 7.0}
-    return outcome(**values)
+def run(size, place=0.0):
+    """An outcome whose e is .4 - 100/m x size, and lies .01 higher or lower at places of the grid."""
+    e = 0.4 - 100.0 * size + (0.01 if place else -0.01)
+    return outcome(**NUMBERS | {"tip_size_m": size, "e_paper": e, "cpu_s": 7.0})
 
 
 def study(out, broken=()):
-    """The study of t5b, whose meshes of ``broken`` cells failed."""
+    """The study of t5b, whose meshes of ``broken`` sizes, mm, failed."""
     request = Request(out, ("t5b",))
-    results = {
-        job.name: Failure(job.name, "An element folded.")
-        if job.scene.accuracy.across in broken
-        else run(job.scene.accuracy.tip_size)
-        for job in plan(request, {})
-    }
+    results = {}
+    for job in plan(request, {}):
+        size, place = job.scene.accuracy.tip_size, job.scene.accuracy.grid_shift
+        failed = any(abs(1e3 * size - one) < 1e-3 for one in broken)
+        results[job.name] = Failure(job.name, "An element folded.") if failed else run(size, place)
     return conclude(request, results, NullMeter())
 
 
-def test_all_meshes_of_a_family_are_split_as_often():
-    scenes = family(load("t5b"), (6, 8, 12), LEVELS)
-    assert [levels_of(scene) for scene in scenes] == [LEVELS] * 3
-    sizes = [scene.accuracy.tip_size for scene in scenes]
-    assert sizes[0] / sizes[2] == pytest.approx(2.0)
+def test_every_mesh_is_run_at_two_places_of_the_grid():
+    jobs = jobs_of("t5b", False)
+    assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [[0.0, 0.5]] * len(MESHES)
+    sizes = [mesh[0].scene.accuracy.tip_size for mesh in jobs]
+    assert sizes == sorted(sizes, reverse=True)
+    assert len({job.name for mesh in jobs for job in mesh}) == 2 * len(MESHES)
 
 
 def test_every_quantity_has_its_limit():
-    rows = {row["quantity"]: row for row in convergence_rows("t5b", [run(h * 1e-4) for h in (4, 3, 2)])}
+    meshes = [[run(h * 1e-4), run(h * 1e-4, 0.5)] for h in (4, 3, 2)]
+    rows = {row["quantity"]: row for row in convergence_rows("t5b", meshes)}
+    assert rows["e"]["values"] == pytest.approx([0.36, 0.37, 0.38])
+    assert rows["e"]["apart"] == pytest.approx([0.02] * 3)
     assert rows["e"]["limit"] == pytest.approx(0.4)
     assert rows["e"]["order"] == pytest.approx(1.0, abs=1e-3)
     assert rows["e"]["band"] == pytest.approx(1.25 * 0.02, rel=1e-3)
@@ -64,12 +66,13 @@ def test_two_meshes_are_held_to_the_limit_of_all():
 
 
 def test_the_study_writes_table_data_and_figure(tmp_path):
-    found = study(tmp_path, broken={10})
+    found = study(tmp_path, broken={0.396})
     line = next(line for line in found.text.splitlines() if line.startswith("| t5b | e |"))
     cells = [cell.strip() for cell in line.strip("|").split("|")]
-    assert cells[2:6] == ["0.3604", "0.3703", "0.3802", "0.4"]
+    assert cells[2:6] == ["0.3406", "0.3703", "0.3802", "0.4"]
     assert float(cells[6]) == pytest.approx(1, abs=1e-3)
     assert float(cells[7]) == pytest.approx(1.25 * 0.0198, rel=1e-2)
+    assert float(cells[9]) == pytest.approx(0.02)
     assert (
         "0.3802 ± 0.025 at 0.198 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
     )
@@ -80,16 +83,17 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
 
 
 def test_a_failed_mesh_is_said_and_the_others_still_count(tmp_path):
-    found = study(tmp_path, broken={8})
-    assert [f["scene_id"] for f in found.document["failures"]] == ["t5b-8"]
+    found = study(tmp_path, broken={0.594})
+    assert [f["scene_id"] for f in found.document["failures"]] == ["t5b-0.594-0", "t5b-0.594-0.5"]
     assert "| t5b | e |" in found.text
 
 
 def test_two_meshes_have_no_limit(tmp_path):
-    assert "| t5b | e |" not in study(tmp_path, broken={6, 8}).text
+    assert "| t5b | e |" not in study(tmp_path, broken={0.594, 0.396}).text
 
 
-def test_a_quick_study_has_three_coarser_meshes(tmp_path):
+def test_a_quick_study_leaves_out_the_dear_runs(tmp_path):
     full, quick = (plan(Request(tmp_path, ("t5b",), quick=q), {}) for q in (False, True))
-    assert len(quick) == 3
-    assert quick[0].scene.accuracy.tip_size > full[0].scene.accuracy.tip_size
+    assert (len(full), len(quick)) == (8, 3)
+    finest = min(job.scene.accuracy.tip_size for job in full)
+    assert all(job.scene.accuracy.tip_size > finest for job in quick)
