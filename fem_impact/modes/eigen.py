@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,9 +11,12 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 Array = NDArray[np.float64]
+Product = Callable[[Array], Array]
 
 DEFAULT_COUNT = 40
 RIGID = 3  # two translations and one turn in the symmetry plane
+SHIFT = 1e-5  # of the largest diagonal entry: closer to zero, float32 would keep too few digits of the factor
+ACCURACY = 1e-10  # of the eigenvalues
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,24 +61,50 @@ def rod_modes(
     ValueError
         If the body is not free: more or fewer than three rigid motions were found.
     """
-    free = np.flatnonzero(~fixed)
-    root = sp.diags(1 / np.sqrt(mass[free]))
-    shifted = (root @ stiffness[free][:, free] @ root).tocsc()
-    # a shift below zero keeps the factor definite although rigid motions have no stiffness
-    shift = -1e-6 * float(shifted.diagonal().max())
-    shifted.setdiag(shifted.diagonal() - shift)
-    # minimum degree on the symmetric pattern and no pivoting: a quarter of the fill of the default
-    factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    inverse = LinearOperator(shifted.shape, factor.solve, dtype=np.float64)
-    start = np.random.default_rng(0).normal(size=len(free))
+    root = sp.diags(np.where(fixed, 0.0, 1 / np.sqrt(mass)))
+
+    def times(x: Array) -> Array:
+        return np.asarray(root @ (stiffness @ (root @ x)))
+
+    roughly, shift = _rough_inverse(stiffness, root)
+
+    def solve(b: Array) -> Array:
+        x = roughly(b)
+        return x + roughly(b - times(x) + shift * x)
+
+    inverse = LinearOperator(stiffness.shape, solve, dtype=np.float64)
+    start = solve(np.random.default_rng(0).normal(size=len(mass)))
     # with the inverse at hand the solver takes only the shape of its first argument
-    value, vector = eigsh(shifted, k=count + RIGID, sigma=shift, which="LM", v0=start, OPinv=inverse)
+    vector = eigsh(stiffness, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ACCURACY)[1]
+    # beside the shift the lowest squares are small: the quotients of the vectors keep their digits
+    value = (vector * times(vector)).sum(axis=0)
+    rest = roughly(times(vector) - vector * value)  # what rounding left in the highest frequencies
+    vector -= rest - vector @ (vector.T @ rest)
     order = np.argsort(value)
     value, vector = value[order], vector[:, order]
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
         )
-    shape = np.zeros((len(mass), count))
-    shape[free] = root @ vector[:, RIGID:]
-    return RodModes(np.sqrt(value[RIGID:]), shape, mass)
+    return RodModes(np.sqrt(value[RIGID:]), root @ vector[:, RIGID:], mass)
+
+
+def _rough_inverse(stiffness: sp.csr_matrix, root: sp.dia_matrix) -> tuple[Product, float]:
+    """Return the inverse, good to a few digits, of stiffness over mass less a shift, and the shift, 1/s2.
+
+    ``root`` is 1 / sqrt(mass). The factor is by far the largest thing in memory, and float32 halves it.
+    """
+    free = np.flatnonzero(root.diagonal())
+    shifted = (root @ stiffness @ root).astype(np.float32)[free][:, free].tocsc()
+    # a shift below zero keeps the factor definite although rigid motions have no stiffness
+    shift = -SHIFT * float(shifted.diagonal().max())
+    shifted.setdiag(shifted.diagonal() - np.float32(shift))
+    # minimum degree on the symmetric pattern and no pivoting: a quarter of the fill of the default
+    factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def solve(b: Array) -> Array:
+        x = np.zeros_like(b)
+        x[free] = factor.solve(b[free].astype(np.float32))
+        return x
+
+    return solve, shift
