@@ -48,7 +48,7 @@ class Options(argparse.Namespace):
     readme: str = ""
     quick: bool = False
     workers: int | None = None
-    threads: int | None = None
+    threads: int = 1
     scheduler: str = ""
     target: str = ""
     budget: str = ""
@@ -136,7 +136,8 @@ def _add_run(commands: Commands) -> None:
         "--threads",
         type=int,
         choices=[1, 2],
-        help="threads (default: 2 where a core is free, 1 with a target; not a bit changes)",
+        default=1,
+        help="2: the second shares the forces, or with a target runs the second mesh (default: 1)",
     )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,7 +11,6 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
-from fem_impact.cores import cores
 from fem_impact.errors import RunError
 
 if TYPE_CHECKING:
@@ -24,8 +22,7 @@ __all__ = ["run"]
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
-    threads = options.threads or _threads(scene)
-    _say_plan(scene, options, threads)
+    _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.simulate import simulate
 
@@ -38,7 +35,7 @@ def run(options: Options) -> int:
             progress=meter,
             resume=options.resume,
             checkpoint_s=options.checkpoint,
-            threads=threads,
+            threads=options.threads,
         )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None
@@ -51,19 +48,13 @@ def run(options: Options) -> int:
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
-def _threads(scene: Scene) -> int:
-    """Return 2 where a second core has been free; a target's plan must not depend on who else computes."""
-    spare = cores() - os.getloadavg()[0]
-    return 2 if scene.accuracy.target is None and spare >= 1 else 1
-
-
-def _say_plan(scene: Scene, options: Options, threads: int) -> None:
+def _say_plan(scene: Scene, options: Options) -> None:
     """Before the work: what the measured costs chose for the error that the scene allows."""
     if scene.accuracy.target is None:
         return
     from fem_impact.cost import plan
 
-    sentence = plan(scene, options.fidelity or None, threads).sentence
+    sentence = plan(scene, options.fidelity or None, options.threads).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

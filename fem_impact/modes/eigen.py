@@ -10,6 +10,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
+from fem_impact.modes.stiffness import MassStiffness
+
 Array = NDArray[np.float64]
 Product = Callable[[Array], Array]
 
@@ -46,13 +48,13 @@ def no_modes(mass: Array) -> RodModes:
 
 
 def rod_modes(
-    stiffness: sp.csr_matrix, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
+    stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
 ) -> RodModes:
     """Return the lowest elastic modes.
 
     Parameters
     ----------
-    stiffness : (n, n), N/m; mass : (n,), kg
+    stiffness : over the masses, N/m; mass : (n,), kg
     fixed : (n,) unknowns held by symmetry
     count : number of elastic modes wanted
 
@@ -61,12 +63,12 @@ def rod_modes(
     ValueError
         If the body is not free: more or fewer than three rigid motions were found.
     """
-    root = sp.diags(np.where(fixed, 0.0, 1 / np.sqrt(mass)))
+    root = np.where(fixed, 0.0, 1 / np.sqrt(mass))
+    roughly, shift = _rough_inverse(stiffness, root)
+    scale = sp.diags(root)
 
     def times(x: Array) -> Array:
-        return np.asarray(root @ (stiffness @ (root @ x)))
-
-    roughly, shift = _rough_inverse(stiffness, root)
+        return np.asarray(scale @ (stiffness @ (scale @ x)))
 
     def solve(b: Array) -> Array:
         x = roughly(b)
@@ -75,27 +77,25 @@ def rod_modes(
     inverse = LinearOperator(stiffness.shape, solve, dtype=np.float64)
     start = solve(np.random.default_rng(0).normal(size=len(mass)))
     # with the inverse at hand the solver takes only the shape of its first argument
-    vector = eigsh(stiffness, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ACCURACY)[1]
-    # beside the shift the lowest squares are small: the quotients of the vectors keep their digits
-    value = (vector * times(vector)).sum(axis=0)
+    vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ACCURACY)[1]
+    # beside the shift the lowest squares are small: Rayleigh-Ritz gives their digits back
+    value, mix = np.linalg.eigh(vector.T @ times(vector))
+    vector = vector @ mix
     rest = roughly(times(vector) - vector * value)  # what rounding left in the highest frequencies
     vector -= rest - vector @ (vector.T @ rest)
-    order = np.argsort(value)
-    value, vector = value[order], vector[:, order]
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
         )
-    return RodModes(np.sqrt(value[RIGID:]), root @ vector[:, RIGID:], mass)
+    return RodModes(np.sqrt(value[RIGID:]), scale @ vector[:, RIGID:], mass)
 
 
-def _rough_inverse(stiffness: sp.csr_matrix, root: sp.dia_matrix) -> tuple[Product, float]:
+def _rough_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product, float]:
     """Return the inverse, good to a few digits, of stiffness over mass less a shift, and the shift, 1/s2.
 
     ``root`` is 1 / sqrt(mass). The factor is by far the largest thing in memory, and float32 halves it.
     """
-    free = np.flatnonzero(root.diagonal())
-    shifted = (root @ stiffness @ root).astype(np.float32)[free][:, free].tocsc()
+    free, shifted = np.flatnonzero(root), stiffness.scaled(root)
     # a shift below zero keeps the factor definite although rigid motions have no stiffness
     shift = -SHIFT * float(shifted.diagonal().max())
     shifted.setdiag(shifted.diagonal() - np.float32(shift))

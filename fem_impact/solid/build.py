@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from fem_impact.effects.spec import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
-from fem_impact.modes import rod_modes
+from fem_impact.modes import MassStiffness, rod_modes
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.elements import Kind, element_stiffness, isotropic_stiffness, lumped_mass
@@ -31,7 +31,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.solid.stable import stable_step
-from meshes import SKIN, HexMesh
+from meshes import SKIN, HexMesh, RodMesh
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -65,8 +65,8 @@ class Body:
     Attributes
     ----------
     points, places : (n, 3), positions in the barrier frame and unknowns of all nodes
-    yields : (m,) cells that may yield
-    stiffness : (m, 24, 24) linear operators; mass : (m, 8) lumped
+    yields : (m,) cells that may yield; element : kind of the others
+    mass : (m, 8) lumped
     """
 
     name: str
@@ -75,7 +75,7 @@ class Body:
     places: Ints
     material: Elastic
     yields: Bools
-    stiffness: Array
+    element: Kind
     mass: Array
 
 
@@ -88,13 +88,9 @@ def make_body(
     yields: Bools,
     element: Kind = "incompatible",
 ) -> Body:
-    """Return a body with its operators and masses; ``element`` is that of cells that cannot yield."""
-    C = isotropic_stiffness(material.E, material.nu)
-    K = element_stiffness(points, mesh.cells, C, element)
-    K[yields] = element_stiffness(points, mesh.cells[yields], C, "bbar")
-    return Body(
-        name, mesh, points, places, material, yields, K, lumped_mass(points, mesh.cells, material.rho)
-    )
+    """Return a body with its masses; ``element`` is that of cells that cannot yield."""
+    mass = lumped_mass(points, mesh.cells, material.rho)
+    return Body(name, mesh, points, places, material, yields, element, mass)
 
 
 def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
@@ -167,22 +163,47 @@ def _start(
     return x, v
 
 
+def stiffness_of(body: Body, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
+    """Return the stiffness of ``chosen`` cells over ``size`` unknowns, those from ``shift`` on."""
+    T = tie_operator(body.mesh.tie, body.places - shift, size)
+    C, cells = isotropic_stiffness(body.material.E, body.material.nu), body.mesh.cells
+    elastic = assemble(body.points, cells[chosen & ~body.yields], C, body.element, T)
+    return elastic + assemble(body.points, cells[chosen & body.yields], C, "bbar", T)
+
+
+def slices_of(body: Body, rod: RodMesh) -> SliceOperator:
+    """Return the operator of the rod's slices, all like the first."""
+    m, first = body.material, body.mesh.cells[rod.body_cells[:, 0]]
+    K = element_stiffness(body.points, first, isotropic_stiffness(m.E, m.nu), body.element)
+    return SliceOperator.of_rod(rod, K)
+
+
+def nose_and_whole(
+    body: Body, rod: RodMesh, drawn: MassPoints, layout: Layout
+) -> tuple[sp.csr_matrix, MassStiffness]:
+    """Return the rod's stiffness over its free unknowns: of cells neither sliced nor yielding, and of all.
+
+    The second is that over the masses.
+    """
+    sliced, n = np.zeros(len(body.mesh.cells), dtype=bool), layout.rod_size
+    sliced[rod.body_cells] = True
+    nose = stiffness_of(body, ~sliced & ~body.yields, n)
+    return nose, drawn.reduced(nose + stiffness_of(body, sliced | body.yields, n), layout.body_shape[1])
+
+
 def _elastic_rod(
     body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, drawn: MassPoints, spec: ModelSpec
-) -> ElasticRod | ElasticNose:
-    rod, n = geometry.rod, layout.rod_size
-    linear = ~body.yields
-    linear[rod.body_cells] = False
-    T = tie_operator(body.mesh.tie, body.places, n)
-    free = body.places[~body.mesh.is_hanging]
-    nose = NodeProduct.of(assemble(body.stiffness[linear], body.mesh.cells[linear], T), free)
+) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
+    n, free = layout.rod_size, body.places[~body.mesh.is_hanging]
+    nose, whole = nose_and_whole(body, geometry.rod, drawn, layout)
+    product = NodeProduct.of(nose, free)
     frame = TurningFrame.at(x[:n], mass[:n], free) if spec.turning_frame else FixedFrame(x[:n].copy())
     if not spec.vibrating:
         from fem_impact.solid.rigid_rest import ElasticNose
 
-        return ElasticNose(nose, frame, np.zeros(n), np.zeros(n))
-    slices = SliceOperator.of_rod(rod, body.stiffness)
-    return ElasticRod(slices, drawn, nose, frame, layout, np.zeros(n), np.zeros(n))
+        return ElasticNose(product, frame, np.zeros(n), np.zeros(n)), whole
+    slices = slices_of(body, geometry.rod)
+    return ElasticRod(slices, drawn, product, frame, layout, np.zeros(n), np.zeros(n)), whole
 
 
 def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
@@ -193,8 +214,13 @@ def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
     return RigidRest(places, mass[places[:, 0]])
 
 
-def elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, tuple[sp.dia_matrix, Array]]:
-    """Return the block's linear part, and springs and dashpots of the half-space around it."""
+def elastic_block(
+    body: Body, layout: Layout, x: Array
+) -> tuple[ElasticBlock, sp.csr_matrix, tuple[sp.dia_matrix, Array]]:
+    """Return the block's linear part, the stiffness of all its cells, and the half-space around it.
+
+    That is springs and dashpots.
+    """
     from fem_impact.solid.boundary import spread_boundary
 
     place = layout.barrier_slice
@@ -203,13 +229,32 @@ def elastic_block(body: Body, layout: Layout, x: Array) -> tuple[ElasticBlock, t
     m = body.material
     spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
     springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
-    K = sp.csr_matrix(assemble(body.stiffness[~body.yields], body.mesh.cells[~body.yields], T) + springs)
+    n = place.stop - place.start
+    linear = stiffness_of(body, ~body.yields, n, place.start)
+    K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
-    n = K.shape[0]
     block = ElasticBlock(
         NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)
     )
-    return block, (springs, pots)
+    return block, linear + stiffness_of(body, body.yields, n, place.start), (springs, pots)
+
+
+def _block(
+    barrier: list[Body],
+    spec: ModelSpec,
+    layout: Layout,
+    x: Array,
+    inverse_mass: Array,
+    share: float,
+    steps: dict[str, float],
+) -> tuple[list[ElasticBlock], list[Dashpots]]:
+    """Return the items of a meshed barrier and note its step."""
+    if not barrier:
+        return [], []
+    block, whole, outside = elastic_block(barrier[0], layout, x)
+    steps["barrier"] = stable_step(whole, inverse_mass[layout.barrier_slice], share)
+    pots = [dashpots(barrier[0], layout, inverse_mass, whole, outside)] if spec.radiating else []
+    return [block], pots
 
 
 def dashpots(
@@ -281,7 +326,7 @@ def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layo
 def _damping(
     loss: float,
     linear: ElasticRod | ElasticNose,
-    K: sp.csr_matrix,
+    K: MassStiffness,
     mass: Array,
     inverse_mass: Array,
     free: Ints,
@@ -306,12 +351,6 @@ def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
         )
 
 
-def assembled(body: Body, size: int, shift: int = 0) -> sp.csr_matrix:
-    """Return a body's stiffness over ``size`` unknowns, ``shift`` places lower than the flat vector's."""
-    T = tie_operator(body.mesh.tie, body.places - shift, size)
-    return assemble(body.stiffness, body.mesh.cells, T)
-
-
 def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
 
@@ -333,7 +372,10 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     rod = bodies[0]
     drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
     x, v = _start(bodies, layout, scene, mass, drawn)
-    linear = _elastic_rod(rod, geometry, layout, mass, x, drawn, spec)
+    steps: dict[str, float] = {}
+    # the block first: what its assembly takes for a while, the rod's, which stays, takes up again
+    block, pots = _block(bodies[1:], spec, layout, x, inverse_mass, scene.accuracy.step, steps)
+    linear, rod_stiffness = _elastic_rod(rod, geometry, layout, mass, x, drawn, spec)
     forces: list[Force] = [linear]
     impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
     zones = [
@@ -343,20 +385,13 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     ]
     if spec.gravity is not None:
         forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
-    n, place = layout.rod_size, layout.barrier_slice
-    rod_stiffness = drawn.reduced(assembled(rod, n), layout.body_shape[1])
-    share = scene.accuracy.step
-    steps = {"rod": stable_step(rod_stiffness, inverse_mass[:n], share)}
+    n = layout.rod_size
+    steps["rod"] = stable_step(rod_stiffness, inverse_mass[:n], scene.accuracy.step)
     if spec.loss_factor is not None:
         free = rod.places[~rod.mesh.is_hanging]
         impulses.append(_damping(spec.loss_factor, linear, rod_stiffness, mass, inverse_mass, free, steps))
-    if len(bodies) == 2:
-        block_stiffness = assembled(bodies[1], place.stop - n, n)
-        steps["barrier"] = stable_step(block_stiffness, inverse_mass[place], share)
-        block, outside = elastic_block(bodies[1], layout, x)
-        forces.append(block)
-        if spec.radiating:
-            impulses.append(dashpots(bodies[1], layout, inverse_mass, block_stiffness, outside))
+    forces += block
+    impulses += pots
     contact = _contact(bodies, geometry, spec, x, inverse_mass)
     impulses.append(contact)
     hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])

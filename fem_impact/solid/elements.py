@@ -13,7 +13,6 @@ Array = NDArray[np.float64]
 Kind = Literal["full", "bbar", "incompatible"]
 
 VTK_TO_SKFEM = np.argsort(HEX_MAPPING[:8])
-CHUNK = 500  # elements handled at once, so that assembly stays below a few tens of MB
 
 
 def isotropic_stiffness(E: float, nu: float) -> Array:
@@ -71,19 +70,6 @@ def incompatible_gradients(basis: Basis) -> Array:
     return np.asarray(np.einsum("kq,kim,mq->mqki", slope, inverse, scale))
 
 
-def _stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: Kind) -> Array:
-    basis = _basis(points, cells)
-    grad, dx = shape_gradients(basis)
-    B = strain_matrix(grad)
-    if kind == "bbar":
-        B = mean_dilatation(B, dx)
-    if kind != "incompatible":
-        return np.asarray(np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True))
-    B = np.concatenate([B, strain_matrix(incompatible_gradients(basis))], axis=-1)
-    K = np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True)
-    return np.asarray(K[:, :24, :24] - K[:, :24, 24:] @ np.linalg.solve(K[:, 24:, 24:], K[:, 24:, :24]))
-
-
 def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: Kind) -> Array:
     """Return element stiffness matrices, N/m.
 
@@ -98,10 +84,16 @@ def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: K
     -------
     (m, 24, 24) float64, N/m, node-major (node * 3 + component)
     """
-    K = np.empty((len(cells), 24, 24))
-    for i in range(0, len(cells), CHUNK):
-        K[i : i + CHUNK] = _stiffness(points, cells[i : i + CHUNK], C, kind)
-    return K
+    basis = _basis(points, cells)
+    grad, dx = shape_gradients(basis)
+    B = strain_matrix(grad)
+    if kind == "bbar":
+        B = mean_dilatation(B, dx)
+    if kind != "incompatible":
+        return np.asarray(np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True))
+    B = np.concatenate([B, strain_matrix(incompatible_gradients(basis))], axis=-1)
+    K = np.einsum("mqsi,mqsj->mij", B, (C @ B) * dx[..., None, None], optimize=True)
+    return np.asarray(K[:, :24, :24] - K[:, :24, 24:] @ np.linalg.solve(K[:, 24:, 24:], K[:, 24:, :24]))
 
 
 def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Array:

@@ -17,6 +17,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from fem_impact.modes import MassStiffness
 from fem_impact.solid.kernels import allocating_kernel
 from meshes import RodMesh
 
@@ -88,10 +89,9 @@ class MassPoints:
         rest = size - slices.shape[0]
         return sp.csr_matrix(sp.block_diag([slices, sp.csr_matrix((rest, rest))]) + sp.identity(size))
 
-    def reduced(self, K: sp.csr_matrix, layers: int) -> sp.csr_matrix:
+    def reduced(self, K: sp.csr_matrix, layers: int) -> MassStiffness:
         """Return P^T K P over the masses of a stiffness (size, size) over the nodes, N/m."""
-        P = self.matrix(layers, K.shape[0])
-        return sp.csr_matrix(P.T @ K @ P)
+        return MassStiffness(K, self.matrix(layers, K.shape[0]))
 
 
 @allocating_kernel

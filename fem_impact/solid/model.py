@@ -9,9 +9,9 @@ from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from fem_impact.modes import MassStiffness
 from fem_impact.solid.contact import ContactBook
 from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.items import Account, Force, Impulse, Part
@@ -53,8 +53,8 @@ class Model:
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
-    rod_stiffness : (n, n) elastic stiffness of the whole half rod over its free unknowns, N/m; None for a
-        rod that cannot vibrate
+    rod_stiffness : elastic stiffness of the whole half rod over its masses, N/m; None for a rod that cannot
+        vibrate
     steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
     """
@@ -69,7 +69,7 @@ class Model:
     hanging: Hanging
     zones: Sequence[YieldingZone]
     book: ContactBook
-    rod_stiffness: sp.csr_matrix | None
+    rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
     parts: Sequence[Part] = field(init=False)

@@ -9,11 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.modes import Flight, RigidMotion, RodModes, flight, no_modes, rigid_motion, rod_modes
+from fem_impact.modes.eigen import DEFAULT_COUNT
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+def modes_of(model: Model, count: int = DEFAULT_COUNT) -> RodModes:
+    """Return the modes of the undeformed rod, none of one that cannot vibrate."""
+    n, K = model.layout.rod_size, model.rod_stiffness
+    mass = model.mass[:n]
+    return no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0, count)
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +47,9 @@ class RodView:
         """Compute the modes and pick the rim."""
         mesh, n = model.geometry.rod.mesh, model.layout.rod_size
         places = model.layout.rod[~mesh.is_hanging]
-        K, mass = model.rod_stiffness, model.mass[:n]
-        modes = no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0)
         skin = mesh.free_skin
         rim = skin[np.abs(model.geometry.rod_points[skin, 1]) < 1e-12]
-        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[rim], modes)
+        return cls(places, model.mass[places[:, 0]], n, model.layout.rod[rim], modes_of(model))
 
     def rigid(self, state: State) -> RigidMotion:
         """Return the rigid part of the present motion."""

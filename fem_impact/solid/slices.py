@@ -42,11 +42,11 @@ class SliceOperator:
 
     @classmethod
     def of_rod(cls, rod: RodMesh, K: Array) -> SliceOperator:
-        """Build from a rod's mesh and the element matrices (cells, 24, 24) of all its cells."""
+        """Build from a rod's mesh and the element matrices (m, 24, 24) of its first slice."""
         section = np.full(len(rod.mesh.points), -1)
         section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
         first = rod.mesh.cells[rod.body_cells[:, 0]]
-        return cls.of(K[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
+        return cls.of(K, section[first[:, :4]], section[first[:, 4:]])
 
     @classmethod
     def of(cls, K: Array, lower_nodes: Ints, upper_nodes: Ints) -> SliceOperator:

@@ -8,13 +8,14 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from fem_impact.solid.elements import Kind, element_stiffness
 from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-CHUNK = 1000  # elements assembled at once: the sparse matrix of their entries takes a few tens of MB
+CHUNK = 500  # elements assembled at once: their strain matrices and entries take a few tens of MB
 
 
 def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
@@ -25,17 +26,17 @@ def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
     return sp.csr_matrix((np.repeat(coo.data, 3), (rows, columns)), shape=(3 * tie.shape[0], size))
 
 
-def _element_places(cells: Ints) -> Ints:
-    return (cells[:, :, None] * 3 + np.arange(3)).reshape(len(cells), 24)
+def assemble(points: Array, cells: Ints, C: Array, kind: Kind, T: sp.csr_matrix) -> sp.csr_matrix:
+    """Return the assembled T^T K T (size, size), N/m, of elements as in `element_stiffness`.
 
-
-def assemble(K: Array, cells: Ints, T: sp.csr_matrix) -> sp.csr_matrix:
-    """Return the assembled T^T K T (size, size) of element matrices (m, 24, 24)."""
+    Their matrices, by far larger than what they add up to, never exist all at once.
+    """
     total = sp.csr_matrix((T.shape[1], T.shape[1]))
     for first in range(0, len(cells), CHUNK):
-        dof = _element_places(cells[first : first + CHUNK]).astype(np.int32)
-        values = K[first : first + CHUNK].ravel()
+        some = cells[first : first + CHUNK]
+        dof = (some[:, :, None] * 3 + np.arange(3)).reshape(len(some), 24).astype(np.int32)
         rows, columns = np.repeat(dof, 24, axis=1).ravel(), np.tile(dof, (1, 24)).ravel()
+        values = element_stiffness(points, some, C, kind).ravel()
         part = sp.csr_matrix((values, (rows, columns)), shape=(T.shape[0], T.shape[0]))
         total = total + T.T @ part @ T
     return sp.csr_matrix(total)

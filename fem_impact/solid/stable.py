@@ -7,6 +7,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
+from fem_impact.modes import MassStiffness
 from fem_impact.solid.hexmodes import CORNERS, reference_gradients
 from fem_impact.solid.kernels import allocating_kernel
 
@@ -17,7 +18,7 @@ ACCURACY = 1e-3  # of the largest eigenvalue; it lies far inside the safety fact
 REFERENCE = np.ascontiguousarray(reference_gradients(CORNERS))
 
 
-def stable_step(K: sp.csr_matrix, inverse_mass: Array, share: float = SAFETY) -> float:
+def stable_step(K: sp.csr_matrix | MassStiffness, inverse_mass: Array, share: float = SAFETY) -> float:
     """Return a share of the step, s, at which leapfrog becomes unstable: 2 over the largest frequency.
 
     Parameters

@@ -6,21 +6,16 @@ operators, contact, ledger and the march are the solver's.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.modes import RigidMotion, rigid_motion
+from fem_impact.modes import MassStiffness, RigidMotion, rigid_motion
 from fem_impact.solid import build
 from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import ElasticRod
-from fem_impact.solid.elements import (
-    Kind,
-    element_stiffness,
-    isotropic_stiffness,
-    lumped_mass,
-)
+from fem_impact.solid.elements import Kind
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.hardening import Hardening
@@ -30,7 +25,7 @@ from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
 from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, tie_operator
+from fem_impact.solid.sparse import Hanging, NodeProduct
 from fem_impact.solid.stable import stable_step
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
@@ -124,15 +119,14 @@ def body_model(body: Body) -> Model:
     drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
     x, v = _start(body, parts, layout, drawn)
     zones = _zones(body, parts, layout)
-    forces: list[Force] = [_linear(body, parts[0], layout, mass, x, drawn), *zones]
+    linear, stiffness = _linear(body, parts[0], layout, mass, x, drawn)
+    forces: list[Force] = [linear, *zones]
     impulses: list[Impulse] = []
     n, place = layout.rod_size, layout.barrier_slice
-    stiffness = drawn.reduced(build.assembled(parts[0], n), layout.body_shape[1])
     steps = {"rod": stable_step(stiffness, inverse[:n])}
     if block:
-        whole = build.assembled(parts[1], place.stop - n, n)
+        elastic, whole, outside = build.elastic_block(parts[1], layout, x)
         steps["barrier"] = stable_step(whole, inverse[place])
-        elastic, outside = build.elastic_block(parts[1], layout, x)
         forces.append(elastic)
         impulses.append(build.dashpots(parts[1], layout, inverse, whole, outside))
     contact = _contact(body, parts, inverse, x)
@@ -165,9 +159,8 @@ def _zones(body: Body, parts: list[build.Body], layout: Layout) -> list[Yielding
 def _part(body: Body, layout: Layout) -> build.Body:
     mesh = body.mesh.mesh
     yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
-    K = element_stiffness(body.points, mesh.cells, isotropic_stiffness(body.E, body.nu), body.kind)
-    mass = lumped_mass(body.points, mesh.cells, body.rho) * body.denser[:, None]
-    return build.Body("rod", mesh, body.points, layout.rod, body, yields, K, mass)
+    part = build.make_body("rod", mesh, body.points, layout.rod, body, yields, body.kind)
+    return replace(part, mass=part.mass * body.denser[:, None])
 
 
 def _block_part(block: Block, layout: Layout) -> build.Body:
@@ -198,34 +191,19 @@ def _start(body: Body, parts: list[build.Body], layout: Layout, drawn: MassPoint
 
 def _linear(
     body: Body, part: build.Body, layout: Layout, mass: Array, x: Array, drawn: MassPoints
-) -> ElasticRod:
-    """Return the linear part: slices by stencil where the mesh has them, the rest by rows."""
-    mesh, n, K = part.mesh, layout.rod_size, part.stiffness
-    rest = ~part.yields
-    rest[body.mesh.body_cells] = False
-    T = tie_operator(mesh.tie, layout.rod, n)
-    free = layout.rod[~mesh.is_hanging]
-    product = NodeProduct.of(assemble(K[rest], mesh.cells[rest], T), free) if rest.any() else _nothing()
+) -> tuple[ElasticRod, MassStiffness]:
+    """Return the linear part, slices by stencil where there are any, the rest by rows; and the stiffness."""
+    n, free = layout.rod_size, layout.rod[~part.mesh.is_hanging]
+    nose, whole = build.nose_and_whole(part, body.mesh, drawn, layout)
     frame = TurningFrame.at(x[:n], mass[:n], free) if body.turning else FixedFrame(x[:n].copy())
-    return ElasticRod(_slices(body, K), drawn, product, frame, layout, np.zeros(n), np.zeros(n))
+    slices = build.slices_of(part, body.mesh) if body.mesh.body_cells.size else _no_slices()
+    rod = ElasticRod(slices, drawn, NodeProduct.of(nose, free), frame, layout, np.zeros(n), np.zeros(n))
+    return rod, whole
 
 
-def _nothing() -> NodeProduct:
-    return NodeProduct(
-        np.zeros((0, 3), np.int64),
-        np.zeros(1, np.int64),
-        np.zeros(0, np.int32),
-        np.zeros(0, np.int32),
-        np.zeros((0, 9)),
-        *np.zeros((2, 0, 3)),
-    )
-
-
-def _slices(body: Body, K: Array) -> SliceOperator:
-    if not body.mesh.body_cells.size:
-        none = np.zeros(0)
-        return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none, none)
-    return SliceOperator.of_rod(body.mesh, K)
+def _no_slices() -> SliceOperator:
+    none = np.zeros(0)
+    return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none, none)
 
 
 def _contact(

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.modes import rod_modes
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.solid.elements import isotropic_stiffness, lumped_mass
 from fem_impact.solid.march import march
 from fem_impact.solid.masspoints import TWISTING, MassPoints
 from fem_impact.solid.model import Model
+from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.sparse import assemble, tie_operator
 from fem_impact.solid.state import State
 from fem_impact.verify import steel
@@ -46,8 +47,7 @@ def bar_of(p: Values, velocity: Array | None = None) -> Model:
 def frequencies(model: Model) -> dict[str, Array]:
     """Return bending and longitudinal frequencies, Hz, told apart by what the axis does."""
     points, places = model.geometry.rod_points, model.layout.rod
-    n = model.layout.rod_size
-    found = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0, COUNT)
+    found = modes_of(model, COUNT)
     axis = np.hypot(points[:, 0], points[:, 1]) < 1e-9
     across, along = (abs(found.shape[places[axis, c]]).max(axis=0) for c in (0, 2))
     return {
@@ -60,9 +60,9 @@ def _torsion(model: Model, p: Values) -> float:
     """Return the first frequency, Hz, of the motions that the solver's mirrored half leaves out."""
     rod, layout = model.geometry.rod, model.layout
     points, cells, n = rod.mesh.points, rod.mesh.cells, layout.rod_size
-    K = element_stiffness(points, cells, isotropic_stiffness(p["E"], p["nu"]), "incompatible")
+    C, T = isotropic_stiffness(p["E"], p["nu"]), tie_operator(rod.mesh.tie, layout.rod, n)
     drawn = MassPoints.of_rod(rod, lumped_mass(points, cells, p["rho"]), p["rho"], TWISTING)
-    plain = assemble(K, cells, tie_operator(rod.mesh.tie, layout.rod, n))
+    plain = assemble(points, cells, C, "incompatible", T)
     fixed = np.zeros(n, dtype=bool)
     fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
     found = rod_modes(drawn.reduced(plain, layout.body_shape[1]), model.mass[:n], fixed, COUNT)

@@ -30,9 +30,10 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.errors import SceneError
-from fem_impact.modes import flight, rod_modes
+from fem_impact.modes import flight
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
+from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.state import State
 from fem_impact.verify import steel
 from fem_impact.verify.bodies import Block, Body, body_model, placed
@@ -79,8 +80,7 @@ def _vibration(model: Model, state: State) -> float:
     """Return the energy of the rod's free vibration, J, by modal projection."""
     n = model.layout.rod_size
     evaluate(model, state)
-    modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0)
-    return flight(modes, state.v[:n], state.force[:n]).energy
+    return flight(modes_of(model), state.v[:n], state.force[:n]).energy
 
 
 def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:

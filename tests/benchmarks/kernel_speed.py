@@ -26,7 +26,7 @@ import meshes
 from fem_impact.effects import specify
 from fem_impact.scene import load
 from fem_impact.solid.build import build
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness
+from fem_impact.solid.elements import isotropic_stiffness
 from fem_impact.solid.helper import Helper
 from fem_impact.solid.items import add_force
 from fem_impact.solid.march import advance, evaluate
@@ -77,8 +77,8 @@ def triad_gb_per_s() -> float:
 def plain_stiffness(model: Model) -> csr_matrix:
     """Return the rod's assembled stiffness over its nodes; the numbers do not matter to a product's time."""
     mesh, layout = model.geometry.rod.mesh, model.layout
-    K = element_stiffness(mesh.points, mesh.cells, isotropic_stiffness(2e11, 0.29), "incompatible")
-    return assemble(K, mesh.cells, tie_operator(mesh.tie, layout.rod, layout.rod_size))
+    C, T = isotropic_stiffness(2e11, 0.29), tie_operator(mesh.tie, layout.rod, layout.rod_size)
+    return assemble(mesh.points, mesh.cells, C, "incompatible", T)
 
 
 def bar_rows() -> list[Row]:

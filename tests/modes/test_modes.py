@@ -83,7 +83,7 @@ def test_flight_of_a_known_vibration(long):
     ahead = flight(modes, v, -(model.rod_stiffness @ u))
     assert ahead.a == pytest.approx(a, rel=1e-6, abs=1e-12)
     assert ahead.b == pytest.approx(b, rel=1e-6, abs=1e-12)
-    strain, kinetic = u @ model.rod_stiffness @ u, model.mass[: len(v)] @ v**2  # whole rod: twice a half
+    strain, kinetic = u @ (model.rod_stiffness @ u), model.mass[: len(v)] @ v**2  # whole rod: twice a half
     assert ahead.energy == pytest.approx(strain + kinetic, rel=1e-6)
     assert ahead.strain == pytest.approx(strain, rel=1e-6)
     assert ahead.energies.sum() == pytest.approx(ahead.energy)

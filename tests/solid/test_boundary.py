@@ -11,7 +11,7 @@ import solid_shapes as shapes
 import meshes
 from fem_impact.solid.boundary import RADIATION, radiating_share, spread_boundary
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.solid.elements import isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.model import clear
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
@@ -66,8 +66,9 @@ def test_dashpots_take_what_a_slow_force_radiates():
     n, places = len(mesh.points), np.arange(3 * len(mesh.points)).reshape(-1, 3)
     spring, damping = (part.ravel() for part in spread_boundary(mesh, E, NU, RHO))
     T = tie_operator(mesh.tie, places, 3 * n)
-    each = element_stiffness(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible")
-    K = (assemble(each, mesh.cells, T) + sp.diags(spring)).tocsr()
+    K = (
+        assemble(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible", T) + sp.diags(spring)
+    ).tocsr()
     held = np.zeros(3 * n, dtype=bool)
     held[places[mesh.points[:, 1] == 0, 1]] = True
     loaded = places[np.linalg.norm(mesh.points, axis=1).argmin(), 2]
@@ -99,11 +100,7 @@ class Column:
         foot_only = replace(mesh, faces=mesh.faces[foot], face_tag=mesh.face_tag[foot])
         places = np.arange(mesh.points.size).reshape(-1, 3)
         T = tie_operator(mesh.tie, places, places.size)
-        K = assemble(
-            element_stiffness(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible"),
-            mesh.cells,
-            T,
-        )
+        K = assemble(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible", T)
         mass = assemble_mass(lumped_mass(mesh.points, mesh.cells, RHO), mesh.cells, T)
         inverse = 1 / mass
         inverse[places[:, :2]] = 0.0

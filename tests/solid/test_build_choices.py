@@ -1,5 +1,6 @@
 """What a scene chooses of the numerics: the step and the operator of the cells that cannot yield."""
 
+import tracemalloc
 from dataclasses import replace
 
 import pytest
@@ -7,6 +8,7 @@ import solid_scenes as scenes
 
 from fem_impact.effects import specify
 from fem_impact.modes import rod_modes
+from fem_impact.scene import load
 from fem_impact.solid.build import build
 
 BASE = scenes.scene("vibration", "barrier-elastic", length=0.08)
@@ -31,3 +33,17 @@ def test_the_step_is_the_stated_share_of_the_stable_one():
 def test_fully_integrated_cells_are_stiffer_in_bending_than_incompatible_ones():
     soft, full = lowest(model()), lowest(model(element="full"))
     assert 1.005 * soft < full < 1.2 * soft
+
+
+def test_building_takes_little_memory():
+    """Element matrices alone, if all were kept at once, would take 4.6 kB an element."""
+    scene = load("t5b")
+    build(scene, specify(scene))  # the first one also loads the compiled kernels
+    tracemalloc.start()
+    try:
+        built = build(scene, specify(scene))
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    elements = len(built.geometry.rod.mesh.cells) + len(built.geometry.barrier.cells)
+    assert peak < 20e6 + 4e3 * elements

@@ -72,7 +72,7 @@ def test_patch_across_a_hanging_node_tie(kind):
     boundary[mesh.faces] = True
     places = np.arange(3 * len(points)).reshape(-1, 3)
     T = tie_operator(mesh.tie, places, 3 * len(points))
-    K = assemble(element_stiffness(points, mesh.cells, C, kind), mesh.cells, T).toarray()
+    K = assemble(points, mesh.cells, C, kind, T).toarray()
     u = points @ np.random.default_rng(8).normal(size=(3, 3))
     inner, given = places[free & ~boundary].ravel(), places[free & boundary].ravel()
     assert len(inner) > 60
@@ -146,11 +146,3 @@ def test_lumped_masses_add_up_to_density_times_volume():
         1,
     )
     assert lumped_mass(mesh.points, mesh.cells, RHO).sum() == pytest.approx(RHO * 12e-9, rel=1e-12)
-
-
-def test_chunks_do_not_show(monkeypatch):
-    points, cells = shapes.distorted((2, 2, 2), 0.2, seed=11)
-    whole = element_stiffness(points, cells, C, "incompatible")
-    monkeypatch.setattr("fem_impact.solid.elements.CHUNK", 3)
-    assert np.array_equal(element_stiffness(points, cells, C, "incompatible"), whole)
-    assert element_stiffness(points, cells[:0], C, "bbar").shape == (0, 24, 24)

@@ -20,20 +20,21 @@ def _slices(across=6, length=30e-3):
     section = np.full(len(rod.mesh.points), -1)
     section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
     first = rod.mesh.cells[rod.body_cells[:, 0]]
-    K = element_stiffness(rod.mesh.points, rod.mesh.cells, C, "incompatible")
-    operator = SliceOperator.of(K[rod.body_cells[:, 0]], section[first[:, :4]], section[first[:, 4:]])
-    return rod, K, operator
+    K = element_stiffness(rod.mesh.points, first, C, "incompatible")
+    return rod, SliceOperator.of(K, section[first[:, :4]], section[first[:, 4:]])
 
 
 def test_slices_are_the_assembled_matrix():
-    rod, K, operator = _slices()
+    rod, operator = _slices()
     n_section, layers = rod.body_nodes.shape
     assert layers > 5
     places = np.empty((len(rod.mesh.points), 3), int)
     places[rod.body_nodes] = (
         np.arange(3 * n_section * layers).reshape(3, n_section, layers).transpose(1, 2, 0)
     )
-    whole = assemble(K, rod.mesh.cells, tie_operator(rod.mesh.tie, places, places.size))
+    whole = assemble(
+        rod.mesh.points, rod.mesh.cells, C, "incompatible", tie_operator(rod.mesh.tie, places, places.size)
+    )
     d = np.random.default_rng(1).normal(size=(3 * n_section, layers))
     y = np.full_like(d, np.nan)
     operator.apply(d, y)
@@ -46,7 +47,7 @@ def test_blocks_are_the_sparse_matrix():
     places = np.random.default_rng(3).permutation(3 * len(points)).reshape(-1, 3)
     some = mesh.cells[::3]
     T = tie_operator(mesh.tie, places, places.size)
-    K = assemble(element_stiffness(points, some, C, "bbar"), some, T)
+    K = assemble(points, some, C, "bbar", T)
     product = NodeProduct.of(K, places[~mesh.is_hanging])
     x = np.random.default_rng(4).normal(size=places.size)
     y = np.ones(places.size)
@@ -116,11 +117,7 @@ def test_tied_masses_add_up_and_stand_on_free_nodes():
 def test_rigid_motion_of_a_tied_assembly_is_free():
     mesh, points = shapes.refined_patch(seed=11)
     places = np.arange(3 * len(points)).reshape(-1, 3)
-    K = assemble(
-        element_stiffness(points, mesh.cells, C, "incompatible"),
-        mesh.cells,
-        tie_operator(mesh.tie, places, places.size),
-    )
+    K = assemble(points, mesh.cells, C, "incompatible", tie_operator(mesh.tie, places, places.size))
     assert isinstance(K, sp.csr_matrix)
     u = np.cross([1.0, -2.0, 0.5], points)
     assert abs(K @ u.ravel()).max() < 1e-11 * abs(K).max() * abs(u).max()
@@ -128,10 +125,10 @@ def test_rigid_motion_of_a_tied_assembly_is_free():
 
 def test_assembly_takes_little_more_memory_than_its_result():
     points, cells = shapes.grid((20, 20, 10), 1e-3)
-    K, T = np.ones((len(cells), 24, 24)), sp.identity(3 * len(points), format="csr")
+    T = sp.identity(3 * len(points), format="csr")
     tracemalloc.start()
     try:
-        whole = assemble(K, cells, T)
+        whole = assemble(points, cells, C, "full", T)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -141,8 +138,7 @@ def test_assembly_takes_little_more_memory_than_its_result():
 def test_equal_cells_share_their_blocks():
     points, cells = shapes.grid((6, 6, 6), 1e-3)
     places = np.arange(3 * len(points)).reshape(-1, 3)
-    K = element_stiffness(points, cells, C, "bbar")
-    matrix = assemble(K, cells, sp.identity(places.size, format="csr"))
+    matrix = assemble(points, cells, C, "bbar", sp.identity(places.size, format="csr"))
     product = NodeProduct.of(matrix, places)
     assert len(product.blocks) < 0.1 * len(product.kinds)
     x, y = np.random.default_rng(4).normal(size=places.size), np.zeros(places.size)
