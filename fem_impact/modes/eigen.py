@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
+from scipy.sparse.csgraph import reverse_cuthill_mckee
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_impact.modes.stiffness import MassStiffness
@@ -99,7 +100,10 @@ def _rough_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product, floa
     # a shift below zero keeps the factor definite although rigid motions have no stiffness
     shift = -SHIFT * float(shifted.diagonal().max())
     shifted.setdiag(shifted.diagonal() - np.float32(shift))
-    # minimum degree on the symmetric pattern and no pivoting: a quarter of the fill of the default
+    # minimum degree on the symmetric pattern and no pivoting: a quarter of the fill of the default, and up to
+    # another quarter less where it starts from a narrow band
+    order = reverse_cuthill_mckee(shifted.tocsr(), symmetric_mode=True)
+    free, shifted = free[order], shifted[order][:, order].tocsc()
     factor = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def solve(b: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import io
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -114,11 +115,15 @@ def picture(drawn: Figure) -> Image:
 
 def write(pen: Any, place: tuple[int, int], text: str, size: int = 22) -> None:
     """Write a word that changes from frame to frame; ``place`` is its upper right corner."""
+    pen.text(place, text, font=_font(size), fill=INK, anchor="ra")
+
+
+@functools.cache
+def _font(size: int) -> Any:
     from matplotlib.font_manager import findfont
     from PIL import ImageFont
 
-    font = ImageFont.truetype(findfont("DejaVu Sans"), size)
-    pen.text(place, text, font=font, fill=INK, anchor="ra")
+    return ImageFont.truetype(findfont("DejaVu Sans"), size)
 
 
 def clock(pen: Any, frame: Frame, time: float) -> None:

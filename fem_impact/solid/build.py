@@ -6,8 +6,7 @@ What only some effects need is imported where it is built.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
@@ -17,9 +16,9 @@ from fem_impact.effects.spec import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.modes import MassStiffness, rod_modes
+from fem_impact.solid.body import Body, make_body, nose_and_whole, slices_of, stiffness_of
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
-from fem_impact.solid.elements import Kind, element_stiffness, isotropic_stiffness, lumped_mass
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
@@ -28,10 +27,9 @@ from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.layout import Layout, number
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
-from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.sparse import Hanging, NodeProduct, assemble_mass, tie_operator
 from fem_impact.solid.stable import stable_step
-from meshes import SKIN, HexMesh, RodMesh
+from meshes import SKIN
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -45,52 +43,6 @@ Bools = NDArray[np.bool_]
 
 START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
 BAND = 0.02  # contact band over the tip size, see SurfaceContact
-
-
-class Elastic(Protocol):
-    """What an operator needs of a material: E, Pa; nu; rho, kg/m3."""
-
-    @property
-    def E(self) -> float: ...  # noqa: D102
-    @property
-    def nu(self) -> float: ...  # noqa: D102
-    @property
-    def rho(self) -> float: ...  # noqa: D102
-
-
-@dataclass(frozen=True, slots=True)
-class Body:
-    """One meshed body ready for assembly.
-
-    Attributes
-    ----------
-    points, places : (n, 3), positions in the barrier frame and unknowns of all nodes
-    yields : (m,) cells that may yield; element : kind of the others
-    mass : (m, 8) lumped
-    """
-
-    name: str
-    mesh: HexMesh
-    points: Array
-    places: Ints
-    material: Elastic
-    yields: Bools
-    element: Kind
-    mass: Array
-
-
-def make_body(
-    name: str,
-    mesh: HexMesh,
-    points: Array,
-    places: Ints,
-    material: Elastic,
-    yields: Bools,
-    element: Kind = "incompatible",
-) -> Body:
-    """Return a body with its masses; ``element`` is that of cells that cannot yield."""
-    mass = lumped_mass(points, mesh.cells, material.rho)
-    return Body(name, mesh, points, places, material, yields, element, mass)
 
 
 def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
@@ -161,34 +113,6 @@ def _start(
     speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
     v[rod.places] = speed
     return x, v
-
-
-def stiffness_of(body: Body, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
-    """Return the stiffness of ``chosen`` cells over ``size`` unknowns, those from ``shift`` on."""
-    T = tie_operator(body.mesh.tie, body.places - shift, size)
-    C, cells = isotropic_stiffness(body.material.E, body.material.nu), body.mesh.cells
-    elastic = assemble(body.points, cells[chosen & ~body.yields], C, body.element, T)
-    return elastic + assemble(body.points, cells[chosen & body.yields], C, "bbar", T)
-
-
-def slices_of(body: Body, rod: RodMesh) -> SliceOperator:
-    """Return the operator of the rod's slices, all like the first."""
-    m, first = body.material, body.mesh.cells[rod.body_cells[:, 0]]
-    K = element_stiffness(body.points, first, isotropic_stiffness(m.E, m.nu), body.element)
-    return SliceOperator.of_rod(rod, K)
-
-
-def nose_and_whole(
-    body: Body, rod: RodMesh, drawn: MassPoints, layout: Layout
-) -> tuple[sp.csr_matrix, MassStiffness]:
-    """Return the rod's stiffness over its free unknowns: of cells neither sliced nor yielding, and of all.
-
-    The second is that over the masses.
-    """
-    sliced, n = np.zeros(len(body.mesh.cells), dtype=bool), layout.rod_size
-    sliced[rod.body_cells] = True
-    nose = stiffness_of(body, ~sliced & ~body.yields, n)
-    return nose, drawn.reduced(nose + stiffness_of(body, sliced | body.yields, n), layout.body_shape[1])
 
 
 def _elastic_rod(

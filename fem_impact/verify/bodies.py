@@ -13,6 +13,8 @@ from numpy.typing import NDArray
 
 from fem_impact.modes import MassStiffness, RigidMotion, rigid_motion
 from fem_impact.solid import build
+from fem_impact.solid.body import Body as Meshed
+from fem_impact.solid.body import make_body, nose_and_whole, slices_of
 from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.elements import Kind
@@ -147,7 +149,7 @@ def body_model(body: Body) -> Model:
     )
 
 
-def _zones(body: Body, parts: list[build.Body], layout: Layout) -> list[YieldingZone]:
+def _zones(body: Body, parts: list[Meshed], layout: Layout) -> list[YieldingZone]:
     laws = (body.law, body.block.law if body.block else None)
     return [
         build.yielding_zone(part, law, layout)
@@ -156,27 +158,27 @@ def _zones(body: Body, parts: list[build.Body], layout: Layout) -> list[Yielding
     ]
 
 
-def _part(body: Body, layout: Layout) -> build.Body:
+def _part(body: Body, layout: Layout) -> Meshed:
     mesh = body.mesh.mesh
     yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
-    part = build.make_body("rod", mesh, body.points, layout.rod, body, yields, body.kind)
+    part = make_body("rod", mesh, body.points, layout.rod, body, yields, body.kind)
     return replace(part, mass=part.mass * body.denser[:, None])
 
 
-def _block_part(block: Block, layout: Layout) -> build.Body:
+def _block_part(block: Block, layout: Layout) -> Meshed:
     finest = block.mesh.level == block.mesh.level.max()
     yields = finest & (block.law is not None)
-    return build.make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
+    return make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
 
 
-def _inverse(body: Body, parts: list[build.Body], mass: Array, layout: Layout) -> Array:
+def _inverse(body: Body, parts: list[Meshed], mass: Array, layout: Layout) -> Array:
     inverse = build.invert(mass, parts)
     if body.held is not None:
         inverse[layout.rod[body.held]] = 0.0
     return inverse
 
 
-def _start(body: Body, parts: list[build.Body], layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
+def _start(body: Body, parts: list[Meshed], layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
     x, v = np.zeros(layout.size), np.zeros(layout.size)
     x[layout.dummy] = dummy_element()
     for part in parts:
@@ -190,13 +192,13 @@ def _start(body: Body, parts: list[build.Body], layout: Layout, drawn: MassPoint
 
 
 def _linear(
-    body: Body, part: build.Body, layout: Layout, mass: Array, x: Array, drawn: MassPoints
+    body: Body, part: Meshed, layout: Layout, mass: Array, x: Array, drawn: MassPoints
 ) -> tuple[ElasticRod, MassStiffness]:
     """Return the linear part, slices by stencil where there are any, the rest by rows; and the stiffness."""
     n, free = layout.rod_size, layout.rod[~part.mesh.is_hanging]
-    nose, whole = build.nose_and_whole(part, body.mesh, drawn, layout)
+    nose, whole = nose_and_whole(part, body.mesh, drawn, layout)
     frame = TurningFrame.at(x[:n], mass[:n], free) if body.turning else FixedFrame(x[:n].copy())
-    slices = build.slices_of(part, body.mesh) if body.mesh.body_cells.size else _no_slices()
+    slices = slices_of(part, body.mesh) if body.mesh.body_cells.size else _no_slices()
     rod = ElasticRod(slices, drawn, NodeProduct.of(nose, free), frame, layout, np.zeros(n), np.zeros(n))
     return rod, whole
 
@@ -207,7 +209,7 @@ def _no_slices() -> SliceOperator:
 
 
 def _contact(
-    body: Body, parts: list[build.Body], inverse: Array, x: Array
+    body: Body, parts: list[Meshed], inverse: Array, x: Array
 ) -> PlaneContact | SurfaceContact | None:
     if body.friction is None:
         return None
