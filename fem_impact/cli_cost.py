@@ -17,6 +17,7 @@ from fem_impact.errors import RunError, SceneError
 
 if TYPE_CHECKING:
     from fem_impact.cost import Cost, Mesh
+    from fem_impact.scene import Scene
 
 __all__ = ["cost"]
 
@@ -31,15 +32,14 @@ def cost(options: Options) -> int:
     names = chosen(name.strip() for name in options.of.split(",") if name.strip())
     target = parse_share(options.target, "--target") if options.target else None
     budget = parse_quantity(options.budget, "time", "--budget") if options.budget else None
-    family = _family(options.across)
     if options.scene == PAPER:
-        return _paper(options, names, family)
+        return _paper(options, names)
     scene = changed_scene(options.scene, options.changes)
+    family = _family(scene, options.finest)
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
-    from fem_impact.cost import advice, measure, pair_sentence, text_table, write_cost
+    from fem_impact.cost import advice, pair_sentence, text_table, write_cost
 
-    with closing(chosen_meter(options)) as meter:
-        found = measure(scene, out, meter, family)
+    found = _measured(scene, out, options, family)
     write_cost(found, out, names)
     answers = advice(found.settings, names, target, budget)
     if target is not None:
@@ -51,18 +51,45 @@ def cost(options: Options) -> int:
     return RunError.exit_code if found.failures else 0
 
 
-def _paper(options: Options, names: tuple[str, ...], family: tuple[Mesh, ...]) -> int:
+def _family(scene: Scene, finest: str) -> list[Mesh]:
+    """Return the meshes that are no finer at the tip than wanted."""
+    from fem_impact.cost import FAMILY
+    from fem_impact.scene.units import parse_quantity
+
+    least = parse_quantity(finest, "length", "--finest") if finest else 0.0
+    sizes = [mesh.tip_size(scene.projectile.diameter) for mesh in FAMILY]
+    if least > sizes[1]:
+        raise SceneError(
+            "leaves less than two meshes.",
+            key="--finest",
+            value=finest,
+            remedy=f"Give at most {1e3 * sizes[1]:.3g} mm.",
+        )
+    return [mesh for mesh, size in zip(FAMILY, sizes, strict=True) if size >= least]
+
+
+def _measured(scene: Scene, out: Path, options: Options, family: list[Mesh]) -> Cost:
+    """Run the ladder, or with ``--stored`` judge what has run."""
+    from fem_impact.cost import judge_stored, measure
+
+    if options.stored:
+        return judge_stored(scene, out, family)
+    with closing(chosen_meter(options)) as meter:
+        return measure(scene, out, meter, family)
+
+
+def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store each, and write summary.json."""
-    from fem_impact.cost import measure, summarise, summary_markdown, write_cost
+    from fem_impact.cost import summarise, summary_markdown, write_cost
     from fem_impact.output import write_text
     from fem_impact.scene import MEASURED_SETS
 
+    scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
+    families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
     costs: dict[str, Cost] = {}
-    for name in MEASURED_SETS:
-        scene = changed_scene(name, options.changes)
-        with closing(chosen_meter(options)) as meter:
-            costs[name] = measure(scene, out / name, meter, family)
+    for name, scene in scenes.items():
+        costs[name] = _measured(scene, out / name, options, families[name])
         write_cost(costs[name], out / name, names)
     document = summarise(costs)
     write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
@@ -72,21 +99,3 @@ def _paper(options: Options, names: tuple[str, ...], family: tuple[Mesh, ...]) -
     else:
         sys.stdout.write(f"results: {out}\nsummary: {out / 'summary.json'}\n")
     return RunError.exit_code if any(cost.failures for cost in costs.values()) else 0
-
-
-def _family(across: str) -> tuple[Mesh, ...]:
-    """Return the meshes of the family, from coarse to fine."""
-    from fem_impact.cost import FAMILY, Mesh
-
-    if not across:
-        return FAMILY
-    words = [word.strip() for word in across.split(",")]
-    cells = sorted({int(word) for word in words if word.isdecimal()})
-    if len(cells) != len(words) or len(cells) < 2 or cells[0] < 6 or any(n % 2 for n in cells):
-        raise SceneError(
-            "must name two or more different even numbers of cells, at least 6.",
-            key="--across",
-            value=across,
-            remedy="Write --across 6,8,10.",
-        )
-    return tuple(Mesh(n, FAMILY[0].levels) for n in cells)

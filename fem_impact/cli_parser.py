@@ -53,7 +53,8 @@ class Options(argparse.Namespace):
     target: str = ""
     budget: str = ""
     of: str = ""
-    across: str = ""
+    finest: str = ""
+    stored: bool = False
     estimate: bool = False
     resume: bool = False
     checkpoint: float = 30.0
@@ -204,7 +205,10 @@ def _add_cost(commands: Commands) -> None:
     parser.add_argument(
         "--of", default="", metavar="NAMES", help="quantities that are meant (default: e,E_vib)"
     )
-    parser.add_argument("--across", default="", metavar="CELLS", help="meshes of the family, such as 6,8,10")
+    parser.add_argument(
+        "--finest", default="", metavar="SIZE", help="leave out finer meshes than this, such as '0.25 mm'"
+    )
+    parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="where to write (default: results/cost/SCENE)"
     )

@@ -60,6 +60,9 @@ def _accuracy(record: Mapping[str, Any]) -> list[str]:
     for word in ("expected", "achieved"):
         error, wall = _percent(record, f"{word}_error"), _value(record, f"{word}_wall_s")
         lines += [f"  {word} error of e and E_vib {error}, time {wall} s"]
+    if record["extrapolated"]:
+        e, vibration = (record["extrapolated"][key] for key in ("e_edge", "E_vib_over_E_0"))
+        lines += [f"  all runs together: e (tip's arms) {_number(e)}, E_vib/E_0 {_number(vibration)}"]
     return lines
 
 

@@ -3,9 +3,10 @@
 from fem_impact.cost.achieve import simulate_to_target
 from fem_impact.cost.choose import advice, best_within, cheapest
 from fem_impact.cost.document import text_table, write_cost
-from fem_impact.cost.judge import Judged, Truth, front, worst
+from fem_impact.cost.judge import Judged, front, worst
+from fem_impact.cost.limits import Truth
 from fem_impact.cost.markdown import summary_markdown
-from fem_impact.cost.measure import Cost, measure
+from fem_impact.cost.measure import Cost, judge_stored, measure
 from fem_impact.cost.pairs import best_pair, pair_sentence, verdict
 from fem_impact.cost.quantities import QUANTITIES, TARGETED, chosen
 from fem_impact.cost.settings import FAMILY, Mesh, Setting, ladder, on_mesh
@@ -28,6 +29,7 @@ __all__ = [
     "cheapest",
     "chosen",
     "front",
+    "judge_stored",
     "ladder",
     "measure",
     "nearest",

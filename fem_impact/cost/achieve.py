@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from statistics import fmean
 from typing import TYPE_CHECKING
 
-from fem_impact.cost.judge import extrapolated, truths
+from fem_impact.cost.limits import Placed, extrapolated, truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
-from fem_impact.cost.settings import on_mesh
+from fem_impact.cost.settings import Mesh, placed
 from fem_impact.cost.stored import Plan, plan
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.scale import LocalProcesses
@@ -23,25 +24,26 @@ if TYPE_CHECKING:
 
 __all__ = ["simulate_to_target"]
 
-Run = Callable[[int], Outcome]  # of so many threads
+Run = Callable[[], Outcome]
+Report = Callable[["Progress"], None]
 
-COARSER = "coarser"
-ALONE = "one run alone cannot estimate its own error"
+ALONE = "one mesh alone cannot estimate its own error"
 
 
 def simulate_to_target(
     scene: Scene,
     fidelity: str | None = None,
     out: Path | None = None,
-    progress: Callable[[Progress], None] | None = None,
+    progress: Report | None = None,
     resume: bool = False,
     checkpoint_s: float = INTERVAL,
     threads: int = 1,
 ) -> Outcome:
     """Run the setting that the measured costs choose.
 
-    Two meshes give the finer one's outcome with the limits of both under ``extrapolated``; the coarser
-    run is kept below ``out``, and has a process beside the finer where there are two threads or more.
+    Every mesh is run at the places of the barrier's grid. What comes back is the finer mesh's outcome at the
+    first, with the limits of two meshes, or the means of one, under ``extrapolated``. The other runs are
+    kept below ``out``; those at the second place have a process beside where there are two threads or more.
 
     Raises
     ------
@@ -49,24 +51,39 @@ def simulate_to_target(
         As `plan`.
     """
     chosen = plan(scene, fidelity, threads)
-    meshes = chosen.meshes
-    if not meshes:
+    if not chosen.meshes:
         alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s, threads)
-        return _kept(_stated(alone, chosen), out)
-    place = out and out / COARSER
-    fine = partial(simulate, on_mesh(scene, meshes[0]), "solid", out, progress, resume, checkpoint_s)
-    if len(meshes) == 1:
-        return _kept(_stated(fine(threads), chosen), out)
-    coarse = partial(simulate, on_mesh(scene, meshes[1]), "solid", place, None, resume, checkpoint_s)
-    both = _side_by_side(fine, coarse, threads - 1) if threads > 1 else (fine(1), coarse(1))
-    together = max if threads > 1 else sum
-    return _kept(_stated(both[0], chosen, both[1], together(run["wall_s"] for run in both)), out)
+        return _kept(_stated(alone, chosen, alone["wall_s"]), out)
+    work = _work(scene, chosen.meshes, out, progress, resume, checkpoint_s)
+    places = _side_by_side(work) if threads > 1 else [_in_turn(runs) for runs in work]
+    walls = [sum(run["wall_s"] for run in runs) for runs in places]
+    meshes = list(zip(*places, strict=True))
+    return _kept(_stated(places[0][0], chosen, max(walls) if threads > 1 else sum(walls), meshes), out)
 
 
-def _side_by_side(fine: Run, coarse: Run, threads: int) -> tuple[Outcome, Outcome]:
+def _work(
+    scene: Scene, meshes: list[Mesh], out: Path | None, progress: Report | None, resume: bool, every: float
+) -> list[list[Run]]:
+    """Return the runs at each place, the finest mesh first; the first of all writes to ``out`` itself."""
+    found: list[list[Run]] = []
+    for place, scenes in enumerate(zip(*(placed(scene, mesh) for mesh in meshes), strict=True)):
+        found.append([])
+        for at, one in enumerate(scenes):
+            first = at == place == 0
+            folder = out and (out if first else out / f"mesh-{at}-{place}")
+            told = progress if first else None
+            found[-1].append(partial(simulate, one, "solid", folder, told, resume, every))
+    return found
+
+
+def _in_turn(work: list[Run]) -> list[Outcome]:
+    return [run() for run in work]
+
+
+def _side_by_side(work: list[list[Run]]) -> list[list[Outcome]]:
     with LocalProcesses(1) as beside:
-        later = beside.submit(coarse, 1)
-        return fine(threads), later.result()
+        later = [beside.submit(_in_turn, runs) for runs in work[1:]]
+        return [_in_turn(work[0]), *(runs.result() for runs in later)]
 
 
 def _kept(outcome: Outcome, out: Path | None) -> Outcome:
@@ -81,9 +98,7 @@ def _plain(scene: Scene) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy, target=None))
 
 
-def _stated(
-    outcome: Outcome, chosen: Plan, coarse: Outcome | None = None, wall_s: float | None = None
-) -> Outcome:
+def _stated(outcome: Outcome, chosen: Plan, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
     """Return the outcome with what was asked, expected and achieved."""
     return outcome.replace(
         reasons={"achieved_error": ALONE, "extrapolated": ALONE},
@@ -91,20 +106,24 @@ def _stated(
         accuracy_setting=chosen.setting.name,
         expected_error=chosen.expected_error,
         expected_wall_s=chosen.expected_wall_s,
-        achieved_wall_s=wall_s or outcome["wall_s"],
-        achieved_error=_left_open(outcome, coarse) if coarse else None,
-        extrapolated=_limits(outcome, coarse) if coarse else None,
+        achieved_wall_s=wall_s,
+        achieved_error=_left_open(meshes) if len(meshes) == 2 else None,
+        extrapolated=_limits(meshes) if meshes else None,
     )
 
 
-def _left_open(fine: Outcome, coarse: Outcome) -> float:
-    found = truths([fine, coarse])
+def _left_open(meshes: Sequence[Placed]) -> float:
+    found = truths(meshes)
     return max(found[name].uncertainty / found[name].scale for name in TARGETED)
 
 
-def _limits(fine: Outcome, coarse: Outcome) -> dict[str, float]:
-    """Return the limits of the quantities of interest, key by key."""
-    ratio = coarse["tip_size_m"] / fine["tip_size_m"]
+def _limits(meshes: Sequence[Placed]) -> dict[str, float]:
+    """Return the limits, or the means on one mesh, of the quantities of interest, key by key."""
     kinds = {key.name: key.kind for key in KEYS}
     keys = [key for quantity in QUANTITIES for key in quantity.keys if kinds[key] == "number"]
+    means = [{key: fmean(run[key] for run in runs) for key in keys} for runs in meshes]
+    if len(means) == 1:
+        return means[0]
+    fine, coarse = means
+    ratio = meshes[1][0]["tip_size_m"] / meshes[0][0]["tip_size_m"]
     return {key: extrapolated(fine[key], coarse[key], ratio) for key in keys}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,6 +23,7 @@ COLUMNS = (
     *COSTS,
     *(f"value_{name}" for name in NAMES),
     *(f"error_{name}" for name in NAMES),
+    *(f"scatter_{name}" for name in NAMES),
     *(f"band_{name}" for name in NAMES),
     "front",
 )
@@ -39,15 +41,15 @@ def _row(setting: Judged) -> list[str | float | int | None]:
     data = setting.to_dict()
     errors = [setting.error[name] for name in NAMES]
     values = [setting.value[name] for name in NAMES]
-    bands = [setting.band.get(name) for name in NAMES]
-    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *bands, " ".join(setting.front)]
+    own = [held.get(name) for held in (setting.scatter, setting.band) for name in NAMES]
+    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
 
 
 def text_table(cost: Cost) -> str:
     """Return limits and orders, then one line a setting: times, and each quantity's error in per cent.
 
-    An asterisk marks the Pareto front of that quantity. The bands of the pairs of meshes follow, then what
-    leaving an effect out changes.
+    An asterisk marks the Pareto front of that quantity. What the places of the barrier's grid tell of each
+    setting follows, the bands of the pairs of meshes, and what leaving an effect out changes.
     """
     width = max(len(setting.name) for setting in cost.settings)
     head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
@@ -61,16 +63,19 @@ def text_table(cost: Cost) -> str:
     lines[-1] += "".join(f"{'-' if t.order is None else f'{t.order:.2f}':>11}" for t in truth)
     lines += [_line(setting, width) for setting in cost.settings if setting.kind != "effect"]
     lines += ["errors in %, the limit's uncertainty included; * on the Pareto front"]
-    pairs = [
-        _line(replace(setting, error=dict(setting.band), front=[]), width)
-        for setting in cost.settings
-        if setting.band
-    ]
-    lines += ["", "bands of the extrapolations in %, as two meshes and the range of all tell them", *pairs]
-    left_out = [_line(setting, width) for setting in cost.settings if setting.kind == "effect"]
-    if left_out:
-        lines += ["", "changes in % by leaving an effect out, on the same mesh", *left_out]
+    meshes = [setting for setting in cost.settings if setting.kind in ("mesh", "pair")]
+    lines += _block("scatter of the grid's places in %, as standard error", meshes, "scatter", width)
+    pairs = [setting for setting in cost.settings if setting.band]
+    lines += _block("bands of the extrapolations in %, scatter included", pairs, "band", width)
+    left_out = [setting for setting in cost.settings if setting.kind == "effect"]
+    lines += _block("changes in % by leaving an effect out, on the same mesh", left_out, "error", width)
     return "\n".join(lines)
+
+
+def _block(title: str, settings: Sequence[Judged], field: str, width: int) -> list[str]:
+    """Return a line a setting with the numbers of one field, below a title; nothing without settings."""
+    lines = [_line(replace(s, error=dict(getattr(s, field)), front=[]), width) for s in settings]
+    return ["", title, *lines] if lines else []
 
 
 def _line(setting: Judged, width: int) -> str:

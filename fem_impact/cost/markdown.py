@@ -18,7 +18,8 @@ Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]  # limits of the quantit
 def summary_markdown(document: dict[str, Any]) -> str:
     """Return two tables of one row a scene: what its best pair of meshes gives, and what every setting costs.
 
-    A cell of the second reads: errors of the targeted quantities in per cent, CPU time in s.
+    A cell of the second reads: errors of the targeted quantities with their scatter in per cent, CPU time
+    in s.
     """
     scenes = {
         name: (cost["quantities"], [Judged(**setting) for setting in cost["settings"]])
@@ -76,9 +77,15 @@ def _cell(settings: list[Judged], name: str) -> str:
     found = [one for one in settings if one.name == name]
     if not found:
         return ""
-    errors = [found[0].error[quantity] for quantity in TARGETED]
-    words = " / ".join("-" if error is None else _percent(error) for error in errors)
+    words = " / ".join(_off(found[0], quantity) for quantity in TARGETED)
     return f"{words}, {found[0].cpu_s:.2g} s"
+
+
+def _off(setting: Judged, quantity: str) -> str:
+    """Return the error, and the scatter that is known."""
+    error, scatter = setting.error[quantity], setting.scatter.get(quantity)
+    words = "-" if error is None else _percent(error)
+    return words if scatter is None else f"{words} ± {_percent(scatter)}"
 
 
 def _percent(error: float) -> str:

@@ -9,22 +9,24 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cost.judge import Judged, Truth, front, judge, truths
+from fem_impact.cost.judge import Judged, front, judge
+from fem_impact.cost.limits import Placed, Truth, truths
 from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
 from fem_impact.errors import RunError
 from fem_impact.outcome import Outcome, installed_versions, utc_now
-from fem_impact.scale import STORE, Failure, Job, Results, run_jobs
+from fem_impact.scale import STORE, Failure, Job, Results, Store, run_jobs
 from fem_impact.scale.job import compute
+from fem_impact.scale.run import stored
 from fem_impact.solid.kernels import compiled_before
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
     from fem_impact.scene import Scene
 
-__all__ = ["SCHEMA", "Cost", "measure"]
+__all__ = ["SCHEMA", "Cost", "judge_stored", "measure"]
 
-SCHEMA = "fem-impact/cost/1"
+SCHEMA = "fem-impact/cost/2"
 BRIEF = 5e-6  # s: into the first contact
 
 
@@ -71,6 +73,7 @@ def _plain(truth: Truth) -> dict[str, float | None]:
         "limit": truth.value,
         "order": truth.order,
         "uncertainty": truth.uncertainty,
+        "scatter": truth.scatter,
         "scale": truth.scale,
     }
 
@@ -90,7 +93,7 @@ def measure(
         Fewer than two meshes gave a result, so nothing is known of the limit.
     """
     settings = ladder(scene, family)
-    jobs = [job for setting in settings if (job := setting.job)]
+    jobs = _jobs(settings)
     # a fresh process for every run: its peak memory is its own
     owned = executor or ProcessPoolExecutor(1, mp_context=get_context("spawn"), max_tasks_per_child=1)
     try:
@@ -102,6 +105,26 @@ def measure(
     return conclude(scene, settings, results)
 
 
+def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> Cost:
+    """Judge what `measure` has stored in ``out`` so far, and run nothing.
+
+    Raises
+    ------
+    RunError
+        As `measure`.
+    """
+    settings = ladder(scene, family)
+    with Store.open(out / STORE) as base:
+        held = {job.name: stored(base, job) for job in _jobs(settings)}
+    return conclude(scene, settings, {name: result for name, result in held.items() if result is not None})
+
+
+def _jobs(settings: Sequence[Setting]) -> list[Job]:
+    """Return every run of a ladder once: pairs stand on those of their meshes."""
+    every = (job for setting in settings for jobs in setting.runs for job in jobs)
+    return list({job.name: job for job in every}.values())
+
+
 def _compile(scene: Scene, executor: Executor) -> None:
     """Have the kernels compiled by a few steps that nobody keeps: they must not count as time of a run."""
     if not compiled_before():
@@ -111,42 +134,41 @@ def _compile(scene: Scene, executor: Executor) -> None:
 
 
 def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cost:
-    """Judge the runs of a ladder."""
-    runs: dict[Mesh, Outcome] = {}
+    """Judge the runs of a ladder; settings that lack one are left out."""
+    runs = {setting.name: _runs(setting, results) for setting in settings}
+    failures = [
+        {"setting": name, "reason": reason}
+        for name, result in results.items()
+        if (reason := _failure(result)) is not None
+    ]
+    meshes = {s.meshes[0]: runs[s.name][0] for s in settings if s.kind == "mesh" and runs[s.name]}
+    if len(meshes) < 2:
+        reasons = " ".join(failure["reason"] for failure in failures)
+        raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
+    truth, judged = truths(list(meshes.values())), []
     for setting in settings:
-        found = _result(setting, results)
-        if setting.kind == "mesh" and setting.mesh and isinstance(found, Outcome) and found["finished"]:
-            runs[setting.mesh] = found
-    every = list(runs.values())
-    if len(every) < 2:
-        reasons = [r.reason for r in results.values() if isinstance(r, Failure)]
-        raise RunError(f"{scene.id}: no two meshes gave a result. {' '.join(reasons)}".strip())
-    truth, judged = truths(every), []
-    for setting in settings:
-        given, whole = _given(setting, results, runs), runs.get(PLAIN)
+        given, whole = runs[setting.name], meshes.get(PLAIN)
         if setting.kind == "effect":
             judged += [judge(setting, given, truth, whole)] if given and whole else []
         elif given:
-            judged.append(judge(setting, given, truth, every=every))
-    failures = [
-        {"setting": name, "reason": result.reason}
-        for name, result in results.items()
-        if isinstance(result, Failure)
-    ]
+            judged.append(judge(setting, given, truth))
     return Cost(scene, truth, _marked(judged), failures)
 
 
-def _result(setting: Setting, results: Results) -> Outcome | Failure | None:
-    return results[setting.job.name] if setting.job else None
+def _failure(result: Outcome | Failure) -> str | None:
+    """Return why a run cannot be judged."""
+    if isinstance(result, Failure):
+        return result.reason
+    return None if result["finished"] else str(result["stopped_because"])
 
 
-def _given(setting: Setting, results: Results, runs: dict[Mesh, Outcome]) -> list[Outcome]:
+def _runs(setting: Setting, results: Results) -> list[Placed]:
     """Return the outcomes that a setting stands on, none if one is missing."""
-    if setting.mesh and setting.coarser:
-        pair = [runs.get(setting.mesh), runs.get(setting.coarser)]
-        return [run for run in pair if run] if all(pair) else []
-    found = _result(setting, results)
-    return [found] if isinstance(found, Outcome) else []
+    found = [[results.get(job.name) for job in jobs] for jobs in setting.runs]
+    good: list[Placed] = [
+        [r for r in runs if isinstance(r, Outcome) and _failure(r) is None] for runs in found
+    ]
+    return good if [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs] else []
 
 
 def _marked(judged: list[Judged]) -> list[Judged]:

@@ -43,7 +43,8 @@ def pair_sentence(
 
 
 def verdict(pair: Judged, quantities: Quantities, name: str, target: float) -> str:
-    """Return value, band, and whether the band meets the target."""
-    value, band = pair.value[name] or 0.0, pair.band[name]
+    """Return value, band, how much of it is scatter, and whether the band meets the target."""
+    value, band, scale = pair.value[name] or 0.0, pair.band[name], quantities[name]["scale"]
     words = "reached" if band <= target else "not reached"
-    return f"{value:.4f} ± {band * quantities[name]['scale']:.4f}, {words}: {100 * band:.2g} %"
+    scatter = f"{pair.scatter[name] * scale:.4f} of it scatter"
+    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {words}: {100 * band:.2g} %"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.scale import Job
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from fem_impact.scene import Scene
     from fem_impact.scene.fields import Element
 
-__all__ = ["FAMILY", "Mesh", "Setting", "ladder", "on_mesh"]
+__all__ = ["FAMILY", "PLAIN", "Mesh", "Setting", "ladder", "on_mesh", "placed"]
 
 Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
 
@@ -36,9 +37,10 @@ class Mesh:
         return float(diameter / self.across / 2**self.levels)
 
 
-# meshes whose cells are split as often; cells at the tip are alike only where a mesh is split once more
-FAMILY = (Mesh(6, 3), Mesh(8, 3), Mesh(10, 3))
-COARSE = (Mesh(6, 2), Mesh(8, 2))  # the family's own bodies with tips of twice the size
+# by the size at the tip; meshes with 8 and with 12 cells across are alike there
+FAMILY = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))
+APART = 2.0  # least ratio of the sizes of a pair: closer meshes extrapolate their scatter
+PLACES = (0.0, 0.5)  # of a meshed barrier's grid along t, in cells at the contact: every mesh is run at each
 PLAIN = Mesh(8, 2)  # the mesh on which elements, steps and effects are changed
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
@@ -53,74 +55,84 @@ class Setting:
 
     Attributes
     ----------
-    name, kind : str
-    scene : the scene as it is run; None for a pair, which runs nothing itself
-    fidelity : str
-    mesh : of a solid run; of a pair its finer mesh
-    coarser : the second mesh of a pair
+    name, kind, fidelity : str
+    runs : for each mesh, the finer of a pair first, the runs at the places of the barrier's grid; their mean
+        counts. A reduced model has one run
+    meshes : those of a solid setting
     """
 
     name: str
     kind: Kind
     fidelity: str
-    scene: Scene | None = None
-    mesh: Mesh | None = None
-    coarser: Mesh | None = None
-
-    @property
-    def job(self) -> Job | None:
-        """Return the run that this setting needs of its own."""
-        if self.scene is None:
-            return None
-        return Job(f"{self.scene.id}: {self.name}", self.scene, self.fidelity)
+    runs: tuple[tuple[Job, ...], ...]
+    meshes: tuple[Mesh, ...] = ()
 
 
 def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     """Return the settings from cheap to dear; ``family`` from coarse to fine."""
     scene = replace_all(scene, {"save.frames": 0})
-    found = [Setting(kind, kind, kind, scene) for kind in ("rigid", "modal")]
-    found += [_solid(scene, mesh) for mesh in (*COARSE, *family)]
-    found += [_pair(scene, fine, coarse) for fine, coarse in _pairs(family)]
-    found += [_solid(scene, mesh, words) for words, mesh in NUMERICS.items()]
-    return found + _without(on_mesh(scene, PLAIN))
+    found = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
+    found += [_solid(scene, mesh) for mesh in family]
+    found += [_pair(scene, fine, coarse) for fine, coarse in _pairs(scene, family)]
+    found += [_solid(scene, mesh, "numerics", words) for words, mesh in NUMERICS.items()]
+    return found + _without(scene)
 
 
-def on_mesh(scene: Scene, mesh: Mesh) -> Scene:
-    """Return the scene on a mesh."""
+def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
+    """Return the scene on a mesh, the grid of the barrier at a place."""
     size = mesh.tip_size(scene.projectile.diameter)
-    changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm"}
+    changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm", "grid_shift": place}
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
     return replace_all(scene, {f"accuracy.{key}": value for key, value in changes.items()})
 
 
-def _pairs(family: Sequence[Mesh]) -> list[tuple[Mesh, Mesh]]:
-    """Return fine and coarse: of the family each with each, and each with its own half as fine tip."""
-    both = [(family[j], family[i]) for i in range(len(family)) for j in range(i + 1, len(family))]
-    halved = [(mesh, replace(mesh, levels=mesh.levels - 1)) for mesh in family]
-    return [pair for pair in halved if pair[1] in COARSE] + both
+def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
+    """Return the scene on a mesh at every place of the barrier's grid; a rigid barrier has one."""
+    places = PLACES[:1] if "barrier-rigid" in scene.active else PLACES
+    return [on_mesh(scene, mesh, place) for place in places]
 
 
-def _solid(scene: Scene, mesh: Mesh, words: str = "") -> Setting:
-    size = mesh.tip_size(scene.projectile.diameter)
-    name = f"solid {size * 1e3:.3g} mm {words}".strip()
-    return Setting(name, "numerics" if words else "mesh", "solid", on_mesh(scene, mesh), mesh)
+def _job(scene: Scene, name: str, fidelity: str) -> Job:
+    return Job(f"{scene.id}: {name}", scene, fidelity)
+
+
+def _jobs(scene: Scene, mesh: Mesh, name: str) -> tuple[Job, ...]:
+    return tuple(
+        _job(one, f"{name}, grid at {one.accuracy.grid_shift:g}", "solid") for one in placed(scene, mesh)
+    )
+
+
+def _name(scene: Scene, mesh: Mesh, words: str = "") -> str:
+    return f"solid {mesh.tip_size(scene.projectile.diameter) * 1e3:.3g} mm {words}".strip()
+
+
+def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", words: str = "") -> Setting:
+    name = _name(scene, mesh, words)
+    return Setting(name, kind, "solid", (_jobs(scene, mesh, name),), (mesh,))
+
+
+def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[tuple[Mesh, Mesh]]:
+    """Return fine and coarse of all that are far enough apart."""
+    size = {mesh: mesh.tip_size(scene.projectile.diameter) for mesh in family}
+    both = ((fine, coarse) for coarse, fine in combinations(family, 2))
+    return [pair for pair in both if size[pair[1]] / size[pair[0]] > APART * (1 - 1e-9)]
 
 
 def _pair(scene: Scene, fine: Mesh, coarse: Mesh) -> Setting:
     sizes = " and ".join(f"{m.tip_size(scene.projectile.diameter) * 1e3:.3g}" for m in (coarse, fine))
-    return Setting(f"solid {sizes} mm extrapolated", "pair", "solid", None, fine, coarse)
+    runs = tuple(_jobs(scene, mesh, _name(scene, mesh)) for mesh in (fine, coarse))
+    return Setting(f"solid {sizes} mm extrapolated", "pair", "solid", runs, (fine, coarse))
 
 
 def _without(scene: Scene) -> list[Setting]:
     """Return the scene with each effect left out that can be, and with a simpler barrier."""
-    size = f"{scene.accuracy.tip_size * 1e3:.3g} mm"
     optional = [name for name in scene.active if name not in BARRIERS]
     fewer = {f"without {name}": grounded([e for e in scene.active if e != name]) for name in optional}
     if "barrier-elastoplastic" in scene.active:
         softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in scene.active]
         fewer["with an elastic barrier"] = grounded(softer)
     return [
-        Setting(f"solid {size} {words}", "effect", "solid", replace_all(scene, {"effects": names}), PLAIN)
+        _solid(replace_all(scene, {"effects": names}), PLAIN, "effect", words)
         for words, names in fewer.items()
     ]

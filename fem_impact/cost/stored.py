@@ -22,7 +22,7 @@ from fem_impact.scene import Scene
 
 __all__ = ["NEARNESS", "SUMMARY", "Plan", "nearest", "plan", "summarise", "summary"]
 
-SUMMARY = "fem-impact/cost-summary/1"
+SUMMARY = "fem-impact/cost-summary/2"
 
 # what a scene may differ by from one whose cost was measured; ratios as differences of logarithms
 NEARNESS = {

@@ -151,7 +151,13 @@ CONTACT = (
     _number("marker_Omega_rad_per_s", "rad/s", "Omega as the camera's two markers would give it."),
     _number("marker_V_cn_m_per_s", "m/s", "Normal velocity of the lower marker."),
     _number("marker_V_ct_m_per_s", "m/s", "Tangential velocity of the lower marker."),
-    Key("extrapolated", "values", "as the key", "Limit from two meshes of each key that has one.", True),
+    Key(
+        "extrapolated",
+        "values",
+        "as the key",
+        "Limit of two meshes, or mean of one, of each key that has it.",
+        True,
+    ),
     Key("bands", "bands", "as the key", "Two-mesh half-width of each key that carries one.", nullable=True),
 )
 

@@ -7,7 +7,7 @@ from itertools import combinations
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cost.judge import pair_limit
+from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.settings import Mesh, on_mesh
 from fem_impact.figures.lines import Panel, Series
 from fem_impact.outcome import Outcome

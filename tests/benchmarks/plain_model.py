@@ -6,7 +6,8 @@
 PLAIN holds the last revision before element-steps were saved: the step of the single elements' bound, the
 return to the yield surface in every element, runs that wait for the rod to rise above its crater. Both run
 with its effects on the same meshes, one process after the other; what lies in OUT is not run again. An error
-is the distance from the limit of the present model's three meshes, over the scale of the cost ladder.
+is the distance from the limit of the present model's meshes, each at two places of the barrier's grid, over
+the scale of the cost ladder.
 At equal error: CPU time of the plain model where the line through its two meshes, in logarithms, has the
 error of the present finer mesh, or what its meshes bound; a dash where its error does not fall.
 """
@@ -19,7 +20,8 @@ from math import exp, log
 from pathlib import Path
 
 from fem_impact.cost import FAMILY, QUANTITIES, TARGETED, Mesh
-from fem_impact.cost.judge import truths
+from fem_impact.cost.limits import truths
+from fem_impact.cost.settings import PLACES
 from fem_impact.scene import load
 
 PRESENT = Path(__file__).parents[2]
@@ -30,19 +32,19 @@ COMPARED = (Mesh(8, 2), Mesh(8, 3))
 NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
-def outcome(model, name, mesh, out):
+def outcome(model, name, mesh, out, place=0.0):
     """Return the outcome of a set by one model, made in a process of its own unless it lies in ``out``."""
     kind = "present" if model == PRESENT else "plain"
-    place = out / f"{kind}-{name}-{mesh.across}-{mesh.levels}"
-    if not (place / "outcome.json").exists():
+    folder = out / f"{kind}-{name}-{mesh.across}-{mesh.levels}{f'-at-{place:g}' if place else ''}"
+    if not (folder / "outcome.json").exists():
         size = mesh.tip_size(load(name).projectile.diameter) * 1e3
         changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={size:.9g} mm", "save.frames=0"]
-        changes += [f"effects={EFFECTS}"] if model == PRESENT else []
+        changes += [f"effects={EFFECTS}", f"accuracy.grid_shift={place}"] if model == PRESENT else []
         words = [word for change in changes for word in ("--set", change)]
-        command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(place)]
+        command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(folder)]
         alone = {"PYTHONPATH": str(model), "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
         subprocess.run(command, cwd=model, env=os.environ | alone, check=True, stdout=subprocess.DEVNULL)
-    return json.loads((place / "outcome.json").read_text(encoding="utf-8"))
+    return json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
 
 
 def at_equal_error(plain, present):
@@ -66,7 +68,7 @@ def off(run, quantity, truth):
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    truth = truths([outcome(PRESENT, name, mesh, out) for mesh in FAMILY])
+    truth = truths([[outcome(PRESENT, name, mesh, out, place) for place in PLACES] for mesh in FAMILY])
     runs = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
     lines = []
     for quantity in TARGETED:

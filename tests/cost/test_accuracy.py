@@ -1,12 +1,11 @@
 """A scene that states the error it allows: reading, choosing from stored costs, refusing, achieving."""
 
-from dataclasses import replace
-
 import pytest
 from cost_fakes import Here, run
 
 import fem_impact.simulate
-from fem_impact.cost import FAMILY, NEARNESS, achieve, measure, nearest, plan, stored, summarise, summary
+from fem_impact.cost import NEARNESS, Judged, achieve, measure, nearest, plan, stored, summarise, summary
+from fem_impact.cost.settings import placed
 from fem_impact.errors import SceneError
 from fem_impact.progress import NullMeter
 from fem_impact.scene import MEASURED_SETS, Scene, load
@@ -143,6 +142,7 @@ def test_simulate_hands_over_a_scene_with_a_target(monkeypatch):
 
 def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     held = summary()
+    assert held["schema"] == stored.SUMMARY
     assert held["created_utc"] and held["versions"]["numpy"]
     assert held["machine"]["triad_GB_per_s"] > 0
     assert held["scenes"]
@@ -156,6 +156,27 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     assert set(NEARNESS) == set(stored._features(load("t2")))
 
 
-def test_the_family_is_of_one_kind():
-    assert len({mesh.levels for mesh in FAMILY}) == 1
-    assert replace(FAMILY[0], across=7) < FAMILY[1]
+def test_a_target_chooses_the_place_of_the_grid_too():
+    scene = load("t5b").replace("accuracy.grid_shift", 0.5)
+    asked = scene.replace("accuracy", "5 %")
+    assert "grid_shift" not in asked.to_dict()["accuracy"]
+    assert asked.replace("accuracy.grid_shift", 0.25).accuracy.target is None
+
+
+def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path):
+    outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
+    fine, coarse = (placed(load("t5b"), mesh) for mesh in plan(asking(0.05)).meshes)
+    assert outcome["scene_digest"] == fine[0].digest()
+    means = [sum(run(scene)["e_edge"] for scene in scenes) / 2 for scenes in (fine, coarse)]
+    ratio = coarse[0].accuracy.tip_size / fine[0].accuracy.tip_size
+    assert outcome["extrapolated"]["e_edge"] == pytest.approx(means[0] + (means[0] - means[1]) / (ratio - 1))
+
+
+def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
+    single = next(s for s in stored.summary()["scenes"]["t5b"]["settings"] if s["name"] == "solid 0.297 mm")
+    chosen = stored.Plan(0.2, Judged(**single), "t5b", 0.15, 1.0)
+    monkeypatch.setattr(achieve, "plan", lambda *_: chosen)
+    outcome = achieve.simulate_to_target(asking(0.2))
+    assert outcome["achieved_error"] is None
+    assert outcome["extrapolated"]["e_edge"] == pytest.approx(single["value"]["e"])
+    assert outcome["extrapolated"]["e_edge"] != outcome["e_edge"]

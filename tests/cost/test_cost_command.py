@@ -33,19 +33,25 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert Path("results/cost/t5b/cost.svg").exists()
     code, out, _ = cli("cost", "t5b", "--json", "--target", "20 %")
     cheapest, pair = json.loads(out)["advice"]
-    assert cheapest == "Cheapest within 20 % of e and E_vib: modal, error 11 % in 0.01 s."
-    assert pair.startswith("Two meshes against 20 %, solid 0.792 and 0.396 mm extrapolated: e 0.3000 ± ")
+    assert cheapest == "Cheapest within 20 % of e and E_vib: modal, error 13 % in 0.01 s."
+    assert pair.startswith("Two meshes against 20 %, solid 0.594 and 0.297 mm extrapolated: e 0.3000 ± ")
 
 
 def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     sets = ("t3-machined", "t5b")
     monkeypatch.setattr(fem_impact.scene, "MEASURED_SETS", sets)
-    code, out, _ = cli("cost", "paper", "--across", "6,8", "--out", "all", "--quiet")
+    code, out, _ = cli("cost", "paper", "--finest", "0.25 mm", "--out", "all", "--quiet")
     assert code == 0
     held = json.loads(Path("all/summary.json").read_text())
     assert list(held["scenes"]) == list(sets)
     assert Path("all/summary.md").read_text() == summary_markdown(held)
     assert "summary: all/summary.json" in out
+    meshes = [one["name"] for one in held["scenes"]["t5b"]["settings"] if one["kind"] == "mesh"]
+    assert meshes == ["solid 0.594 mm", "solid 0.396 mm", "solid 0.297 mm"]
+    monkeypatch.setattr(fem_impact.simulate, "simulate", None)
+    assert cli("cost", "paper", "--stored", "--out", "all", "--quiet")[0] == 0
+    again = json.loads(Path("all/summary.json").read_text())
+    assert again["scenes"] == held["scenes"]
 
 
 @pytest.mark.parametrize(
@@ -54,9 +60,8 @@ def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
         (["--target", "2"], "--target"),
         (["--budget", "30"], "has no unit"),
         (["--of", "speed"], "is not a quantity of interest"),
-        (["--across", "6"], "two or more different even numbers"),
-        (["--across", "5,8"], "two or more different even numbers"),
-        (["--across", "8,8"], "two or more different even numbers"),
+        (["--finest", "0.25"], "has no unit"),
+        (["--finest", "0.5 mm"], "Give at most 0.396 mm."),
     ],
 )
 def test_wrong_words_are_refused_before_any_work(cli, words, complaint):
@@ -71,6 +76,7 @@ def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
     monkeypatch.setattr(fem_impact.cost, "plan", lambda *_: chosen)
     stated = {"accuracy_target": 0.2, "accuracy_setting": "modal", "expected_error": 0.15}
     stated |= {"expected_wall_s": 0.01, "achieved_wall_s": 0.02}
+    stated |= {"extrapolated": {"e_edge": 0.31, "E_vib_over_E_0": 0.02}}
 
     def answer(scene, **_):
         return run(scene, "modal").replace(
@@ -84,6 +90,7 @@ def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
     assert "asked for 20 %: modal" in out
     assert "expected error of e and E_vib 15 %, time 0.01 s" in out
     assert "achieved error of e and E_vib not known: one run alone, time 0.02 s" in out
+    assert "all runs together: e (tip's arms) 0.31, E_vib/E_0 0.02" in out
 
 
 def test_the_table_of_the_readme_is_the_stored_one():
