@@ -24,7 +24,7 @@ class Judged:
     ``value`` is the mean over the places of the barrier's grid, of a pair its limit. ``error`` holds, for
     each quantity, distance from the limit plus the limit's own uncertainty over the scale; where an effect
     is left out, what that changes on the same mesh over the scale. ``scatter`` is the standard error of the
-    value over the scale, as the places tell it, of a solid setting. ``band`` of a pair is the uncertainty of
+    value over the scale, as the places tell it, of a solid setting with all effects. ``band`` of a pair is the uncertainty of
     its extrapolation over the scale, scatter included, without what is known of the limit.
     ``two_cores_s`` is the time with the places side by side. ``meshes`` are those of a finite-element
     setting, the finer first. ``front`` names the quantities on whose Pareto front it lies.
@@ -69,7 +69,7 @@ def judge(
     every = [run for placed in runs for run in placed]
     own = truths(runs) if len(runs) == 2 else {}
     scatter = {name: one.scatter for name, one in own.items()}
-    if len(runs) == 1 and setting.meshes:
+    if len(runs) == 1 and setting.meshes and whole is None:
         scatter = {q.name: standard_error(q, runs[0]) for q in QUANTITIES}
     return Judged(
         name=setting.name,

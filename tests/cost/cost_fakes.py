@@ -39,7 +39,7 @@ def run(scene, fidelity="solid", out=None, progress=None, resume=False, checkpoi
     }
     values["cpu_s"] = {"rigid": 1e-3, "modal": 1e-2}.get(fidelity, 10 * (TIP / h) ** 4)
     values["wall_s"] = 2 * values["cpu_s"] if fidelity == "solid" else 3.0  # a busy machine
-    if fidelity == "rigid":
+    if fidelity == "rigid" or "vibration" not in scene.active:
         values["E_vib_over_E_0"] = None
     if part:
         values |= {"peak_memory_MB": None}
