@@ -22,12 +22,13 @@ class Judged:
     free core, and another program beside it does not lengthen it.
 
     ``value`` is the mean over the places of the barrier's grid, of a pair its limit. ``error`` holds, for
-    each quantity, distance from the limit plus the limit's own uncertainty over the scale; where an effect
-    is left out, what that changes on the same mesh over the scale. ``scatter`` is the standard error of the
-    value over the scale, as the places tell it, of a solid setting with all effects. ``band`` of a pair is the uncertainty of
-    its extrapolation over the scale, scatter included, without what is known of the limit.
-    ``two_cores_s`` is the time with the places side by side. ``meshes`` are those of a finite-element
-    setting, the finer first. ``front`` names the quantities on whose Pareto front it lies.
+    each quantity, distance from the limit plus the limit's own uncertainty over the scale, of a pair its
+    band where that is less; where an effect is left out, what that changes on the same mesh over the scale.
+    ``scatter`` is the standard error of the value over the scale, as the places tell it, of a solid setting
+    with all effects. ``band`` of a pair is the uncertainty of its extrapolation over the scale, scatter
+    included, without what is known of the limit. ``two_cores_s`` is the time with the places side by side.
+    ``meshes`` are those of a finite-element setting, the finer first. ``front`` names the quantities on whose
+    Pareto front it lies.
     """
 
     name: str
@@ -78,7 +79,7 @@ def judge(
         meshes=[asdict(mesh) for mesh in setting.meshes],
         tip_size_m=every[0]["tip_size_m"],
         value=value,
-        error={name: _error(number, truth[name]) for name, number in value.items()},
+        error={name: _error(number, truth[name], own.get(name)) for name, number in value.items()},
         scatter={name: number / truth[name].scale for name, number in scatter.items()},
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
         wall_s=sum(run["wall_s"] for run in every),
@@ -102,8 +103,12 @@ def _value(quantity: Quantity, runs: Sequence[Placed]) -> float | None:
     return extrapolated(values[0], values[1], runs[1][0]["tip_size_m"] / runs[0][0]["tip_size_m"])
 
 
-def _error(value: float | None, truth: Truth) -> float | None:
-    return None if value is None else (abs(value - truth.value) + truth.uncertainty) / truth.scale
+def _error(value: float | None, truth: Truth, own: Truth | None) -> float | None:
+    """Return what bounds the error: the limit of all meshes, or a pair's own band where that is closer."""
+    if value is None:
+        return None
+    bound = abs(value - truth.value) + truth.uncertainty
+    return (min(bound, own.uncertainty) if own else bound) / truth.scale
 
 
 def _total(counts: Iterable[int | None]) -> int | None:

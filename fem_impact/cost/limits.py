@@ -11,7 +11,7 @@ from typing import Any
 
 from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.outcome import Outcome
-from fem_impact.study.richardson import LOWEST, SURE, limit
+from fem_impact.study.richardson import LOWEST, limit
 
 __all__ = ["Placed", "Truth", "extrapolated", "mean", "pair_limit", "standard_error", "truths"]
 
@@ -109,7 +109,7 @@ def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None
         return value, None, half
     found = limit(sizes, values)
     away = abs(found.value - last)
-    return found.value, found.order, max(found.band - away, (SURE - 1) * away)
+    return found.value, found.order, found.band - away
 
 
 def _carried(sizes: list[float], values: list[float], errors: list[float]) -> float:

@@ -159,7 +159,11 @@ def test_the_scatter_of_both_meshes_is_carried_into_the_band(cost):
         pair, scale = by_name(cost, words), cost.truth["e"].scale
         assert pair.scatter["e"] * scale == pytest.approx(scatter, rel=1e-6)
         assert pair.band["e"] * scale == pytest.approx(ratio**0.5 * SLOPE["e_edge"] * h + scatter, rel=1e-6)
+        beyond = abs(pair.value["e"] - cost.truth["e"].value) + cost.truth["e"].uncertainty
+        assert pair.error["e"] == pytest.approx(min(pair.band["e"], beyond / scale))
     assert all(bool(one.band) == (one.kind == "pair") for one in cost.settings)
+    assert any(one.error[name] == one.band[name] for one in cost.settings for name in one.band)
+    assert any(one.error[name] < one.band[name] for one in cost.settings for name in one.band)
 
 
 def test_the_best_pair_is_the_quickest_that_meets_the_target_or_the_one_widest_apart(cost):
