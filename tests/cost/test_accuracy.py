@@ -163,8 +163,16 @@ def test_a_target_chooses_the_place_of_the_grid_too():
     assert asked.replace("accuracy.grid_shift", 0.25).accuracy.target is None
 
 
-def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path):
+def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatch):
+    folders = []
+
+    def kept(scene, fidelity, out, *others):
+        folders.append(out)
+        return run(scene, fidelity)
+
+    monkeypatch.setattr(achieve, "simulate", kept)
     outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
+    assert folders == [tmp_path, *(tmp_path / f"mesh-{name}" for name in ("1-0", "0-1", "1-1"))]
     fine, coarse = (placed(load("t5b"), mesh) for mesh in plan(asking(0.05)).meshes)
     assert outcome["scene_digest"] == fine[0].digest()
     means = [sum(run(scene)["e_edge"] for scene in scenes) / 2 for scenes in (fine, coarse)]
