@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import islice, zip_longest
 from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
 
 from fem_impact.cost.limits import Placed, extrapolated, truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
-from fem_impact.cost.settings import Mesh, placed
+from fem_impact.cost.settings import placed
 from fem_impact.cost.stored import Plan, plan
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.scale import LocalProcesses
@@ -41,9 +42,9 @@ def simulate_to_target(
 ) -> Outcome:
     """Run the setting that the measured costs choose.
 
-    Every mesh is run at the places of the barrier's grid. What comes back is the finer mesh's outcome at the
+    Every mesh is run at its places of the barrier's grid. What comes back is the finer mesh's outcome at the
     first, with the limits of two meshes, or the means of one, under ``extrapolated``. The other runs are
-    kept below ``out``; those at the second place have a process beside where there are two threads or more.
+    kept below ``out``; with two threads or more a process beside takes every other run.
 
     Raises
     ------
@@ -54,36 +55,36 @@ def simulate_to_target(
     if not chosen.meshes:
         alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s, threads)
         return _kept(_stated(alone, chosen, alone["wall_s"]), out)
-    work = _work(scene, chosen.meshes, out, progress, resume, checkpoint_s)
-    places = _side_by_side(work) if threads > 1 else [_in_turn(runs) for runs in work]
-    walls = [sum(run["wall_s"] for run in runs) for runs in places]
-    meshes = list(zip(*places, strict=True))
-    return _kept(_stated(places[0][0], chosen, max(walls) if threads > 1 else sum(walls), meshes), out)
+    jobs = [placed(scene, mesh) for mesh in chosen.meshes]
+    work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
+    lanes = [work[0::2], work[1::2]] if threads > 1 else [work]
+    done = _side_by_side(lanes)
+    runs = iter([run for turn in zip_longest(*done) for run in turn if run])
+    meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
+    wall_s = max(sum(run["wall_s"] for run in lane) for lane in done)
+    return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), out)
 
 
 def _work(
-    scene: Scene, meshes: list[Mesh], out: Path | None, progress: Report | None, resume: bool, every: float
-) -> list[list[Run]]:
-    """Return the runs at each place, the finest mesh first; the first of all writes to ``out`` itself."""
-    found: list[list[Run]] = []
-    for place, scenes in enumerate(zip(*(placed(scene, mesh) for mesh in meshes), strict=True)):
-        found.append([])
-        for at, one in enumerate(scenes):
-            first = at == place == 0
-            folder = out and (out if first else out / f"mesh-{at}-{place}")
-            told = progress if first else None
-            found[-1].append(partial(simulate, one, "solid", folder, told, resume, every))
-    return found
+    scenes: list[Scene], out: Path | None, progress: Report | None, resume: bool, checkpoint_s: float
+) -> list[Run]:
+    """Return the runs; the first of all writes to ``out`` itself."""
+    folders = [out and (out / f"run-{at}" if at else out) for at in range(len(scenes))]
+    return [
+        partial(simulate, scene, "solid", folder, None if at else progress, resume, checkpoint_s)
+        for at, (scene, folder) in enumerate(zip(scenes, folders, strict=True))
+    ]
 
 
 def _in_turn(work: list[Run]) -> list[Outcome]:
     return [run() for run in work]
 
 
-def _side_by_side(work: list[list[Run]]) -> list[list[Outcome]]:
+def _side_by_side(lanes: list[list[Run]]) -> list[list[Outcome]]:
+    """Do the first lane here and the others in a process beside."""
     with LocalProcesses(1) as beside:
-        later = [beside.submit(_in_turn, runs) for runs in work[1:]]
-        return [_in_turn(work[0]), *(runs.result() for runs in later)]
+        later = [beside.submit(_in_turn, runs) for runs in lanes[1:]]
+        return [_in_turn(lanes[0]), *(runs.result() for runs in later)]
 
 
 def _kept(outcome: Outcome, out: Path | None) -> Outcome:

@@ -26,7 +26,7 @@ class Judged:
     band where that is less; where an effect is left out, what that changes on the same mesh over the scale.
     ``scatter`` is the standard error of the value over the scale, as the places tell it, of a solid setting
     with all effects. ``band`` of a pair is the uncertainty of its extrapolation over the scale, scatter
-    included, without what is known of the limit. ``two_cores_s`` is the time with the places side by side.
+    included, without what is known of the limit. ``two_cores_s`` is the time with every other run beside.
     ``meshes`` are those of a finite-element setting, the finer first. ``front`` names the quantities on whose
     Pareto front it lies.
     """
@@ -84,7 +84,7 @@ def judge(
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
         wall_s=sum(run["wall_s"] for run in every),
         cpu_s=sum(run["cpu_s"] for run in every),
-        two_cores_s=max(sum(run["cpu_s"] for run in place) for place in zip(*runs, strict=True)),
+        two_cores_s=max(sum(run["cpu_s"] for run in lane) for lane in (every[0::2], every[1::2])),
         element_steps=_total(run["element_steps"] for run in every),
         peak_memory_MB=max((run["peak_memory_MB"] or 0.0 for run in every), default=0.0) or None,
     )

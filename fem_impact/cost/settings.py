@@ -40,8 +40,10 @@ class Mesh:
 # by the size at the tip; meshes with 8 and with 12 cells across are alike there
 FAMILY = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))
 APART = 2.0  # least ratio of the sizes of a pair: closer meshes extrapolate their scatter
-PLACES = (0.0, 0.5)  # of a meshed barrier's grid along t, in cells at the contact: every mesh is run at each
-PLAIN = Mesh(8, 2)  # the mesh on which elements, steps and effects are changed
+PLAIN = Mesh(8, 2)  # the coarsest: on it elements, steps and effects are changed
+# of a meshed barrier's grid along t, in cells at the contact: a mesh is run at each, the one that scatters
+# most and costs least at more
+PLACES, MORE_PLACES = (0.0, 0.5), (0.0, 0.25, 0.5, 0.75)
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
     "mean dilatation": replace(PLAIN, element="bbar"),
@@ -88,9 +90,9 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 
 
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
-    """Return the scene on a mesh at every place of the barrier's grid; a rigid barrier has one."""
-    places = PLACES[:1] if "barrier-rigid" in scene.active else PLACES
-    return [on_mesh(scene, mesh, place) for place in places]
+    """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
+    places = MORE_PLACES if (mesh.across, mesh.levels) == (PLAIN.across, PLAIN.levels) else PLACES
+    return [on_mesh(scene, mesh, place) for place in places[: 1 if "barrier-rigid" in scene.active else None]]
 
 
 def _job(scene: Scene, name: str, fidelity: str) -> Job:
