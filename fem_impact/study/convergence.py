@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cost.limits import pair_limit
-from fem_impact.cost.settings import Mesh, on_mesh
+from fem_impact.cost.settings import FAMILY, PLACES, on_mesh
 from fem_impact.figures.lines import Panel, Series
 from fem_impact.outcome import Outcome
 from fem_impact.output.tables import Cell
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 Row = dict[str, Any]
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
-MESHES = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))  # alike in body, tip and barrier
-PLACES = (0.0, 0.5)  # of the barrier's grid under the rod; a mesh's value is the mean
 DEFAULT = 0.019 / 8 / 2**3  # m, tip of the measured sets at their own accuracy
 TOLD = ("e", "mu", "vibration/E_0")
 CAPTION = "Each quantity against the size of the elements; rings: limits for vanishing elements."
@@ -49,9 +47,8 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     The quick study leaves out the finest mesh and the second place.
     """
     plain = replace_all(load(name), {"save.frames": 0})
-    scenes = [on_mesh(plain, mesh) for mesh in (MESHES[:-1] if quick else MESHES)]
-    places = PLACES[:1] if quick else PLACES
-    return [[_job(scene.replace("accuracy.grid_shift", place)) for place in places] for scene in scenes]
+    meshes, places = (FAMILY[:-1], PLACES[:1]) if quick else (FAMILY, PLACES)
+    return [[_job(on_mesh(plain, mesh, place)) for place in places] for mesh in meshes]
 
 
 def _job(scene: Scene) -> Job:

@@ -5,11 +5,11 @@ import json
 import pytest
 from study_fakes import outcome
 
+from fem_impact.cost import FAMILY
 from fem_impact.progress import NullMeter
 from fem_impact.scale import Failure
 from fem_impact.study import Request
 from fem_impact.study.convergence import (
-    MESHES,
     QUANTITIES,
     _pairs,
     conclude,
@@ -40,10 +40,10 @@ def study(out, broken=()):
 
 def test_every_mesh_is_run_at_two_places_of_the_grid():
     jobs = jobs_of("t5b", False)
-    assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [[0.0, 0.5]] * len(MESHES)
+    assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [[0.0, 0.5]] * len(FAMILY)
     sizes = [mesh[0].scene.accuracy.tip_size for mesh in jobs]
     assert sizes == sorted(sizes, reverse=True)
-    assert len({job.name for mesh in jobs for job in mesh}) == 2 * len(MESHES)
+    assert len({job.name for mesh in jobs for job in mesh}) == 2 * len(FAMILY)
 
 
 def test_every_quantity_has_its_limit():

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from fem_impact.cost.settings import on_mesh
+from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.scene import load, replace_all
 from fem_impact.simulate import simulate
-from fem_impact.study.convergence import MESHES
 
 F = 0.2
 
@@ -17,7 +16,7 @@ def test_ploughing_converges():
         load("t5b"),
         {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
     )
-    ploughed = np.array([simulate(on_mesh(scene, mesh))["mu"] - F for mesh in MESHES[:3]])
+    ploughed = np.array([simulate(on_mesh(scene, mesh))["mu"] - F for mesh in FAMILY[:3]])
     assert (ploughed > 0.01).all()
     assert (ploughed < 0.03).all()
     steps = np.abs(np.diff(ploughed))
