@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem_impact.modes import MassStiffness
-from fem_impact.solid.kernels import allocating_kernel
+from fem_impact.solid.kernels import kernel
 from meshes import RodMesh
 
 Array = NDArray[np.float64]
@@ -36,11 +36,13 @@ class MassPoints:
     lever, weight : (3 n,) over (component, section node): section coordinate l / sqrt(J) and m l / sqrt(J)
         of t, b, n, where J = sum(m l^2), so that the linear part of w is lever (weight . w)
     inward : (3,) c, place of a mass over place of its node, 1 where there are no slices
+    room : (layers,) for the sums over a section
     """
 
     lever: Array
     weight: Array
     inward: Array
+    room: Array
 
     @classmethod
     def of_rod(
@@ -52,7 +54,7 @@ class MassPoints:
         ``linear`` says which section coordinate, x (0) or y (1), the motions along t, b, n are linear in.
         """
         if not rod.body_cells.size:
-            return cls(np.zeros(0), np.zeros(0), np.ones(3))
+            return cls(np.zeros(0), np.zeros(0), np.ones(3), np.zeros(0))
         cells, tail = rod.body_cells[:, -1], rod.body_nodes[:, -1]
         upper = rod.mesh.cells[cells, 4:].ravel()
         m = np.bincount(upper, mass[cells, 4:].ravel(), minlength=len(rod.mesh.points))[tail]
@@ -61,19 +63,20 @@ class MassPoints:
         half_area = mass[cells].sum() / (density * rod.slice_length)
         round_moment = m.sum() * half_area / (2 * pi)  # m R^2 / 4 with pi R^2 / 2 = half_area
         root = np.sqrt(moment)[:, None]
-        return cls((level / root).ravel(), (m * level / root).ravel(), np.sqrt(round_moment / moment))
+        lever, weight = (level / root).ravel(), (m * level / root).ravel()
+        return cls(lever, weight, np.sqrt(round_moment / moment), np.zeros(rod.body_nodes.shape[1]))
 
     def draw_in(self, rows: Array) -> None:
         """Turn places of nodes, (3 n, layers), into places of masses."""
-        add_linear(self.lever, self.weight, self.inward - 1, rows)
+        add_linear(self.lever, self.weight, self.inward - 1, self.room, rows)
 
     def spread(self, rows: Array) -> None:
         """Turn places, displacements or velocities of masses, (3 n, layers), into those of nodes."""
-        add_linear(self.lever, self.weight, 1 / self.inward - 1, rows)
+        add_linear(self.lever, self.weight, 1 / self.inward - 1, self.room, rows)
 
     def gather(self, rows: Array) -> None:
         """Turn forces on nodes, (3 n, layers), into forces on masses: the transpose of `spread`."""
-        add_linear(self.weight, self.lever, 1 / self.inward - 1, rows)
+        add_linear(self.weight, self.lever, 1 / self.inward - 1, self.room, rows)
 
     def section(self) -> sp.csr_matrix:
         """Return P (3 n, 3 n) of one layer."""
@@ -94,11 +97,10 @@ class MassPoints:
         return MassStiffness(K, self.matrix(layers, K.shape[0]))
 
 
-@allocating_kernel
-def add_linear(out, into, amount, rows):  # type: ignore[no-untyped-def]
+@kernel
+def add_linear(out, into, amount, part, rows):  # type: ignore[no-untyped-def]
     """Add amount[c] out (into . rows) to the rows of each component c, in all layers but the first."""
     n, layers = len(out) // 3, rows.shape[1]
-    part = np.zeros(layers)
     for c in range(3):
         part[:] = 0.0
         for a in range(c * n, (c + 1) * n):

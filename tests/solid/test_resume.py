@@ -111,7 +111,14 @@ WORK_SPACE = {
         "ElasticNose.d",
         "ElasticNose.y",
     ),
-    *("ElasticBlock.d", "ElasticBlock.y", "Blocks.pressure", "Blocks.nodal", "YieldingZone.room"),
+    *(
+        "ElasticBlock.d",
+        "ElasticBlock.y",
+        "Blocks.pressure",
+        "Blocks.nodal",
+        "YieldingZone.room",
+        "MassPoints.room",
+    ),
     *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner")),
     *("SurfaceContact.normals", "HistoryWriter._due", "FieldWriter._begun", "FieldWriter._shapes"),
 }

@@ -18,7 +18,7 @@ from fem_impact.solid.contact.book import (
 )
 from fem_impact.solid.contact.impulses import relative
 from fem_impact.solid.contact.search import bilinear, locate
-from fem_impact.solid.kernels import allocating_kernel, inlined, kernel
+from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -93,7 +93,15 @@ def _enter(k, slave, gap, band, motion, c):  # type: ignore[no-untyped-def]
     return True
 
 
-@allocating_kernel
+@inlined
+def _join(c, k, a, places, weight):  # type: ignore[no-untyped-def]
+    """Make a node with unknowns ``places`` (3,) number ``a`` of row k."""
+    c.weights[k, a] = weight
+    for i in range(3):
+        c.nodes[k, a, i] = places[i]
+
+
+@kernel
 def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # type: ignore[no-untyped-def]
     """Collect contacts of rod nodes with barrier quads; returns their number."""
     x, top, count = motion.x, 0.0, 0
@@ -110,16 +118,18 @@ def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # t
             continue
         last[i] = q
         w = bilinear(xi, eta)
-        surface, normal = 0.0, c.normal[count]
-        normal[:] = 0.0
-        c.nodes[count, 0], c.weights[count, 0] = rod.places[i], 1.0
+        surface, n_t, n_b, n_n = 0.0, 0.0, 0.0, 0.0
+        _join(c, count, 0, rod.places[i], 1.0)
         for a in range(4):
             node = barrier.quads[q, a]
-            c.nodes[count, a + 1], c.weights[count, a + 1] = barrier.places[node], -w[a]
+            _join(c, count, a + 1, barrier.places[node], -w[a])
             surface += w[a] * x[barrier.places[node, 2]]
-            normal += w[a] * normals[node]
-        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)
-        count += _enter(count, i, (n - surface) * normal[2], band, motion, c)
+            n_t += w[a] * normals[node, 0]
+            n_b += w[a] * normals[node, 1]
+            n_n += w[a] * normals[node, 2]
+        length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)
+        c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
+        count += _enter(count, i, (n - surface) * c.normal[count, 2], band, motion, c)
     return count
 
 
@@ -139,7 +149,7 @@ def _reach(rod, x, height):  # type: ignore[no-untyped-def]
     return low_t, high_t, low_b, high_b
 
 
-@allocating_kernel
+@kernel
 def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
     """Append contacts of barrier nodes with rod quads; returns the new number."""
     x, first, top = motion.x, len(rod.places), 0.0
@@ -158,15 +168,16 @@ def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # t
         surface = 0.0
         for a in range(4):
             node = rod.quads[q, a]
-            c.nodes[count, a + 1], c.weights[count, a + 1] = rod.places[node], w[a]
+            _join(c, count, a + 1, rod.places[node], w[a])
             surface += w[a] * x[rod.places[node, 2]]
-        c.nodes[count, 0], c.weights[count, 0] = barrier.places[i], -1.0
-        c.normal[count] = normals[i]
+        _join(c, count, 0, barrier.places[i], -1.0)
+        for j in range(3):
+            c.normal[count, j] = normals[i, j]
         count += _enter(count, first + i, (surface - n) * normals[i, 2], band, motion, c)
     return count
 
 
-@allocating_kernel
+@kernel
 def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
     """Fill the step's record with impulses on the rod and work; remember the impulses."""
     x = motion.x
@@ -186,4 +197,5 @@ def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
             if c.weights[k, a] > 0.0:
                 at_t, at_n = x[c.nodes[k, a, 0]], x[c.nodes[k, a, 2]]
                 record[ARM] += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
-        c.memory[c.owner[k]] = p
+        for i in range(3):
+            c.memory[c.owner[k], i] = p[i]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_impact.solid.kernels import allocating_kernel, inlined, kernel
+from fem_impact.solid.kernels import inlined, kernel
 
 # a point this far outside the last quad (in its own units) still belongs to it: symmetry plane, round-off
 SLACK = 1e-6
@@ -83,7 +83,7 @@ def locate(x, places, quads, neighbours, start, t, b):  # type: ignore[no-untype
     return -1, 0.0, 0.0
 
 
-@allocating_kernel
+@kernel
 def vertex_normals(x, places, quads, mirrored, normals):  # type: ignore[no-untyped-def]
     """Set unit normals (k, 3) of patch nodes: area-weighted means of the quads around, mirrored at b = 0."""
     normals[:] = 0.0
@@ -103,7 +103,9 @@ def vertex_normals(x, places, quads, mirrored, normals):  # type: ignore[no-unty
         if mirrored[i]:
             normals[i, 1] = 0.0
         length = np.sqrt(normals[i, 0] ** 2 + normals[i, 1] ** 2 + normals[i, 2] ** 2)
-        normals[i] /= length
+        normals[i, 0] /= length
+        normals[i, 1] /= length
+        normals[i, 2] /= length
 
 
 @kernel
