@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from fem_impact.cost.settings import on_mesh
+from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.scene import load, replace_all
 from fem_impact.simulate import simulate
-from fem_impact.study.convergence import MESHES
 
 F = 0.2
 
@@ -18,7 +17,7 @@ def test_finer_meshes_plough_more():
         load("t5b"),
         {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
     )
-    runs = [simulate(on_mesh(scene, mesh)) for mesh in MESHES[:3]]
+    runs = [simulate(on_mesh(scene, mesh)) for mesh in FAMILY[:3]]
     ploughed = np.array([run["mu"] - F for run in runs])
     assert (ploughed > 0.005).all()
     assert (ploughed < 0.03).all()
