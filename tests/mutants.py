@@ -32,8 +32,8 @@ FACET = """\
         p2, p3 = barrier.places[barrier.quads[q, 2]], barrier.places[barrier.quads[q, 3]]
         u_t, u_b, u_n = x[p2[0]] - x[p0[0]], x[p2[1]] - x[p0[1]], x[p2[2]] - x[p0[2]]
         w_t, w_b, w_n = x[p3[0]] - x[p1[0]], x[p3[1]] - x[p1[1]], x[p3[2]] - x[p1[2]]
-        normal[0], normal[1] = u_b * w_n - u_n * w_b, u_n * w_t - u_t * w_n
-        normal[2] = u_t * w_b - u_b * w_t
+        n_t, n_b = u_b * w_n - u_n * w_b, u_n * w_t - u_t * w_n
+        n_n = u_t * w_b - u_b * w_t
 """
 GAUSS_PRESSURE = """\
             for l in range(LANES):
@@ -43,7 +43,7 @@ GAUSS_PRESSURE = """\
 SPHERE = "tests/verify/test_verify_oblique_sphere.py"
 RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
 HEATING = "tests/heating/test_heating.py"
-UNIT = "        normal /= np.sqrt(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2)\n"
+UNIT = "        length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)\n"
 FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
 MUTANTS = (
     Mutant(
