@@ -106,11 +106,9 @@ class Meridian:
 
     def arc_at(self, point: FloatArray) -> float:
         """Arc length of the place closest to a point (rho, z) in m, m."""
-        step = np.diff(self.line, axis=0)
-        length = np.hypot(*step.T)
-        along = np.clip(((point - self.line[:-1]) * step).sum(axis=1) / length**2, 0.0, 1.0)
-        near = int(np.linalg.norm(self.line[:-1] + along[:, None] * step - point, axis=1).argmin())
-        return float(self.arc[near] + along[near] * length[near])
+        foot = closest_on(self.line, np.asarray(point, np.float64)[None])
+        # rho + z grows along the line, as the arc does
+        return float(np.interp(foot.sum(), self.line.sum(axis=1), self.arc))
 
     def _turned(self, angle: float) -> float:
         """Arc length at which the line has turned by an angle from the face, m."""

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, field, replace
 from math import inf
 from typing import Any
 
-from fem_impact.cost.limits import Placed, Truth, extrapolated, mean, standard_error, truths
+from fem_impact.cost.limits import Placed, Truth, known_mean, mean, standard_error, truths
 from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.cost.settings import Setting
 
@@ -66,9 +66,9 @@ def judge(
     """
     if whole is not None:
         truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES}
-    value = {q.name: _value(q, runs) for q in QUANTITIES}
     every = [run for placed in runs for run in placed]
     own = truths(runs) if len(runs) == 2 else {}
+    value = {q.name: own[q.name].value if own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
     if len(runs) == 1 and setting.meshes and whole is None:
         scatter = {q.name: standard_error(q, runs[0]) for q in QUANTITIES}
@@ -91,16 +91,7 @@ def judge(
 
 
 def _on_mesh(quantity: Quantity, whole: Placed, truth: Truth) -> Truth:
-    value = mean(quantity, whole)
-    assert value is not None  # a finite-element run knows all quantities
-    return replace(truth, value=value, uncertainty=0.0)
-
-
-def _value(quantity: Quantity, runs: Sequence[Placed]) -> float | None:
-    values = [mean(quantity, placed) for placed in runs]
-    if len(values) == 1 or values[0] is None or values[1] is None:
-        return values[0]
-    return extrapolated(values[0], values[1], runs[1][0]["tip_size_m"] / runs[0][0]["tip_size_m"])
+    return replace(truth, value=known_mean(quantity, whole), uncertainty=0.0)
 
 
 def _error(value: float | None, truth: Truth, own: Truth | None) -> float | None:

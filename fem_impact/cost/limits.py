@@ -13,7 +13,7 @@ from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.outcome import Outcome
 from fem_impact.study.richardson import LOWEST, limit
 
-__all__ = ["Placed", "Truth", "extrapolated", "mean", "pair_limit", "standard_error", "truths"]
+__all__ = ["Placed", "Truth", "extrapolated", "known_mean", "mean", "pair_limit", "standard_error", "truths"]
 
 PAIR_ORDER = 1.0  # assumed where two meshes are all there is
 
@@ -43,6 +43,11 @@ def mean(quantity: Quantity, runs: Placed) -> float | None:
     """Return the mean of a quantity over the runs on a mesh, None where the fidelity does not know it."""
     values = [quantity.value(run) for run in runs]
     return None if None in values else fmean(v for v in values if v is not None)
+
+
+def known_mean(quantity: Quantity, runs: Placed) -> float:
+    """Return the mean of a quantity over finite-element runs, which know all of them."""
+    return fmean(_known(quantity, run) for run in runs)
 
 
 def standard_error(quantity: Quantity, runs: Placed) -> float:
@@ -94,7 +99,7 @@ def _known(quantity: Quantity, outcome: Mapping[str, Any]) -> float:
 
 
 def _truth(quantity: Quantity, sizes: list[float], meshes: Sequence[Placed], finest: int) -> Truth:
-    values = [fmean(_known(quantity, run) for run in runs) for runs in meshes]
+    values = [known_mean(quantity, runs) for runs in meshes]
     value, order, left_open = _limit(sizes, values)
     scatter = _carried(sizes, values, [standard_error(quantity, runs) for runs in meshes])
     size = max(abs(value), abs(values[finest]))  # an extrapolation to zero must not inflate every error

@@ -170,15 +170,14 @@ def _block(
     x: Array,
     inverse_mass: Array,
     share: float,
-    steps: dict[str, float],
-) -> tuple[list[ElasticBlock], list[Dashpots]]:
-    """Return the items of a meshed barrier and note its step."""
+) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
+    """Return the items of a meshed barrier and its step; nothing without one."""
     if not barrier:
-        return [], []
+        return [], [], {}
     block, whole, outside = elastic_block(barrier[0], layout, x)
-    steps["barrier"] = stable_step(whole, inverse_mass[layout.barrier_slice], share)
+    step = stable_step(whole, inverse_mass[layout.barrier_slice], share)
     pots = [dashpots(barrier[0], layout, inverse_mass, whole, outside)] if spec.radiating else []
-    return [block], pots
+    return [block], pots, {"barrier": step}
 
 
 def dashpots(
@@ -296,9 +295,8 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
     rod = bodies[0]
     drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
     x, v = _start(bodies, layout, scene, mass, drawn)
-    steps: dict[str, float] = {}
     # the block first: what its assembly takes for a while, the rod's, which stays, takes up again
-    block, pots = _block(bodies[1:], spec, layout, x, inverse_mass, scene.accuracy.step, steps)
+    block, pots, steps = _block(bodies[1:], spec, layout, x, inverse_mass, scene.accuracy.step)
     linear, rod_stiffness = _elastic_rod(rod, geometry, layout, mass, x, drawn, spec)
     forces: list[Force] = [linear]
     impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
