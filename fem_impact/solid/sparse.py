@@ -9,10 +9,12 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from fem_impact.solid.elements import Kind, element_stiffness
+from fem_impact.solid.fours import add_product, load, spread, store, three
 from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Counts = NDArray[np.uint32]
 
 
 CHUNK = 500  # elements assembled at once: their strain matrices and entries take a few tens of MB
@@ -51,14 +53,15 @@ def assemble_mass(mass: Array, cells: Ints, T: sp.csr_matrix) -> Array:
 ROUNDING = 1e-13  # of the largest entry: what sums in different orders may differ by
 
 
-def _distinct(blocks: Array) -> tuple[NDArray[np.int32], Array]:
-    """Return the number of each block (entries, 9) among the distinct ones, and these."""
+def _distinct(blocks: Array) -> tuple[Counts, Array]:
+    """Return the number of each block (entries, 9) among the distinct ones, and these as they come."""
     unit = ROUNDING * float(np.abs(blocks).max(initial=1e-300))
     rounded = np.ascontiguousarray(np.round(blocks / unit))
     # blocks as single items of bytes: far faster to sort than rows
     items = (rounded + 0.0).view(np.dtype((np.void, 72))).ravel()
     _, first, kinds = np.unique(items, return_index=True, return_inverse=True)
-    return kinds.astype(np.int32), np.ascontiguousarray(blocks[first])
+    order = np.argsort(first)
+    return np.argsort(order)[kinds].astype(np.uint32), blocks[first[order]]
 
 
 @dataclass(slots=True)
@@ -69,15 +72,15 @@ class NodeProduct:
     ----------
     places : (k, 3) int64, unknowns of the nodes
     start, columns : (k + 1,), (entries,) compressed rows over nodes, each from its diagonal on
-    kinds : (entries,) number of each entry's block; blocks : (kinds, 9), N/m, row-major. Equal cells
-        have equal blocks, so that a regular mesh reads few numbers from memory
-    moved, product : (k, 3) displacements, m, and forces, N, of the nodes
+    kinds : (entries,) number of each entry's block; blocks : (kinds + 1, 9), N/m, row-major, the last of
+        zeros. Equal cells have equal blocks, so that a regular mesh reads few numbers from memory
+    moved, product : (k, 4) displacements, m, and forces, N, of the nodes, and one number without meaning
     """
 
     places: Ints
     start: Ints
-    columns: NDArray[np.int32]
-    kinds: NDArray[np.int32]
+    columns: Counts
+    kinds: Counts
     blocks: Array
     moved: Array
     product: Array
@@ -94,8 +97,9 @@ class NodeProduct:
         upper = small.indices >= rows
         kinds, blocks = _distinct(small.data[upper].reshape(-1, 9))
         start = np.concatenate([[0], np.cumsum(np.bincount(rows[upper], minlength=len(used)))])
-        columns = small.indices[upper].astype(np.int32)
-        return cls(used, start.astype(np.int64), columns, kinds, blocks, *np.zeros((2, len(used), 3)))
+        columns, room = small.indices[upper].astype(np.uint32), np.zeros((2, len(used), 4))
+        blocks = np.concatenate([blocks, np.zeros((1, 9))])
+        return cls(used, start.astype(np.int64), columns, kinds, blocks, *room)
 
     def add_to(self, x: Array, y: Array) -> None:
         """Add the product with ``x`` to ``y``."""
@@ -105,28 +109,27 @@ class NodeProduct:
 
 
 @inlined
-def _add_row(first, last, columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
-    """Add row i beyond the diagonal and its transpose; nine sums, because one would wait for itself."""
-    tt, tb, tn, bt, bb, bn, nt, nb, nn = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-    own_t, own_b, own_n = d[i, 0], d[i, 1], d[i, 2]
-    for p in range(first, last):
-        j, k = columns[p], blocks[kinds[p]]
-        t, b, n = d[j, 0], d[j, 1], d[j, 2]
-        tt += k[0] * t
-        tb += k[1] * b
-        tn += k[2] * n
-        bt += k[3] * t
-        bb += k[4] * b
-        bn += k[5] * n
-        nt += k[6] * t
-        nb += k[7] * b
-        nn += k[8] * n
-        f[j, 0] += k[0] * own_t + k[3] * own_b + k[6] * own_n
-        f[j, 1] += k[1] * own_t + k[4] * own_b + k[7] * own_n
-        f[j, 2] += k[2] * own_t + k[5] * own_b + k[8] * own_n
-    f[i, 0] += tt + tb + tn
-    f[i, 1] += bt + bb + bn
-    f[i, 2] += nt + nb + nn
+def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
+    """Add row i, whose entries are given, and beyond its diagonal the transpose.
+
+    The rows k, l, m of a block and a node's values are handled as fours, whose fourth is of no account.
+    """
+    own, p = load(d, 4 * i), 9 * kinds[0]
+    t, b, n = spread(d[i, 0]), spread(d[i, 1]), spread(d[i, 2])
+    sum_t, sum_b, sum_n = spread(0.0), spread(0.0), spread(0.0)
+    sum_t = add_product(sum_t, load(blocks, p), own)
+    sum_b = add_product(sum_b, load(blocks, p + 3), own)
+    sum_n = add_product(sum_n, load(blocks, p + 6), own)
+    for entry in range(1, len(columns)):
+        j, p = 4 * columns[entry], 9 * kinds[entry]
+        k, l, m, other = load(blocks, p), load(blocks, p + 3), load(blocks, p + 6), load(d, j)
+        sum_t = add_product(sum_t, k, other)
+        sum_b = add_product(sum_b, l, other)
+        sum_n = add_product(sum_n, m, other)
+        store(f, j, add_product(add_product(add_product(load(f, j), k, t), l, b), m, n))
+    f[i, 0] += three(sum_t)
+    f[i, 1] += three(sum_b)
+    f[i, 2] += three(sum_n)
 
 
 @kernel
@@ -137,11 +140,8 @@ def add_blocks(places, start, columns, kinds, blocks, d, f, x, y):  # type: igno
             d[i, c] = x[places[i, c]]
     f[:] = 0.0
     for i in range(len(places)):
-        k = blocks[kinds[start[i]]]
-        f[i, 0] += k[0] * d[i, 0] + k[1] * d[i, 1] + k[2] * d[i, 2]
-        f[i, 1] += k[3] * d[i, 0] + k[4] * d[i, 1] + k[5] * d[i, 2]
-        f[i, 2] += k[6] * d[i, 0] + k[7] * d[i, 1] + k[8] * d[i, 2]
-        _add_row(start[i] + 1, start[i + 1], columns, kinds, blocks, d, f, i)
+        first, last = start[i], start[i + 1]
+        _add_row(columns[first:last], kinds[first:last], blocks, d, f, i)
     for i in range(len(places)):
         for c in range(3):
             y[places[i, c]] += f[i, c]

@@ -56,6 +56,36 @@ def test_blocks_are_the_sparse_matrix():
     assert abs(y - 1 - K @ x).max() < 1e-12 * abs(K @ x).max()
 
 
+def _unheld(seed):
+    """Return the product of a refined patch that nothing holds, its free points, their places and matrix."""
+    mesh, points = shapes.refined_patch(seed)
+    places = np.random.default_rng(seed).permutation(3 * len(points)).reshape(-1, 3)
+    K = assemble(points, mesh.cells, C, "incompatible", tie_operator(mesh.tie, places, places.size))
+    free = places[~mesh.is_hanging]
+    product = NodeProduct.of(K, free)
+
+    def times(x):
+        y = np.zeros(len(x))
+        product.add_to(x, y)
+        return y
+
+    return times, points[~mesh.is_hanging], free, K
+
+
+def test_blocks_work_both_ways():
+    times, _, _, K = _unheld(seed=12)
+    x, z = np.random.default_rng(13).normal(size=(2, K.shape[0]))
+    assert z @ times(x) == pytest.approx(x @ times(z), rel=1e-13)
+
+
+@pytest.mark.parametrize("axis", range(6))
+def test_blocks_let_a_rigid_motion_free(axis):
+    times, points, free, K = _unheld(seed=14)
+    motion, x = np.eye(6)[axis], np.zeros(K.shape[0])
+    x[free] = motion[:3] + np.cross(motion[3:], points)
+    assert abs(times(x)).max() < 1e-12 * abs(K).max() * abs(x).max()
+
+
 def _hanging(seed=5):
     mesh, points = shapes.refined_patch(seed)
     places = np.random.default_rng(seed).permutation(3 * len(points)).reshape(-1, 3)
