@@ -157,9 +157,7 @@ def elastic_block(
     linear = stiffness_of(body, ~body.yields, n, place.start)
     K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
-    block = ElasticBlock(
-        NodeProduct.of(K, shifted[~body.mesh.is_hanging]), x[place].copy(), place, np.zeros(n), np.zeros(n)
-    )
+    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place)
     return block, linear + stiffness_of(body, body.yields, n, place.start), (springs, pots)
 
 

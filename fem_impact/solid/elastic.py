@@ -46,7 +46,8 @@ class ElasticRod:
         d, y = self.layout.slices_of(self.d), self.layout.slices_of(self.y)
         self.drawn.spread(d)
         self.slices.apply(d, y)
-        self.nose.add_to(self.d, self.y)
+        self.nose.multiply(self.d)
+        self.nose.add_to(self.y)
         self.drawn.draw_in(d)
         self.drawn.gather(y)
 
@@ -61,15 +62,12 @@ class ElasticRod:
 
 @dataclass(slots=True)
 class ElasticBlock:
-    """The barrier's linear part; its rows start at ``place.start`` of the flat vector."""
+    """The barrier's linear part at ``place`` of the flat vector."""
 
     body: ClassVar[str] = "barrier"
     moving: ClassVar[tuple[str, ...]] = ()
     stiffness: NodeProduct
-    reference: Array
     place: slice
-    d: Array
-    y: Array
 
     @property
     def parts(self) -> Sequence[Part]:
@@ -77,17 +75,15 @@ class ElasticBlock:
         return [self._multiply]
 
     def _multiply(self, state: State) -> None:
-        np.subtract(state.x[self.place], self.reference, out=self.d)
-        self.y[:] = 0.0
-        self.stiffness.add_to(self.d, self.y)
+        self.stiffness.multiply(state.x[self.place])
 
     def collect(self, state: State) -> None:
         """Add the elastic forces of block and boundary springs."""
-        state.force[self.place] -= self.y
+        self.stiffness.add_to(state.force[self.place], -1.0)
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""
-        return {"strain_barrier": 0.5 * float(self.d @ self.y)}
+        return {"strain_barrier": self.stiffness.energy}
 
 
 @dataclass(slots=True)

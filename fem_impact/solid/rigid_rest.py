@@ -61,7 +61,8 @@ class ElasticNose:
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
-        self.nose.add_to(self.d, self.y)
+        self.nose.multiply(self.d)
+        self.nose.add_to(self.y)
 
     def collect(self, state: State) -> None:
         """Add the elastic forces."""

@@ -74,10 +74,12 @@ class NodeProduct:
     start, columns : (k + 1,), (entries,) compressed rows over nodes, each from its diagonal on
     kinds : (entries,) number of each entry's block; blocks : (kinds + 1, 9), N/m, row-major, the last of
         zeros. Equal cells have equal blocks, so that a regular mesh reads few numbers from memory
+    origin : (k, 3) values of the nodes, m, that make no force
     moved, product : (k, 4) displacements, m, and forces, N, of the nodes, and one number without meaning
     """
 
     places: Ints
+    origin: Array
     start: Ints
     columns: Counts
     kinds: Counts
@@ -86,8 +88,11 @@ class NodeProduct:
     product: Array
 
     @classmethod
-    def of(cls, matrix: sp.csr_matrix, places: Ints) -> NodeProduct:
-        """Keep the nodes, out of the free ones in ``places`` (n, 3), whose rows hold anything."""
+    def of(cls, matrix: sp.csr_matrix, places: Ints, origin: Array | None = None) -> NodeProduct:
+        """Keep the nodes, out of the free ones in ``places`` (n, 3), whose rows hold anything.
+
+        ``origin`` (size,) makes no force (default: zeros).
+        """
         filled = np.diff(matrix.indptr) > 0
         used = places[filled[places].any(axis=1)]
         order = used.ravel()
@@ -99,13 +104,22 @@ class NodeProduct:
         start = np.concatenate([[0], np.cumsum(np.bincount(rows[upper], minlength=len(used)))])
         columns, room = small.indices[upper].astype(np.uint32), np.zeros((2, len(used), 4))
         blocks = np.concatenate([blocks, np.zeros((1, 9))])
-        return cls(used, start.astype(np.int64), columns, kinds, blocks, *room)
+        zero = np.zeros(used.shape) if origin is None else origin[used]
+        return cls(used, zero, start.astype(np.int64), columns, kinds, blocks, *room)
 
-    def add_to(self, x: Array, y: Array) -> None:
-        """Add the product with ``x`` to ``y``."""
-        add_blocks(
-            self.places, self.start, self.columns, self.kinds, self.blocks, self.moved, self.product, x, y
-        )
+    def multiply(self, x: Array) -> None:
+        """Set ``product`` to the product with ``x`` less the origin."""
+        take_nodes(self.places, self.origin, x, self.moved)
+        multiply_blocks(self.start, self.columns, self.kinds, self.blocks, self.moved, self.product)
+
+    def add_to(self, y: Array, share: float = 1.0) -> None:
+        """Add a share of the product to ``y``."""
+        add_nodes(self.places, share, self.product, y)
+
+    @property
+    def energy(self) -> float:
+        """Return the strain energy, J, at the last product."""
+        return 0.5 * float((self.moved[:, :3] * self.product[:, :3]).sum())
 
 
 @inlined
@@ -133,18 +147,28 @@ def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def add_blocks(places, start, columns, kinds, blocks, d, f, x, y):  # type: ignore[no-untyped-def]
-    """Add a symmetric block-sparse product; ``d`` and ``f`` are room for the nodes' values."""
+def take_nodes(places, origin, x, d):  # type: ignore[no-untyped-def]
+    """Set d to the values of the nodes less their origin."""
     for i in range(len(places)):
         for c in range(3):
-            d[i, c] = x[places[i, c]]
+            d[i, c] = x[places[i, c]] - origin[i, c]
+
+
+@kernel
+def multiply_blocks(start, columns, kinds, blocks, d, f):  # type: ignore[no-untyped-def]
+    """Set f to a symmetric block-sparse product with d."""
     f[:] = 0.0
-    for i in range(len(places)):
+    for i in range(len(d)):
         first, last = start[i], start[i + 1]
         _add_row(columns[first:last], kinds[first:last], blocks, d, f, i)
+
+
+@kernel
+def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
+    """Add a share of the nodes' values."""
     for i in range(len(places)):
         for c in range(3):
-            y[places[i, c]] += f[i, c]
+            y[places[i, c]] += share * f[i, c]
 
 
 @dataclass(frozen=True, slots=True)

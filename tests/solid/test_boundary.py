@@ -107,13 +107,7 @@ class Column:
         damping = spread_boundary(foot_only, E, NU, RHO)[1].ravel()
         held = np.flatnonzero(damping * (inverse > 0))
         size = places.size
-        self.block = ElasticBlock(
-            NodeProduct.of(K, places),
-            mesh.points.ravel().copy(),
-            slice(0, size),
-            np.zeros(size),
-            np.zeros(size),
-        )
+        self.block = ElasticBlock(NodeProduct.of(K, places, mesh.points.ravel()), slice(0, size))
         self.pots = Dashpots(held, damping[held], inverse[held])
         self.model = SimpleNamespace(
             forces=[self.block],

@@ -51,7 +51,8 @@ def test_blocks_are_the_sparse_matrix():
     product = NodeProduct.of(K, places[~mesh.is_hanging])
     x = np.random.default_rng(4).normal(size=places.size)
     y = np.ones(places.size)
-    product.add_to(x, y)
+    product.multiply(x)
+    product.add_to(y)
     assert len(product.places) < (~mesh.is_hanging).sum()
     assert abs(y - 1 - K @ x).max() < 1e-12 * abs(K @ x).max()
 
@@ -66,10 +67,21 @@ def _unheld(seed):
 
     def times(x):
         y = np.zeros(len(x))
-        product.add_to(x, y)
+        product.multiply(x)
+        product.add_to(y)
         return y
 
     return times, points[~mesh.is_hanging], free, K
+
+
+def test_blocks_tell_force_and_energy_from_their_origin():
+    _, _, free, K = _unheld(seed=15)
+    x, origin, y = np.random.default_rng(16).normal(size=(3, K.shape[0]))
+    product, given, force = NodeProduct.of(K, free, origin), y.copy(), K @ (x - origin)
+    product.multiply(x)
+    product.add_to(y, -0.5)
+    assert abs(given - 0.5 * force - y).max() < 1e-12 * abs(force).max()
+    assert product.energy == pytest.approx(0.5 * (x - origin)[free.ravel()] @ force[free.ravel()], rel=1e-12)
 
 
 def test_blocks_work_both_ways():
@@ -172,5 +184,6 @@ def test_equal_cells_share_their_blocks():
     product = NodeProduct.of(matrix, places)
     assert len(product.blocks) < 0.1 * len(product.kinds)
     x, y = np.random.default_rng(4).normal(size=places.size), np.zeros(places.size)
-    product.add_to(x, y)
+    product.multiply(x)
+    product.add_to(y)
     assert y == pytest.approx(matrix @ x, abs=1e-11 * abs(matrix @ x).max())

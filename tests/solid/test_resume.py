@@ -112,8 +112,6 @@ WORK_SPACE = {
         "ElasticNose.y",
     ),
     *(
-        "ElasticBlock.d",
-        "ElasticBlock.y",
         "Blocks.pressure",
         "Blocks.nodal",
         "YieldingZone.room",
