@@ -173,14 +173,19 @@ def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True, slots=True)
 class Hanging:
-    """Values of hanging unknowns from their masters, and their forces back to them.
+    """Values of hanging nodes from their masters, and their forces back to them.
 
     Both ways use the same weights, so the tie does no work: (T v) . f = v . (T^T f).
+
+    Attributes
+    ----------
+    slaves : (k, 3), unknowns of the hanging nodes
+    start, masters, weights : (k + 1,), (entries, 3), (entries,) compressed rows over them
     """
 
-    slaves: Ints
+    slaves: Counts
     start: Ints
-    masters: Ints
+    masters: Counts
     weights: Array
 
     @classmethod
@@ -189,12 +194,11 @@ class Hanging:
         slaves, counts, masters, weights = [], [], [], []
         for tie, places in parts:
             hung = np.flatnonzero(tie.diagonal() == 0)
-            for component in range(3):
-                rows = tie[hung]
-                slaves.append(places[hung, component])
-                counts.append(np.diff(rows.indptr))
-                masters.append(places[rows.indices, component])
-                weights.append(rows.data)
+            rows = tie[hung]
+            slaves.append(places[hung].astype(np.uint32))
+            counts.append(np.diff(rows.indptr))
+            masters.append(places[rows.indices].astype(np.uint32))
+            weights.append(rows.data)
         start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
         return cls(np.concatenate(slaves), start, np.concatenate(masters), np.concatenate(weights))
 
@@ -210,16 +214,20 @@ class Hanging:
 @kernel
 def _expand(slaves, start, masters, weights, x):  # type: ignore[no-untyped-def]
     for i in range(len(slaves)):
-        value = 0.0
+        t, b, n = 0.0, 0.0, 0.0
         for p in range(start[i], start[i + 1]):
-            value += weights[p] * x[masters[p]]
-        x[slaves[i]] = value
+            t += weights[p] * x[masters[p, 0]]
+            b += weights[p] * x[masters[p, 1]]
+            n += weights[p] * x[masters[p, 2]]
+        x[slaves[i, 0]], x[slaves[i, 1]], x[slaves[i, 2]] = t, b, n
 
 
 @kernel
 def _collect(slaves, start, masters, weights, force):  # type: ignore[no-untyped-def]
     for i in range(len(slaves)):
-        value = force[slaves[i]]
+        t, b, n = force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]]
         for p in range(start[i], start[i + 1]):
-            force[masters[p]] += weights[p] * value
-        force[slaves[i]] = 0.0
+            force[masters[p, 0]] += weights[p] * t
+            force[masters[p, 1]] += weights[p] * b
+            force[masters[p, 2]] += weights[p] * n
+        force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]] = 0.0, 0.0, 0.0
