@@ -70,7 +70,7 @@ class NodeProduct:
 
     Attributes
     ----------
-    places : (k, 3) int64, unknowns of the nodes
+    places : (k, 3), unknowns of the nodes; unsigned, so that no reading tests for a negative place
     start, columns : (k + 1,), (entries,) compressed rows over nodes, each from its diagonal on
     kinds : (entries,) number of each entry's block; blocks : (kinds + 1, 9), N/m, row-major, the last of
         zeros. Equal cells have equal blocks, so that a regular mesh reads few numbers from memory
@@ -78,7 +78,7 @@ class NodeProduct:
     moved, product : (k, 4) displacements, m, and forces, N, of the nodes, and one number without meaning
     """
 
-    places: Ints
+    places: Counts
     origin: Array
     start: Ints
     columns: Counts
@@ -105,7 +105,7 @@ class NodeProduct:
         columns, room = small.indices[upper].astype(np.uint32), np.zeros((2, len(used), 4))
         blocks = np.concatenate([blocks, np.zeros((1, 9))])
         zero = np.zeros(used.shape) if origin is None else origin[used]
-        return cls(used, zero, start.astype(np.int64), columns, kinds, blocks, *room)
+        return cls(used.astype(np.uint32), zero, start.astype(np.int64), columns, kinds, blocks, *room)
 
     def multiply(self, x: Array) -> None:
         """Set ``product`` to the product with ``x`` less the origin."""

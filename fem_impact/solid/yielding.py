@@ -19,6 +19,7 @@ from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtr
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Counts = NDArray[np.uint32]
 
 PART = 16  # blocks that a thread takes at a time: 60 to 90 us of work, a call costs some
 
@@ -43,7 +44,7 @@ class YieldingZone:
     body: str
     count: int
     blocks: Blocks
-    around: tuple[Ints, Ints, Ints]
+    around: tuple[Counts, Ints, Counts]
     room: Array
     G: float
     K: float
@@ -61,7 +62,7 @@ class YieldingZone:
         weight[: len(dof)] = gauss_volumes(points)
         lame, G = lame_constants(E, nu)
         state = Blocks(
-            dof=np.ascontiguousarray(filled.reshape(blocks, LANES, 8, 3).transpose(0, 3, 2, 1)),
+            dof=np.ascontiguousarray(filled.reshape(blocks, LANES, 8, 3).transpose(0, 3, 2, 1), np.uint32),
             stress=np.zeros((blocks, 8, 6 * LANES)),
             strain=np.zeros((blocks, 8, LANES)),
             flow=np.full((blocks, 8, LANES), law.yield_stress),
@@ -92,7 +93,7 @@ class YieldingZone:
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""
-        return np.asarray(self.blocks.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: self.count])
+        return self.blocks.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: self.count].astype(np.int64)
 
     def accounts(self, state: State) -> Accounts:
         """Return elastic energy and plastic work at the last force evaluation."""
@@ -117,14 +118,14 @@ class YieldingZone:
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
 
 
-def _around(dof: Ints) -> tuple[Ints, Ints, Ints]:
+def _around(dof: Ints) -> tuple[Counts, Ints, Counts]:
     """Return the nodes (k, 3) of elements ``dof`` (m, 8, 3), and the places in ``nodal`` around each."""
     _, first, node = np.unique(dof[:, :, 0], return_index=True, return_inverse=True)
     element, corner = np.divmod(np.arange(dof[:, :, 0].size), 8)
     place = element // LANES * 24 * LANES + corner * LANES + element % LANES
     order = np.argsort(node.ravel(), kind="stable")
     start = np.concatenate([[0], np.cumsum(np.bincount(node.ravel()))])
-    return dof.reshape(-1, 3)[first], start, place[order]
+    return dof.reshape(-1, 3)[first].astype(np.uint32), start, place[order].astype(np.uint32)
 
 
 def gauss_volumes(x: Array) -> Array:

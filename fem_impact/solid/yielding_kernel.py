@@ -30,7 +30,7 @@ from fem_impact.solid.kernels import inlined, kernel
 from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
 
 Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+Counts = NDArray[np.uint32]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values
 POSITION, INCREMENT, FORCE, COFACTOR, ROTATED, TRIAL2, DET, RETURN = 0, 21, 42, 63, 72, 78, 79, 80
@@ -169,7 +169,7 @@ class Blocks(NamedTuple):
 
     Attributes
     ----------
-    dof : (blocks, 3, 8, LANES) int64
+    dof : (blocks, 3, 8, LANES) uint32: a place that may be negative would be tested at every reading
     stress : (blocks, 8, 6 * LANES) Kirchhoff deviator, Pa
     strain, flow : (blocks, 8, LANES) equivalent plastic strain, flow stress at vanishing rate in Pa
     weight : (blocks, 8, LANES) reference volume of each Gauss point, m3
@@ -178,7 +178,7 @@ class Blocks(NamedTuple):
     nodal : (blocks, 3, 8, LANES) forces of the elements on their nodes, N
     """
 
-    dof: Ints
+    dof: Counts
     stress: Array
     strain: Array
     flow: Array
