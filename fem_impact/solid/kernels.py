@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.codegen import get_host_cpu_features
 
 SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
@@ -41,6 +42,19 @@ def _keep_compiled_code() -> None:
 
 
 _keep_compiled_code()
+
+
+def _use_whole_registers() -> None:
+    """Let loops have 512 bits where the machine has them; by itself the compiler takes half of them.
+
+    Older machines than those with AVX-512 VBMI2 (2019) run slower while they do. No bit of a result changes.
+    """
+    features = get_host_cpu_features()
+    if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in features.split(","):
+        SETTINGS.CPU_FEATURES = f"{features},-prefer-256-bit"
+
+
+_use_whole_registers()
 
 
 def compiled_before(name: str = "yielding_kernel.update") -> bool:

@@ -1,0 +1,28 @@
+"""How kernels are compiled is a matter of speed alone."""
+
+import os
+import subprocess
+import sys
+
+TURNED = """
+import numpy as np
+from fem_impact.solid.frame import TurningFrame
+from fem_impact.solid.kernels import SETTINGS
+x, y, mass = np.random.default_rng(1).normal(size=(3, 300))
+frame, d = TurningFrame.at(x, abs(mass), np.arange(300).reshape(-1, 3)), np.zeros(300)
+frame.localise(y, d)
+print(SETTINGS.CPU_FEATURES, d.tobytes().hex(), sep="\\n")
+"""
+
+
+def _turned(**asked):
+    others = {name: value for name, value in os.environ.items() if name != "NUMBA_CPU_FEATURES"}
+    words = [sys.executable, "-c", TURNED]
+    done = subprocess.run(words, env=others | asked, capture_output=True, text=True, check=True)
+    return done.stdout.split()
+
+
+def test_the_width_of_registers_does_not_change_a_bit():
+    features, d = _turned(NUMBA_CPU_FEATURES="+prefer-128-bit")
+    assert features == "+prefer-128-bit"  # the environment comes first
+    assert _turned()[1] == d
