@@ -20,6 +20,7 @@ from fem_impact.solid.kernels import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+Counts = NDArray[np.uint32]
 
 
 def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
@@ -55,14 +56,14 @@ class TurningFrame:
     ----------
     reference : (size,) float64, m, about the mass centre
     mass : (size,) float64, kg
-    t, b, n : (nodes,) int64, places of the three components
+    t, b, n : (nodes,) places of the three components
     """
 
     reference: Array
     mass: Array
-    t: Ints
-    b: Ints
-    n: Ints
+    t: Counts
+    b: Counts
+    n: Counts
     work: Array = field(default_factory=lambda: np.zeros(2))
 
     @classmethod
@@ -70,7 +71,7 @@ class TurningFrame:
         """Start at positions ``x`` (size,) of free nodes with unknowns ``free`` (nodes, 3)."""
         reference = x.copy()
         reference[free] -= mass_centre(mass, x, free)
-        t, b, n = (np.ascontiguousarray(free[:, c]) for c in range(3))
+        t, b, n = np.ascontiguousarray(free.T, np.uint32)
         return cls(reference, mass.copy(), t, b, n)
 
     def localise(self, x: Array, d: Array) -> None:
