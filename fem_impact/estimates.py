@@ -129,6 +129,12 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     )
 
 
+def barrier_conforms(scene: Scene) -> bool:
+    """Return whether the barrier flows under all of the contact, so that its surface takes the rod's form."""
+    flows = contact_estimate(scene).pressure >= LIMIT_PRESSURE * scene.barrier.material.yield_stress
+    return flows and "barrier-elastoplastic" in scene.active
+
+
 def widest_tip_size(scene: Scene) -> float:
     """Return the largest ``accuracy.tip_size``, m, two digits, with elements no wider than the contact.
 

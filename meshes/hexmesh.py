@@ -58,6 +58,11 @@ class HexMesh:
         skin = np.unique(self.faces_with(SKIN))
         return np.asarray(skin[~self.is_hanging[skin]])
 
+    @property
+    def finest(self) -> npt.NDArray[np.bool_]:
+        """(m,) bool: cells split most often, all where none is split."""
+        return np.asarray(self.level == self.level.max())
+
     def faces_with(self, tag: int) -> IntArray:
         """(k', 4) outer faces of one tag."""
         return np.asarray(self.faces[self.face_tag == tag])

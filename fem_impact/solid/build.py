@@ -42,18 +42,17 @@ Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
 START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
-BAND = 0.02  # contact band over the tip size, see SurfaceContact
+PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 
 def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
     rod, barrier = geometry.rod.mesh, geometry.barrier
-    fine = geometry.levels > 0
-    yields = (rod.level == geometry.levels) & (spec.rod_law is not None and fine)
+    yields = rod.finest & (spec.rod_law is not None)
     steel, kind = scene.projectile.material, scene.accuracy.element
     found = [make_body("rod", rod, geometry.rod_points, layout.rod, steel, yields, kind)]
     _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
     if barrier is not None:
-        yields = (barrier.level == geometry.levels) & (spec.barrier_law is not None and fine)
+        yields = barrier.finest & (spec.barrier_law is not None)
         steel = scene.barrier.material
         found.append(make_body("barrier", barrier, barrier.points, layout.barrier, steel, yields, kind))
     return found
@@ -216,7 +215,7 @@ def facing_skin(body: Body) -> Ints:
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
     facing = steep < -0.1 if body.name == "rod" else steep > 0.1
-    finest = np.isin(quads, body.mesh.cells[body.mesh.level == body.mesh.level.max()]).all(axis=1)
+    finest = np.isin(quads, body.mesh.cells[body.mesh.finest]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
     found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
     return np.asarray(found[:, ::-1] if body.name == "rod" else found)
@@ -231,8 +230,17 @@ def _contact(
         if not spec.vibrating:  # the rigid section takes no contact
             skin = np.setdiff1d(skin, geometry.rod.body_nodes)
         return PlaneContact(bodies[0].places[skin], inverse_mass, f)
+    return surface_contact(bodies, inverse_mass, f, geometry.tip_size, x, geometry.conforming)
+
+
+def surface_contact(
+    bodies: list[Body], inverse_mass: Array, f: float, h: float, x: Array, conforming: bool
+) -> SurfaceContact:
+    """Return the contact of a rod's skin with a barrier's, whose cells are ``h`` m wide there."""
     rod, barrier = (make_patch(facing_skin(body), body.places, body.points) for body in bodies)
-    return SurfaceContact.of(rod, barrier, inverse_mass, f, BAND * geometry.tip_size, x)
+    if not conforming:
+        return SurfaceContact.of(rod, barrier, inverse_mass, f, 0.0, BAND * h, x)
+    return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, PLAY * h, BAND * h, x)
 
 
 def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layout: Layout) -> Weight:

@@ -91,4 +91,4 @@ class Fields:
         g = self.model.geometry
         mesh = g.rod.mesh if body == "rod" or g.barrier is None else g.barrier
         first = 0 if body == "rod" else len(g.rod.mesh.cells)
-        return first + np.flatnonzero(mesh.level == g.levels)
+        return first + np.flatnonzero(mesh.finest)

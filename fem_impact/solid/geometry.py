@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import meshes
-from fem_impact.estimates import ContactEstimate, contact_estimate, projectile
+from fem_impact.estimates import ContactEstimate, barrier_conforms, contact_estimate, projectile
 from meshes import HexMesh, RodMesh, Zone
 
 if TYPE_CHECKING:
@@ -30,6 +30,9 @@ FLAT = 2.0
 # under a tip that sticks the plate shears in a layer thinner than a cell: rows at its skin are drawn together
 # as far as the step allows that the tip of the rod sets anyway
 SKIN = 0.5
+# how much less often the rod's tip is split than a barrier that conforms to it: of two surfaces the one whose
+# nodes are held against the other must be the finer, and should be the softer
+COARSER = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,16 +41,18 @@ class Geometry:
 
     Attributes
     ----------
-    rod : RodMesh; rod_points : (n, 3) float64, m, lowest point at t = 0, n = gap
+    rod : RodMesh; rod_points : (n, 3) float64, m, lowest point at t = 0, n = gap: that of the round surface
+        over a conforming barrier, else that of the nodes
     barrier : HexMesh or None
-    tip_size : finest cell edge, m (along t and b); levels : splits of a base cell
+    tip_size : finest cell edge, m: of the barrier (along t and b), or of the rod over a plane
+    conforming : the barrier flows under all of the contact, see `SurfaceContact`
     """
 
     rod: RodMesh
     rod_points: Array
     barrier: HexMesh | None
     tip_size: float
-    levels: int
+    conforming: bool = False
 
 
 def to_barrier_frame(alpha: float) -> Array:
@@ -70,24 +75,31 @@ def half_widths(size: ContactEstimate, h: float) -> tuple[float, float, float]:
 def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bool = True) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
     body, alpha = projectile(scene), scene.impact.angle
-    levels = levels_of(scene)
-    h = body.diameter / scene.accuracy.across / 2**levels
-    t, b, n = half_widths(contact_estimate(scene), h)
+    base, levels = body.diameter / scene.accuracy.across, levels_of(scene)
+    conforming = meshed_barrier and barrier_conforms(scene)
+    coarser = COARSER if conforming and levels > COARSER else 0
     rho, z = body.contact_point(alpha)
     turn = to_barrier_frame(alpha)
     lowest = np.array([float(rho), 0.0, float(z)])
-    reach = face_reach(scene, float(rho))
-    b = max(b, float(rho)) if reach > 0 else b
+    h = base / 2 ** (levels - coarser)
+    t, b, n, reach = _fine_zone(scene, h, float(rho))
     zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
-    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels - coarser)
     if not vibrating:
         from fem_impact.solid.rigid_rest import rest_points
 
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
-    points[:, 2] += gap - points[:, 2].min()
-    barrier = _block(scene, h * 2**levels, levels, (t, b, n), reach) if meshed_barrier else None
-    return Geometry(rod, points, barrier, h, levels)
+    points[:, 2] += gap if conforming else gap - points[:, 2].min()
+    barrier = _block(scene, base, levels, float(rho)) if meshed_barrier else None
+    return Geometry(rod, points, barrier, base / 2**levels, conforming)
+
+
+def _fine_zone(scene: Scene, h: float, rho: float) -> tuple[float, float, float, float]:
+    """Return half-widths along t, b and n, and how far it follows a flat face, all m."""
+    t, b, n = half_widths(contact_estimate(scene), h)
+    reach = face_reach(scene, rho)
+    return t, max(b, rho) if reach > 0 else b, n, reach
 
 
 def face_reach(scene: Scene, rho: float) -> float:
@@ -100,13 +112,13 @@ def face_reach(scene: Scene, rho: float) -> float:
     return 2 * rho * cos(alpha) if rho * sin(alpha) <= FLAT * depth else 0.0
 
 
-def _block(scene: Scene, base: float, levels: int, zone: tuple[float, float, float], reach: float) -> HexMesh:
-    t, b, n = zone
+def _block(scene: Scene, base: float, levels: int, rho: float) -> HexMesh:
+    h = base / 2**levels
+    t, b, n, reach = _fine_zone(scene, h, rho)
     slide = SLIDE * contact_estimate(scene).depth * abs(scene.impact.v_t) / max(abs(scene.impact.v_n), 1e-6)
     slide = max(slide, DRAG * t) if scene.impact.v_t else 0.0
     box = Zone(np.zeros(3), np.eye(3), np.array([-t - reach - slide, 0.0, -n]), np.array([t, b, 0.0]))
     margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
-    h = base / 2**levels
     low = np.array([-t - reach - slide - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
     block = meshes.with_thin_skin(meshes.block(low, high, base, zone=box, levels=levels), h, SKIN)

@@ -26,8 +26,8 @@ class Separation:
     """Stops the run at the last separation.
 
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the
-    horizon. As long as some are lower than the barrier's highest node, the flown tip is held against the
-    barrier's surface, crater and all, node by node.
+    horizon. As long as its surface may be lower than the barrier's highest node, the flown tip is held
+    against the barrier's surface, crater and all, node by node.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -63,7 +63,7 @@ class Separation:
         surface = contact.barrier.places[:, 2]
         # the barrier may go on for a while at its present speed
         margin = QUIET * float(np.abs(state.v[surface]).max())
-        deep = t[lowest <= max(0.0, float(state.x[surface].max())) + margin]
+        deep = t[lowest <= max(0.0, float(state.x[surface].max())) + margin + contact.rod.sag]
         return all(
             contact.clearance(flown(state.x, contact.rod.places, motion, ahead, s)) > margin for s in deep
         )

@@ -15,7 +15,7 @@ from fem_impact.modes import MassStiffness, RigidMotion, rigid_motion
 from fem_impact.solid import build
 from fem_impact.solid.body import Body as Meshed
 from fem_impact.solid.body import make_body, nose_and_whole, slices_of
-from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact, make_patch
+from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.elements import Kind
 from fem_impact.solid.frame import FixedFrame, TurningFrame
@@ -113,7 +113,7 @@ def rigid_of(model: Model, state: State) -> RigidMotion:
 
 def body_model(body: Body) -> Model:
     """Return the model of one body over the rigid plane n = 0, or over its block."""
-    mesh, block = body.mesh.mesh, body.block
+    block = body.block
     layout = number(body.mesh, block.mesh if block else None)
     parts = [_part(body, layout), *([_block_part(block, layout)] if block else [])]
     mass = build.assemble_masses(parts, layout)
@@ -133,7 +133,7 @@ def body_model(body: Body) -> Model:
         impulses.append(build.dashpots(parts[1], layout, inverse, whole, outside))
     contact = _contact(body, parts, inverse, x)
     return Model(
-        geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, int(mesh.level.max())),
+        geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0),
         layout=layout,
         mass=mass,
         inverse_mass=inverse,
@@ -166,8 +166,7 @@ def _part(body: Body, layout: Layout) -> Meshed:
 
 
 def _block_part(block: Block, layout: Layout) -> Meshed:
-    finest = block.mesh.level == block.mesh.level.max()
-    yields = finest & (block.law is not None)
+    yields = block.mesh.finest & (block.law is not None)
     return make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
 
 
@@ -215,5 +214,5 @@ def _contact(
         return None
     if body.block is None:
         return PlaneContact(parts[0].places[body.mesh.mesh.free_skin], inverse, body.friction)
-    above, below = (make_patch(build.facing_skin(p), p.places, p.points) for p in parts)
-    return SurfaceContact.of(above, below, inverse, body.friction, build.BAND * body.block.size, x)
+    conforming = body.block.law is not None
+    return build.surface_contact(parts, inverse, body.friction, body.block.size, x, conforming)

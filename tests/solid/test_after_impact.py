@@ -172,9 +172,9 @@ def test_gradients_of_a_cube():
 # ---------------------------------------------------------------- leaving a crater
 
 
-def _in_crater(V_n, V_t, swing=0.0):
+def _in_crater(V_n, V_t, swing=0.0, barrier="barrier-elastic"):
     """Rod 40 um deep in a dent of the barrier, 50 um deep and steep-walled, with a made-up flight."""
-    model = scenes.model("vibration", "friction", "barrier-elastic", length=0.08)
+    model = scenes.model("vibration", "friction", barrier, length=0.08)
     state, contact = model.initial_state(), model.impulses[-1]
     heights = contact.barrier.places[:, 2]
     radius = np.hypot(state.x[contact.barrier.places[:, 0]], state.x[contact.barrier.places[:, 1]])
@@ -202,13 +202,14 @@ def test_clearance_is_the_height_between_the_surfaces():
     assert model.impulses[-1].clearance(model.start[0]) == pytest.approx(START_GAP, abs=1e-9)
 
 
+@pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])
 @pytest.mark.parametrize(
     ("V_n", "V_t", "swing", "over"),
     [(0.5, 0.0, 0.0, True), (0.5, -60.0, 0.0, False), (0.5, 0.0, 50e-6, False), (-0.1, 0.0, 0.0, False)],
     ids=["rises", "runs into the rim", "swings down", "sinks"],
 )
-def test_a_rod_may_leave_its_crater_in_flight(V_n, V_t, swing, over):
-    _, state, rule = _in_crater(V_n, V_t, swing)
+def test_a_rod_may_leave_its_crater_in_flight(V_n, V_t, swing, over, barrier):
+    _, state, rule = _in_crater(V_n, V_t, swing, barrier)
     assert rule.observe(state) is over
 
 

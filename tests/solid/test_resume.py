@@ -118,7 +118,13 @@ WORK_SPACE = {
         "MassPoints.room",
     ),
     *(f"Points.{name}" for name in ("nodes", "weights", "normal", "target", "before", "p", "owner")),
-    *("SurfaceContact.normals", "HistoryWriter._due", "FieldWriter._begun", "FieldWriter._shapes"),
+    *(
+        "SurfaceContact.normals",
+        "SurfaceContact.rod_normals",
+        "HistoryWriter._due",
+        "FieldWriter._begun",
+        "FieldWriter._shapes",
+    ),
 }
 OF_THE_FILE = {"History/writer.size", "Frames/writer.frames"}
 

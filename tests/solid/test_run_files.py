@@ -86,10 +86,9 @@ def test_fields_hold_both_bodies_in_motion(run):
     assert start[:, 2] == pytest.approx(outcome["v_n_m_per_s"], rel=1e-6)
     assert start[:, 0] == pytest.approx(outcome["v_t_m_per_s"], rel=1e-6)
     strain, stress = fields.cell_data("plastic_strain", last), fields.cell_data("mises", last)
-    for number, flow in ((0, 546e6), (1, 320e6)):
-        assert strain[body == number].max() > 0.01
-        yielded = (body == number) & (strain > 0.01)
-        assert stress[yielded].max() > 0.9 * flow
+    assert 0 < strain[body == 0].max() < 0.01  # the harder rod hardly yields
+    assert strain[body == 1].max() > 0.01
+    assert stress[(body == 1) & (strain > 0.01)].max() > 0.9 * 320e6
     assert (strain[np.linalg.norm(fields.points[fields.cells].mean(axis=1), axis=1) > 0.02] == 0).all()
 
 

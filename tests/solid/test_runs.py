@@ -31,7 +31,7 @@ def elastic():
 
 @pytest.fixture(scope="module")
 def yielding():
-    return scenes.run(*YIELD, length=0.08, v_n=-2.1, v_t=-2.1)
+    return scenes.run(*YIELD, length=0.08, v_n=-2.1, v_t=-2.1, rod_yield=330e6)
 
 
 def _outcome(result):
@@ -97,7 +97,7 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
 
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
-    assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
+    assert found["E_locked_rod_over_E_0"] > 0.5 * found["E_vib_over_E_0"] > 0
     assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], rel=0.1)
     assert found["E_vib_over_E_0"] < 0.01
 
@@ -106,7 +106,7 @@ def test_yielding_rod_and_plate(yielding):
     found = _outcome(yielding)
     assert 0.25 < found["e_edge"] < 0.45
     assert 0.45 < found["mu"] < 0.62
-    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.1
+    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.02
     assert found["W_friction_over_E_0"] > 0.1
     assert 0 < found["W_radiated_over_E_0"] < 0.01
     assert abs(found["W_closing_over_E_0"]) < 1e-3
@@ -184,17 +184,22 @@ def test_spin_before_the_impact_enters_with_its_sign():
     [("barrier-rigid", pi / 4), ("barrier-elastic", pi / 4), ("barrier-elastoplastic", pi / 3)],
 )
 def test_first_contact_comes_at_gap_over_speed(barrier, angle):
-    """The lowest node lies on the symmetry plane: a search that drops those nodes comes late."""
-    model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=-1.0, angle=angle)
+    """The lowest point lies on the symmetry plane: a search that drops those nodes comes late."""
+    model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=0.0, angle=angle)
     state = model.initial_state()
     lowest = np.argmin(model.geometry.rod_points[:, 2])
     assert model.geometry.rod_points[lowest, 1] == 0.0
-    assert model.geometry.rod_points[lowest, 2] == pytest.approx(START_GAP, rel=1e-9)
+    gap = model.geometry.rod_points[lowest, 2]
+    if barrier == "barrier-elastoplastic":  # its nodes lie up to half a cell beside the lowest point
+        gap = model.impulses[-1].clearance(state.x)
+        assert START_GAP <= gap < START_GAP + (model.geometry.tip_size / 2) ** 2 / (2 * 3e-3)
+    else:
+        assert gap == pytest.approx(START_GAP, rel=1e-9)
     while not model.book.intervals:
         evaluate(model, state)
         advance(model, state)
-        assert state.time < 2 * START_GAP
-    assert model.book.intervals[0].start == pytest.approx(START_GAP, abs=1.01 * model.step)
+        assert state.time < 2 * gap
+    assert model.book.intervals[0].start == pytest.approx(gap, abs=1.01 * model.step)
 
 
 @pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])

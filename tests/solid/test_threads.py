@@ -13,7 +13,7 @@ YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "la
 
 
 def _after(steps, helper):
-    model = scenes.model(*YIELD, length=0.08, v_n=-4.0, v_t=-4.0)
+    model = scenes.model(*YIELD, length=0.08, v_n=-4.0, v_t=-4.0, rod_yield=250e6)
     state = model.initial_state()
     for _ in range(steps):
         evaluate(model, state, helper)

@@ -17,7 +17,7 @@ def _reach(scene):
     """Return the extent of the finest cells down and up the slope over the half-width along t."""
     geometry = build_geometry(scene, 2e-6, True)
     block = geometry.barrier
-    t = block.points[block.cells[block.level == geometry.levels], 0]
+    t = block.points[block.cells[block.finest], 0]
     return -t.min() / _half_width(scene, geometry), t.max() / _half_width(scene, geometry)
 
 

@@ -7,8 +7,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_impact.solid.contact.search import vertex_normals
+
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+
+# a node is on an edge, not on a rounding, where a quad leans more than this from the mean of those around
+EDGE = np.cos(np.radians(30.0))
 
 
 class Patch(NamedTuple):
@@ -20,19 +26,37 @@ class Patch(NamedTuple):
     quads : (m, 4) int64, patch node numbers, all turning the same way seen from above the barrier
     neighbours : (m, 4) int64, quad across edge i -> i + 1, or -1 at the border
     mirrored : (k,) bool, nodes on the symmetry plane
+    bend : (k,) share of the slope at a node that bends the quads around it: 0 leaves them flat, with 1/2 they
+        follow a round surface to third order (Boubekeur and Alexa 2008, ACM Trans. Graph. 27(5), 141)
+    sag : how far bent quads may reach beyond their nodes, m
     """
 
     places: Ints
     quads: Ints
     neighbours: Ints
     mirrored: NDArray[np.bool_]
+    bend: Array
+    sag: float
+
+    def rounded(self, x: Array) -> Patch:
+        """Return the patch with its quads bent to a round surface at positions ``x``, save at edges."""
+        around = np.zeros((len(self.places), 3))
+        vertex_normals(x, self.places, self.quads, self.mirrored, around)
+        corners = x[self.places[self.quads]]
+        flat = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+        flat /= np.linalg.norm(flat, axis=1)[:, None]
+        least = np.ones(len(around))
+        np.minimum.at(least, self.quads, np.einsum("qi,qai->qa", flat, around[self.quads]))
+        bend = np.where(least > EDGE, 0.5, 0.0)
+        return self._replace(bend=bend, sag=_sag(corners, around[self.quads], bend[self.quads]))
 
 
 def make_patch(quads: Ints, places: Ints, points: Array) -> Patch:
     """Build from skin quads (m, 4) of a mesh with node ``places`` (n, 3) and ``points`` (n, 3)."""
     used, local = np.unique(quads, return_inverse=True)
     numbers = np.ascontiguousarray(local.reshape(-1, 4), dtype=np.int64)
-    return Patch(places[used], numbers, edge_neighbours(numbers), np.abs(points[used, 1]) < 1e-12)
+    mirrored, flat = np.abs(points[used, 1]) < 1e-12, np.zeros(len(used))
+    return Patch(places[used], numbers, edge_neighbours(numbers), mirrored, flat, 0.0)
 
 
 def edge_neighbours(quads: Ints) -> Ints:
@@ -45,6 +69,13 @@ def edge_neighbours(quads: Ints) -> Ints:
     first, second = order[pairs], order[pairs + 1]
     result[first], result[second] = second // 4, first // 4
     return result.reshape(-1, 4)
+
+
+def _sag(corners: Array, normals: Array, bend: Array) -> float:
+    """Return half of what bending adds at other corners, at most: above the rise of an arc over its chord."""
+    apart = corners[:, None, :, :] - corners[:, :, None, :]
+    rise = np.einsum("qabi,qai->qab", apart, normals) / normals[:, :, None, 2]
+    return float(0.5 * np.max(bend[:, :, None] * np.abs(rise)))
 
 
 def nearest_quads(x: Array, patch: Patch, other: Patch) -> Ints:

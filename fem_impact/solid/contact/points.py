@@ -17,7 +17,7 @@ from fem_impact.solid.contact.book import (
     OUTSIDE,
 )
 from fem_impact.solid.contact.impulses import relative
-from fem_impact.solid.contact.search import bilinear, locate
+from fem_impact.solid.contact.search import bilinear, height_from, locate
 from fem_impact.solid.kernels import inlined, kernel
 
 Array = NDArray[np.float64]
@@ -102,9 +102,9 @@ def _join(c, k, a, places, weight):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # type: ignore[no-untyped-def]
-    """Collect contacts of rod nodes with barrier quads; returns their number."""
-    x, top, count = motion.x, 0.0, 0
+def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c, record):  # type: ignore[no-untyped-def]
+    """Append contacts of rod nodes more than ``play`` under barrier quads; returns the new number."""
+    x, top = motion.x, 0.0
     for i in range(len(barrier.places)):
         top = max(top, x[barrier.places[i, 2]])
     for i in range(len(rod.places)):
@@ -129,7 +129,7 @@ def rod_over_barrier(rod, barrier, normals, last, band, motion, c, record):  # t
             n_n += w[a] * normals[node, 2]
         length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
-        count += _enter(count, i, (n - surface) * c.normal[count, 2], band, motion, c)
+        count += _enter(count, i, (n - surface) * c.normal[count, 2] + play, band, motion, c)
     return count
 
 
@@ -150,12 +150,12 @@ def _reach(rod, x, height):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
-    """Append contacts of barrier nodes with rod quads; returns the new number."""
-    x, first, top = motion.x, len(rod.places), 0.0
+def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c):  # type: ignore[no-untyped-def]
+    """Collect contacts of barrier nodes with the rod's surface; returns their number."""
+    x, first, top, count = motion.x, len(rod.places), 0.0, 0
     for i in range(len(barrier.places)):
         top = max(top, x[barrier.places[i, 2]])
-    low_t, high_t, low_b, high_b = _reach(rod, x, top + band)
+    low_t, high_t, low_b, high_b = _reach(rod, x, top + band + rod.sag)
     for i in range(len(barrier.places)):
         t, b, n = x[barrier.places[i, 0]], x[barrier.places[i, 1]], x[barrier.places[i, 2]]
         if t < low_t or t > high_t or b < low_b - band or b > high_b:
@@ -169,7 +169,7 @@ def barrier_under_rod(count, rod, barrier, normals, last, band, motion, c):  # t
         for a in range(4):
             node = rod.quads[q, a]
             _join(c, count, a + 1, rod.places[node], w[a])
-            surface += w[a] * x[rod.places[node, 2]]
+            surface += w[a] * height_from(x, rod, rod_normals, node, t, b)
         _join(c, count, 0, barrier.places[i], -1.0)
         for j in range(3):
             c.normal[count, j] = normals[i, j]

@@ -1,8 +1,16 @@
 """Contact between the rod's skin and the deformed surface of a meshed barrier.
 
-Two passes, so that neither surface enters the other: rod nodes over barrier quads, barrier nodes under
-rod quads. Both use the averaged normals of the deformed barrier, which turn smoothly as a node slides
-over quad edges; with the quads' own normals every edge is a small step that acts like extra friction.
+Where the barrier stays elastic under some of the contact, in two passes, so that neither surface enters the
+other: barrier nodes under rod quads, rod nodes over barrier quads. The contact, often narrower than a cell,
+then is that of the flat quad of the rod that it lies in the middle of.
+
+A barrier that flows takes the rod's form. Its nodes, which lie closer than the rod's, are held against quads
+bent to the rod's round surface. Were the rod's nodes held against it as well, each body would be held by the
+other's facets, and both would flow too soon; they count only where they are deeper than the play between the
+barrier's nodes, as a sharp edge between two rows of them may be.
+
+Both use the averaged normals of the deformed barrier, which turn smoothly as a node slides over quad edges;
+with the quads' own normals every edge is a small step that acts like extra friction.
 """
 
 from __future__ import annotations
@@ -38,6 +46,7 @@ class SurfaceContact:
 
     Attributes
     ----------
+    play : how deep a node of the rod may lie under the barrier's quads before it is held, m
     band : gap within which a pressed node stays a contact, m: facets and averaged normals differ by
         about h^2 curvature / 8 while a node slides across a quad
     last : (rod nodes + barrier nodes,) last quad found for each node
@@ -48,15 +57,17 @@ class SurfaceContact:
     barrier: Patch
     inverse_mass: Array
     f: float
+    play: float
     band: float
     last: Ints
     points: Points
+    rod_normals: Array
     normals: Array
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
     def of(
-        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: float, band: float, x: Array
+        cls, rod: Patch, barrier: Patch, inverse_mass: Array, f: float, play: float, band: float, x: Array
     ) -> SurfaceContact:
         """Build and find each node's first quad at positions ``x``."""
         last = np.concatenate([nearest_quads(x, rod, barrier), nearest_quads(x, barrier, rod)])
@@ -65,20 +76,23 @@ class SurfaceContact:
             barrier,
             inverse_mass,
             f,
+            play,
             band,
             last,
             make_points(len(last)),
+            np.zeros((len(rod.places), 3)),
             np.zeros((len(barrier.places), 3)),
         )
 
     def resolve(self, state: State) -> None:
         """Find this step's contacts, solve their impulses, book the work."""
         motion = Motion(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
-        c, barrier, record = self.points, self.barrier, self.book.step
+        c, rod, barrier, record = self.points, self.rod, self.barrier, self.book.step
         record[:] = 0.0
-        vertex_normals(state.x, barrier.places, barrier.quads, barrier.mirrored, self.normals)
-        found = rod_over_barrier(self.rod, barrier, self.normals, self.last, self.band, motion, c, record)
-        count = barrier_under_rod(found, self.rod, barrier, self.normals, self.last, self.band, motion, c)
+        self._turn_normals(state.x)
+        last, normals, band = self.last, self.normals, self.band
+        held = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
+        count = rod_over_barrier(held, rod, barrier, normals, last, self.play, band, motion, c, record)
         if count:
             record[SWEEPS] = solve(
                 count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
@@ -89,8 +103,14 @@ class SurfaceContact:
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of one patch over the other at positions ``x`` (inf: none is)."""
         rod, barrier, first = self.rod, self.barrier, len(self.rod.places)
-        over = lowest_gap(x, rod.places, barrier, self.last[:first].copy(), 1.0)
-        return float(min(over, lowest_gap(x, barrier.places, rod, self.last[first:].copy(), -1.0)))
+        self._turn_normals(x)
+        over = lowest_gap(x, rod.places, barrier, self.normals, self.last[:first].copy(), 1.0)
+        under = lowest_gap(x, barrier.places, rod, self.rod_normals, self.last[first:].copy(), -1.0)
+        return float(min(over + self.play, under))
+
+    def _turn_normals(self, x: Array) -> None:
+        for patch, normals in ((self.rod, self.rod_normals), (self.barrier, self.normals)):
+            vertex_normals(x, patch.places, patch.quads, patch.mirrored, normals)
 
     def accounts(self, state: State) -> Accounts:
         """Return friction heat and closing loss."""

@@ -1,0 +1,120 @@
+"""A rod over a barrier that flows: quads bent to the round tip, edges left sharp, and who is held by whom."""
+
+import numpy as np
+import pytest
+import solid_scenes as scenes
+
+from fem_impact.effects import specify
+from fem_impact.estimates import barrier_conforms
+from fem_impact.scene import load
+from fem_impact.solid.build import build
+from fem_impact.solid.contact.patch import make_patch
+from fem_impact.solid.contact.search import lowest_gap, vertex_normals
+from fem_impact.solid.march import advance, evaluate
+
+RADIUS = 3e-3
+FLOWS = ("vibration", "friction", "barrier-elastoplastic")
+
+
+def _ball(h):
+    """Patch of a ball's upper side with uneven quads, their neighbours up to 1.4 times as long."""
+    u = h * np.array([-3.4, -2, -1, 0, 1.4, 2.4, 3.8])
+    t, b = np.meshgrid(u, u[u >= 0], indexing="ij")
+    rows = t.shape[1]
+    node = (np.arange(len(u) - 1)[:, None] * rows + np.arange(rows - 1)).ravel()
+    quads = np.stack([node, node + rows, node + rows + 1, node + 1], axis=1)
+    points = np.stack([t, b, np.sqrt(RADIUS**2 - t**2 - b**2)], axis=-1).reshape(-1, 3)
+    return make_patch(quads, np.arange(points.size).reshape(-1, 3), points), points
+
+
+def _off(h):
+    """Largest distance between the bent patch and the ball, m, and that of its flat quads."""
+    patch, points = _ball(h)
+    x, normals = points.ravel(), np.zeros_like(points)
+    vertex_normals(x, patch.places, patch.quads, patch.mirrored, normals)
+    t, b = np.meshgrid(np.linspace(-1.9, 2.3, 15) * h, np.linspace(0, 1.3, 7) * h)
+    n = np.sqrt(RADIUS**2 - t**2 - b**2)
+    probes = np.stack([t, b, n], axis=-1).reshape(-1, 3)
+    both = np.concatenate([x, probes.ravel()])
+    off = []
+    for surface in (patch.rounded(x), patch):
+        assert surface.sag >= 0
+        gaps = [
+            lowest_gap(both, x.size + 3 * k + np.arange(3)[None], surface, normals, np.zeros(1, int), 1.0)
+            for k in range(len(probes))
+        ]
+        off.append(np.abs(gaps).max())
+    return off
+
+
+def test_bent_quads_follow_a_ball_to_third_order():
+    coarse, fine = _off(0.4e-3), _off(0.2e-3)
+    assert 3.5 < coarse[1] / fine[1] < 4.5
+    assert coarse[0] < 0.2 * coarse[1]
+    assert coarse[0] / fine[0] > 6
+
+
+def test_sag_holds_all_that_bending_adds():
+    h = 0.4e-3
+    patch, points = _ball(h)
+    assert _off(h)[1] < patch.rounded(points.ravel()).sag < 8 * _off(h)[1]
+
+
+def test_normals_of_uneven_quads_on_a_ball_are_exact_to_second_order():
+    patch, points = _ball(0.2e-3)
+    normals = np.zeros_like(points)
+    vertex_normals(points.ravel(), patch.places, patch.quads, patch.mirrored, normals)
+    inside = (np.abs(points[:, 0]) < 0.5e-3) & (points[:, 1] < 0.3e-3)
+    # means by area lean by a tenth of the turn over a quad
+    assert np.abs(normals - points / RADIUS)[inside].max() < 1e-3
+
+
+@pytest.mark.parametrize(("lean", "bend"), [(0.2, 0.5), (0.8, 0.0)], ids=["rounding", "edge"])
+def test_an_edge_stays_sharp(lean, bend):
+    """Two flat faces that meet at t = 0 and fall by ``lean`` away from it."""
+    t, b = np.meshgrid([-1e-3, 0.0, 1e-3], [0.0, 1e-3], indexing="ij")
+    points = np.stack([t, b, -lean * np.abs(t)], axis=-1).reshape(-1, 3)
+    quads = np.array([[0, 2, 3, 1], [2, 4, 5, 3]])
+    patch = make_patch(quads, np.arange(18).reshape(-1, 3), points).rounded(points.ravel())
+    assert (patch.bend[2:4] == bend).all()
+
+
+def test_the_rod_is_coarser_than_a_barrier_that_flows_and_alike_otherwise():
+    flowing, elastic = (scenes.model("vibration", b) for b in ("barrier-elastoplastic", "barrier-elastic"))
+    for model, split in ((flowing, 1), (elastic, 2)):
+        assert model.geometry.conforming is (model is flowing)
+        assert model.geometry.rod.mesh.level.max() == split
+        assert model.geometry.barrier.level.max() == 2
+    contact = elastic.impulses[-1]
+    assert contact.play == 0.0 and not contact.rod.bend.any() and contact.rod.sag == 0.0
+    contact = flowing.impulses[-1]
+    assert contact.play == 0.05 * flowing.geometry.tip_size and contact.rod.sag > 0
+    assert not contact.barrier.bend.any()
+
+
+def test_only_a_barrier_that_flows_under_all_of_the_contact_conforms():
+    scene = load("t5b")
+    assert barrier_conforms(scene)
+    assert not barrier_conforms(scene.replace("effects", ["vibration", "friction", "barrier-elastic"]))
+    assert not barrier_conforms(scene.replace("impact.v_n", "-1e-4 m/s"))
+    softer = scene.replace("projectile.material.yield_stress", "100 MPa")
+    assert not barrier_conforms(softer)  # the rod flows first
+
+
+def test_a_sharp_edge_sinks_no_deeper_than_the_play():
+    """Between two rows of the barrier's nodes only the rod's own nodes can hold it."""
+    scene = scenes.scene(*FLOWS, length=0.08, v_n=-4.0, v_t=-4.0, sharp=True)
+    scene = scene.replace("accuracy.grid_shift", 0.25)  # the edge lands beside a row
+    model = build(scene, specify(scene))
+    state, contact = model.initial_state(), model.impulses[-1]
+    assert (contact.rod.bend == 0).any()
+    deepest, speed = 0.0, 4.0
+    while state.time < 60e-6:
+        evaluate(model, state)
+        advance(model, state)
+        nodes = contact.rod.places
+        flat = np.zeros((len(contact.barrier.places), 3))
+        gap = lowest_gap(state.x, nodes, contact.barrier, flat, contact.last[: len(nodes)].copy(), 1.0)
+        deepest = max(deepest, -gap)
+    assert model.book.touching
+    assert 0.3 * contact.play < deepest < contact.play + 2 * speed * model.step
