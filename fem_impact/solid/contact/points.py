@@ -165,15 +165,21 @@ def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c)
             continue
         last[first + i] = q
         w = bilinear(xi, eta)
-        surface = 0.0
+        surface, flat, n_t, n_b, n_n = 0.0, False, 0.0, 0.0, 0.0
         for a in range(4):
             node = rod.quads[q, a]
             _join(c, count, a + 1, rod.places[node], w[a])
+            flat = flat or rod.bend[node] == 0.0
+            n_t += w[a] * rod_normals[node, 0]
+            n_b += w[a] * rod_normals[node, 1]
+            n_n += w[a] * rod_normals[node, 2]
             surface += w[a] * height_from(x, rod, rod_normals, node, t, b)
         _join(c, count, 0, barrier.places[i], -1.0)
-        for j in range(3):
-            c.normal[count, j] = normals[i, j]
-        count += _enter(count, first + i, (surface - n) * normals[i, 2], band, motion, c)
+        if flat:
+            n_t, n_b, n_n = normals[i, 0], normals[i, 1], normals[i, 2]
+        length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)
+        c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
+        count += _enter(count, first + i, (surface - n) * c.normal[count, 2], band, motion, c)
     return count
 
 

@@ -9,8 +9,9 @@ bent to the rod's round surface. Were the rod's nodes held against it as well, e
 other's facets, and both would flow too soon; they count only where they are deeper than the play between the
 barrier's nodes, as a sharp edge between two rows of them may be.
 
-Both use the averaged normals of the deformed barrier, which turn smoothly as a node slides over quad edges;
-with the quads' own normals every edge is a small step that acts like extra friction.
+Impulses on a bent quad act along its own normal, which turns as its surface does: then they do no work but
+friction's. Flat quads have edges, and every edge is a small step that acts like extra friction: over them the
+averaged normals of the deformed barrier count, which turn smoothly as a node slides.
 """
 
 from __future__ import annotations
