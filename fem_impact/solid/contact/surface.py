@@ -48,6 +48,7 @@ class SurfaceContact:
     Attributes
     ----------
     play : how deep a node of the rod may lie under the barrier's quads before it is held, m
+    rod_normals : of a rod with bent quads
     band : gap within which a pressed node stays a contact, m: facets and averaged normals differ by
         about h^2 curvature / 8 while a node slides across a quad
     last : (rod nodes + barrier nodes,) last quad found for each node
@@ -110,8 +111,10 @@ class SurfaceContact:
         return float(min(over + self.play, under))
 
     def _turn_normals(self, x: Array) -> None:
-        for patch, normals in ((self.rod, self.rod_normals), (self.barrier, self.normals)):
-            vertex_normals(x, patch.places, patch.quads, patch.mirrored, normals)
+        rod, barrier = self.rod, self.barrier
+        vertex_normals(x, barrier.places, barrier.quads, barrier.mirrored, self.normals)
+        if rod.sag > 0.0:
+            vertex_normals(x, rod.places, rod.quads, rod.mirrored, self.rod_normals)
 
     def accounts(self, state: State) -> Accounts:
         """Return friction heat and closing loss."""
