@@ -21,6 +21,9 @@ __all__ = ["SUFFIXES", "best_suffix", "encode"]
 SUFFIXES = (".mp4", ".webp", ".gif", ".png")
 """Formats that can be asked for; ``.png`` makes a folder of numbered frames."""
 
+FAST = ["-preset", "veryfast"]
+"""Of the encoder: half the time of its default for files a twentieth larger."""
+
 
 def best_suffix() -> str:
     """Return the suffix of the best format that is available here."""
@@ -63,9 +66,8 @@ def _write_mp4(frames: Iterator[np.ndarray], path: Path, fps: int) -> None:
     imageio_ffmpeg = importlib.import_module("imageio_ffmpeg")
     first = next(frames)
     height, width = first.shape[:2]
-    writer = imageio_ffmpeg.write_frames(
-        str(path), (width, height), fps=fps, quality=7, macro_block_size=16, pix_fmt_out="yuv420p"
-    )
+    how = {"quality": 7, "macro_block_size": 16, "pix_fmt_out": "yuv420p", "output_params": FAST}
+    writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps, **how)
     writer.send(None)
     try:
         for frame in _chain(first, frames):
