@@ -21,13 +21,22 @@ from fem_impact.report.sections import has_film, history_figures, notices
 from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.tables import card, sentences, unknown
 
-__all__ = ["comparison_part", "partition_part", "study_page"]
+__all__ = ["comparison_part", "draw_study", "partition_part", "study_page"]
 
 ENERGIES = (*(account.key for account in FINAL), "residual_over_E_0")
 
 
-def study_page(folder: Path) -> str:
+def draw_study(folder: Path) -> None:
+    """Draw the study's own figures into ``folder/figures``, for a page that is not to draw them again."""
+    study, figures = read_study(folder / "study.json"), make_directory(folder / "figures")
+    comparison_part(study, figures)
+    partition_part(study, figures)
+
+
+def study_page(folder: Path, again: bool = True) -> str:
     """Return the HTML of the study in ``folder``; figures with their data stay in ``folder/figures``.
+
+    Its own figures, where they were drawn after the study, are only drawn ``again`` if that is asked for.
 
     Raises
     ------
@@ -36,13 +45,16 @@ def study_page(folder: Path) -> str:
     """
     study = read_study(folder / "study.json")
     rows, figures = list(study.rows), make_directory(folder / "figures")
+    since = None if again else folder / "study.json"
     body = (
         _cards(study),
         notices(rows),
-        section("Model beside measurement", comparison_part(study, figures), _tables(study.comparison)),
+        section(
+            "Model beside measurement", comparison_part(study, figures, since), _tables(study.comparison)
+        ),
         misses_section(study),
         section("Notes", bullets(study.notes)),
-        section("Where the energy went", partition_part(study, figures)),
+        section("Where the energy went", partition_part(study, figures, since)),
         section("Runs that failed", _failures(study)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
         unknown(rows),
@@ -67,8 +79,8 @@ def _cards(study: Study) -> Markup:
     return Markup(f'<div class="cards">{join(cards).text}</div>')
 
 
-def comparison_part(study: Study, figures: Path) -> Markup:
-    """Return the figure of model beside measurement, drawn into a folder."""
+def comparison_part(study: Study, figures: Path, since: Path | None = None) -> Markup:
+    """Return the figure of model beside measurement, drawn into a folder, unless after ``since`` already."""
     if not study.comparison:
         return Markup("")
     drawn = picture(
@@ -77,6 +89,7 @@ def comparison_part(study: Study, figures: Path) -> Markup:
         "Model and measured values with intervals, a panel for each quantity",
         "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
         "two-mesh band where two meshes were run.",
+        since,
     )
     return join([drawn, download(figures / "comparison.csv", "its data")])
 
@@ -124,8 +137,8 @@ def _is_inside(verdict: Any) -> bool:
     return str(verdict).startswith("inside")
 
 
-def partition_part(study: Study, figures: Path) -> Markup:
-    """Return figure and table of the shares of E_0."""
+def partition_part(study: Study, figures: Path, since: Path | None = None) -> Markup:
+    """Return figure and table of the shares of E_0; the figure is not drawn again ``since`` a file."""
     if not study.rows:
         return Markup("")
     drawn = picture(
@@ -133,6 +146,7 @@ def partition_part(study: Study, figures: Path) -> Markup:
         figures / "partition",
         "Stacked bars of the shares of the energy, one a run",
         "Shares of E₀ after the last separation; a white rest is not known.",
+        since,
     )
     return join([drawn, download(figures / "partition.csv", "its data"), _energies(study.rows)])
 

@@ -14,7 +14,7 @@ from fem_impact.report.study_page import study_page
 __all__ = ["write_report"]
 
 
-def write_report(result_dir: str | Path) -> Path:
+def write_report(result_dir: str | Path, again: bool = True) -> Path:
     """Write ``report.html`` into a result folder and return its path.
 
     The file carries its figures and film inside and refers to nothing outside. The figures and
@@ -24,6 +24,8 @@ def write_report(result_dir: str | Path) -> Path:
     ----------
     result_dir : path
         The folder of a study (study.json) or of a run (outcome.json).
+    again : bool, optional
+        False takes figures that `draw_study` has drawn of a study as they are.
 
     Raises
     ------
@@ -41,7 +43,7 @@ def write_report(result_dir: str | Path) -> Path:
         text = page(told["title"], "Study", "", f"Made by {told['command']}.", body)
         return write_text(folder / "report.html", text)
     if (folder / "study.json").is_file():
-        return write_text(folder / "report.html", study_page(folder))
+        return write_text(folder / "report.html", study_page(folder, again))
     if (folder / "outcome.json").is_file():
         return write_text(folder / "report.html", run_page(folder))
     raise ResultError(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import BrokenExecutor
+from collections.abc import Callable, Iterable
+from concurrent.futures import BrokenExecutor, Future
 from pathlib import Path
 
 from fem_impact.cores import cores
@@ -16,28 +16,33 @@ FILM_FRAMES = 60
 
 def present(runs: Iterable[Path], study: Path, progress: Meter) -> list[str]:
     """Write film and page of each run and the page of the study; return what could not be made."""
+    folders, notes = list(runs), []
+    with LocalProcesses(max(1, min(cores(), len(folders)))) as executor:
+        drawn = [executor.submit(pictures, run) for run in folders]
+        _attempt(study, _draw)  # meanwhile; what cannot be drawn, the page tells
+        for done, (run, found) in enumerate(zip(folders, drawn, strict=True), 1):
+            notes += _notes(run, found)
+            progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))
+    return list(dict.fromkeys([*notes, *_attempt(study, _write)]))
+
+
+def _draw(study: Path) -> None:
+    from fem_impact.report import draw_study
+
+    draw_study(study)
+
+
+def _write(study: Path) -> None:
     from fem_impact.report import write_report
 
-    folders, notes = list(runs), []
-    for done, (run, found) in enumerate(_each(folders), 1):
-        notes += found
-        progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))
-    notes += _attempt(study, write_report)
-    return list(dict.fromkeys(notes))
+    write_report(study, again=False)
 
 
-def _each(folders: Sequence[Path]) -> Iterator[tuple[Path, list[str]]]:
-    """Draw every run, several in a process a core."""
-    if len(folders) == 1:
-        yield folders[0], pictures(folders[0])
-        return
-    with LocalProcesses(max(1, min(cores(), len(folders)))) as executor:
-        drawn = [(run, executor.submit(pictures, run)) for run in folders]
-        for run, future in drawn:
-            try:
-                yield run, future.result()
-            except BrokenExecutor as error:
-                yield run, [f"{run.name}: {error}"]
+def _notes(run: Path, drawn: Future[list[str]]) -> list[str]:
+    try:
+        return drawn.result()
+    except BrokenExecutor as error:
+        return [f"{run.name}: {error}"]
 
 
 def pictures(run: Path) -> list[str]:

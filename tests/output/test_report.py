@@ -8,7 +8,7 @@ import result_maker
 
 from fem_impact.errors import ResultError
 from fem_impact.output import write_bytes
-from fem_impact.report import read_study, write_report
+from fem_impact.report import draw_study, read_study, write_report
 from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
 
 VOID = {"meta", "link", "img", "source", "br"}
@@ -172,6 +172,16 @@ def test_study_report_takes_pictures_that_are_younger_than_their_run(study):
     os.utime(history)
     write_report(study)
     assert ledger.stat().st_mtime_ns > drawn
+
+
+def test_a_study_drawn_beforehand_is_only_drawn_again_if_asked(study):
+    draw_study(study)
+    own = [study / "figures" / f"{name}.svg" for name in ("comparison", "partition")]
+    drawn = [file.stat().st_mtime_ns for file in own]
+    reader, _ = read(write_report(study, again=False))
+    assert [file.stat().st_mtime_ns for file in own] == drawn
+    assert reader.addresses == read(write_report(study))[0].addresses
+    assert all(file.stat().st_mtime_ns > before for file, before in zip(own, drawn, strict=True))
 
 
 def test_study_report_names_failures_and_notes(study):

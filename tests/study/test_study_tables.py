@@ -9,7 +9,7 @@ from fem_impact.errors import MissingLibraryError
 from fem_impact.progress import NullMeter
 from fem_impact.scale import Failure
 from fem_impact.study.markdown import summary
-from fem_impact.study.present import present
+from fem_impact.study.present import pictures, present
 from fem_impact.study.sensitivity import explanations, sensitivity_rows
 from fem_impact.study.sets import jobs_of
 
@@ -132,8 +132,8 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
 
     monkeypatch.setattr(fem_impact.render, "render", no_film)
     monkeypatch.setattr(fem_impact.report, "write_report", pages.append)
-    assert present([run], tmp_path, NullMeter()) == ["t4: install libegl1"]
-    assert pages == [run, tmp_path]
+    assert pictures(run) == ["t4: install libegl1"]
+    assert pages == [run]
 
 
 def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_path):
