@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from meshes.errors import MeshError
 
@@ -149,15 +148,8 @@ def closest_on(line: FloatArray, points: FloatArray) -> FloatArray:
     (p, 2) float64
     """
     step = np.diff(line, axis=0)
-    length = np.hypot(*step.T)
-    # Pieces of near-equal length: the closest segment then touches one of the few closest vertices.
-    count = np.maximum(1, np.ceil(length / (length.sum() / 2000.0))).astype(np.int64)
-    segment = np.repeat(np.arange(len(step)), count)
-    share = (np.arange(count.sum()) - np.repeat(np.cumsum(count) - count, count) + 0.5) / count[segment]
-    _, near = cKDTree(line[segment] + share[:, None] * step[segment]).query(points, k=min(4, len(segment)))
-    candidates = segment[near.reshape(len(points), -1)]
-    from_start = points[:, None, :] - line[candidates]
-    along = (from_start * step[candidates]).sum(axis=-1) / length[candidates] ** 2
-    foot = line[candidates] + np.clip(along, 0.0, 1.0)[..., None] * step[candidates]
+    from_start = points[:, None, :] - line[:-1]
+    along = (from_start * step).sum(axis=-1) / np.hypot(*step.T) ** 2
+    foot = line[:-1] + np.clip(along, 0.0, 1.0)[..., None] * step
     best = np.linalg.norm(foot - points[:, None, :], axis=-1).argmin(axis=1)
     return np.asarray(foot[np.arange(len(points)), best])

@@ -93,4 +93,5 @@ def nose_and_whole(
     sliced, n = np.zeros(len(body.mesh.cells), dtype=bool), layout.rod_size
     sliced[rod.body_cells] = True
     nose = stiffness_of(body, ~sliced & ~body.yields, n)
-    return nose, drawn.reduced(nose + stiffness_of(body, sliced | body.yields, n), layout.body_shape[1])
+    rest = stiffness_of(body, sliced | body.yields, n)
+    return nose, drawn.reduced((nose, rest), layout.body_shape[1])

@@ -7,12 +7,13 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 from skfem import Basis, ElementHex1, MeshHex
-from skfem.io.meshio import HEX_MAPPING
 
 Array = NDArray[np.float64]
 Kind = Literal["full", "bbar", "incompatible"]
 
-VTK_TO_SKFEM = np.argsort(HEX_MAPPING[:8])
+# scikit-fem's number of each corner in VTK order; its own list comes with an import of all that reads meshes
+HEX_MAPPING = (0, 3, 6, 2, 1, 5, 7, 4)
+VTK_TO_SKFEM = np.argsort(HEX_MAPPING)
 
 
 def isotropic_stiffness(E: float, nu: float) -> Array:
@@ -35,7 +36,7 @@ def _basis(points: Array, cells: NDArray[np.int64]) -> Basis:
 
 def shape_gradients(basis: Basis) -> tuple[Array, Array]:
     """Return gradients (m, 8 points, 8 nodes, 3), 1/m, in VTK node order, and weights (m, 8), m3."""
-    grad = np.stack([basis.basis[k][0].grad for k in HEX_MAPPING[:8]])
+    grad = np.stack([basis.basis[k][0].grad for k in HEX_MAPPING])
     return grad.transpose(2, 3, 0, 1), basis.dx
 
 
@@ -99,7 +100,5 @@ def element_stiffness(points: Array, cells: NDArray[np.int64], C: Array, kind: K
 def lumped_mass(points: Array, cells: NDArray[np.int64], density: float) -> Array:
     """Return row-sum lumped nodal masses (m, 8), kg, of each element."""
     basis = _basis(points, cells)
-    values = np.stack(
-        [np.broadcast_to(np.asarray(basis.basis[k][0]), basis.dx.shape) for k in HEX_MAPPING[:8]]
-    )
+    values = np.stack([np.broadcast_to(np.asarray(basis.basis[k][0]), basis.dx.shape) for k in HEX_MAPPING])
     return np.asarray(density * np.einsum("kmq,mq->mk", values, basis.dx))

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.optimize import brentq
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,13 +75,24 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
     0.043
     """
     stiffness, ratio = E / yield_stress, ultimate_stress / yield_stress
-    # below n = 1/stiffness the necking strain would lie in the elastic range: perfect plasticity
-    low, high = 1 / stiffness, 0.5
+    high = 0.5
     if not 1 <= ratio <= _nominal_strength_ratio(high, stiffness):
         raise ValueError(
             f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa "
             "and "
             f"{_nominal_strength_ratio(high, stiffness):.2f} times it."
         )
-    n = brentq(lambda n: _nominal_strength_ratio(n, stiffness) - ratio, low, high) if ratio > 1 else 0.0
-    return Hardening(yield_stress, stiffness if n else 0.0, float(n))
+    n = _necking_strain(stiffness, ratio, high) if ratio > 1 else 0.0
+    return Hardening(yield_stress, stiffness if n else 0.0, n)
+
+
+def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
+    """Return the n below ``high`` that gives a strength ratio, by Newton's method on its logarithm.
+
+    That is convex and grows with n from 1/stiffness on, where the necking strain leaves the elastic range, so
+    that the steps from above come down to the root and stop there.
+    """
+    n = high
+    while (step := np.log(_nominal_strength_ratio(n, stiffness) / ratio) / np.log(stiffness * n)) > 0:
+        n -= step
+    return n

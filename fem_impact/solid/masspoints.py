@@ -92,9 +92,9 @@ class MassPoints:
         rest = size - slices.shape[0]
         return sp.csr_matrix(sp.block_diag([slices, sp.csr_matrix((rest, rest))]) + sp.identity(size))
 
-    def reduced(self, K: sp.csr_matrix, layers: int) -> MassStiffness:
-        """Return P^T K P over the masses of a stiffness (size, size) over the nodes, N/m."""
-        return MassStiffness(K, self.matrix(layers, K.shape[0]))
+    def reduced(self, parts: tuple[sp.csr_matrix, ...], layers: int) -> MassStiffness:
+        """Return P^T K P, N/m, over the masses; the sum of ``parts`` (size, size) is K over the nodes."""
+        return MassStiffness(parts, self.matrix(layers, parts[0].shape[0]))
 
 
 @kernel

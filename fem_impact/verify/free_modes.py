@@ -65,7 +65,7 @@ def _torsion(model: Model, p: Values) -> float:
     plain = assemble(points, cells, C, "incompatible", T)
     fixed = np.zeros(n, dtype=bool)
     fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
-    found = rod_modes(drawn.reduced(plain, layout.body_shape[1]), model.mass[:n], fixed, COUNT)
+    found = rod_modes(drawn.reduced((plain,), layout.body_shape[1]), model.mass[:n], fixed, COUNT)
     axis = layout.rod[np.hypot(points[:, 0], points[:, 1]) < 1e-9, 1]
     turns = abs(found.shape[axis]).max(axis=0) < 0.1 * abs(found.shape).max(axis=0)
     return float(found.frequency[turns][0])

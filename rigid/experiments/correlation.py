@@ -8,7 +8,6 @@ from itertools import combinations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import ndtri, stdtr
 
 from ..errors import DataError
 
@@ -53,6 +52,8 @@ def correlation(x: ArrayLike, y: ArrayLike, level: float = 0.95) -> Correlation:
     >>> f"r = {c.r:.3f}, {c.low:.2f} to {c.high:.2f}, p = {c.p:.3f}"
     'r = 0.931, 0.27 to 1.00, p = 0.022'
     """
+    from scipy.special import ndtri, stdtr  # here, as a run of the solver needs the rest of this package only
+
     a, b = np.asarray(x, dtype=np.float64), np.asarray(y, dtype=np.float64)
     if a.shape != b.shape or a.ndim != 1 or a.size < 4:
         raise DataError(f"a correlation needs two columns of at least 4 tests, got {a.shape} and {b.shape}")

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from ..errors import DataError
 
@@ -48,6 +47,8 @@ def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:
     >>> f"{s.mean} {s.sd} [{s.low:.3f}, {s.high:.3f}] n = {s.n}"
     '2.0 1.0 [-0.484, 4.484] n = 3'
     """
+    from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
+
     x = np.asarray(values, dtype=np.float64)
     if x.ndim != 1 or x.size < 2:
         raise DataError(f"a scatter needs at least two measurements in one column, got shape {x.shape}")

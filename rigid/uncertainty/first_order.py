@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.special import stdtrit
 
 from ..arrays import Floats
 from .estimate import MOTION, Errors, Estimate, named, stack_tests
@@ -57,6 +56,8 @@ def first_order(
 
 def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: Errors) -> Estimate:
     """Add the three sources in squares."""
+    from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
+
     n = rows.shape[1]
     g = np.array([slope[name] for name in MOTION])
     arms = np.array([slope[name] for name in ARMS])
