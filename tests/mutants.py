@@ -43,6 +43,7 @@ GAUSS_PRESSURE = """\
 SPHERE = "tests/verify/test_verify_oblique_sphere.py"
 RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
 HEATING = "tests/heating/test_heating.py"
+LAST = "            n_n += w[a] * normals[node, 2]\n"
 UNIT = "        length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)\n"
 FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
 MUTANTS = (
@@ -84,9 +85,16 @@ MUTANTS = (
     Mutant(
         "friction on the quads' own normals",
         "fem_impact/solid/contact/points.py",
-        UNIT,
-        FACET + UNIT,
+        LAST + UNIT,
+        LAST + FACET + UNIT,
         f"{SPHERE}::test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction",
+    ),
+    Mutant(
+        "impulses along the normals of a barrier that lags behind a sliding tip",
+        "fem_impact/solid/contact/points.py",
+        "flat = flat or rod.bend[node] == 0.0",
+        "flat = True",
+        "tests/solid/test_contact_round.py::test_a_rod_that_slides_through_its_crater_loses_nothing_but_friction",
     ),
     Mutant(
         "stopping at the first separation",
