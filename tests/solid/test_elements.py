@@ -8,6 +8,7 @@ from skfem.models.elasticity import linear_elasticity
 
 import meshes
 from fem_impact.solid.elements import (
+    HEX_MAPPING,
     VTK_TO_SKFEM,
     element_stiffness,
     isotropic_stiffness,
@@ -146,3 +147,9 @@ def test_lumped_masses_add_up_to_density_times_volume():
         1,
     )
     assert lumped_mass(mesh.points, mesh.cells, RHO).sum() == pytest.approx(RHO * 12e-9, rel=1e-12)
+
+
+def test_corners_are_numbered_as_scikit_fem_numbers_them():
+    from skfem.io import meshio
+
+    assert tuple(meshio.HEX_MAPPING[:8]) == HEX_MAPPING
