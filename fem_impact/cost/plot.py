@@ -15,12 +15,13 @@ if TYPE_CHECKING:
 __all__ = ["work_precision"]
 
 LOOKS = {
-    "rigid": ("s", "purple"),
-    "modal": ("D", "orange"),
-    "mesh": ("o", "blue"),
-    "pair": ("^", "green"),
-    "numerics": ("x", "vermilion"),
+    "rigid": ("rigid", "s", "purple"),
+    "modal": ("modal", "D", "orange"),
+    "mesh": ("one mesh", "o", "blue"),
+    "pair": ("two meshes, extrapolated", "^", "green"),
+    "numerics": ("other elements or step", "x", "vermilion"),
 }
+"""Words, marker and colour of each kind of setting."""
 
 
 def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path) -> None:
@@ -30,17 +31,33 @@ def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path)
         panels = drawn.subplots(rows, min(2, len(names)), squeeze=False, sharex=True).ravel()
         for panel, name in zip(panels, names, strict=False):
             _panel(panel, [one for one in settings if one.error[name] and one.kind in LOOKS], name)
+        for panel in panels[len(names) :]:
+            panel.set_visible(False)
         drawn.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(LOOKS) + 1)
 
 
 def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
     best = front(settings, [name])
-    axes.plot(*_points(best, name), color=QUIET, label="Pareto front")
-    for kind, (marker, colour) in LOOKS.items():
+    axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
+    for kind, (words, marker, colour) in LOOKS.items():
         of = [one for one in settings if one.kind == kind]
-        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=kind, markersize=5)
+        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=words, markersize=5)
     axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
-    axes.grid(which="both", alpha=0.5)
+    axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
+    _plain(axes)
+    axes.grid(alpha=0.5)
+
+
+def _plain(axes: Axes) -> None:
+    """Write plain numbers at the ticks, and within one decade at round steps instead of powers of ten."""
+    from matplotlib.ticker import MaxNLocator, NullFormatter
+
+    low, high = axes.get_ylim()
+    if high < 10 * low:
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:

@@ -6,7 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import fill
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
@@ -14,22 +13,31 @@ from numpy.typing import ArrayLike
 
 from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure
 from fem_impact.output import write_table
+from fem_impact.output.tables import Cell
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 __all__ = ["Mark", "Panel", "Series", "lines_figure"]
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
-LETTERS = {"wide": 110, "narrow": 46}
-"""Letters of an axis label that fit across a picture."""
+LETTERS = {"wide": 110, "narrow": 52}
+"""Letters of a legend that fit across a picture."""
+SAMPLE = 8
+"""Letters that the sample of a legend's entry and the space after it are wide."""
+NEAR = 0.05
+"""Marks nearer than this share of the axis would write over each other on one side."""
 COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y")
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """A curve or a cloud: ``x`` and ``y`` of one length, a colour by number (in order when None)."""
+    """A curve or a cloud: ``x`` and ``y`` of one length, a colour by number (in order when None).
+
+    One label has one look in all panels of a figure.
+    """
 
     label: str
     x: ArrayLike
@@ -48,7 +56,7 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Panel:
-    """One pair of axes: title, labels with units, series, marks and levels, logarithmic or not."""
+    """One pair of axes: title, labels with units, series, marks, levels, and names of x = 0, 1, 2 ..."""
 
     title: str
     x: str
@@ -56,29 +64,32 @@ class Panel:
     series: tuple[Series, ...]
     marks: tuple[Mark, ...] = ()
     levels: tuple[float, ...] = ()
-    log: bool = False
+    names: tuple[str, ...] = ()
 
 
 def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide", columns: int = 2) -> Path:
-    """Draw panels with one legend a panel that names more than its title; the data go beside it as CSV."""
+    """Draw panels over one legend that names more than one series; the data go beside it as CSV."""
     path = Path(path)
     write_table(path.with_suffix(".csv"), COLUMNS, [row for panel in panels for row in _rows(panel)])
     across = columns if shape == "wide" else 1
     down = math.ceil(len(panels) / across)
-    with figure(path, shape, 3.3 * down + 0.2) as drawn:
+    labels = {series.label for panel in panels for series in panel.series}
+    beside = max(1, LETTERS[shape] // (max(map(len, labels), default=0) + SAMPLE))
+    with figure(path, shape, 3.2 * down + 0.18 * math.ceil(len(labels) / beside) + 0.1) as drawn:
         every = _axes(drawn, down, across)
         for axes, panel in zip(every, panels, strict=False):
-            _panel(axes, panel, LETTERS[shape] // across)
+            _panel(axes, panel)
         for axes in every[len(panels) :]:
             axes.set_visible(False)
+        _legend(drawn, every, beside)
     return path
 
 
-def _rows(panel: Panel) -> list[list[float | str | None]]:
+def _rows(panel: Panel) -> list[list[Cell]]:
     return [
-        [panel.title, series.label, panel.x, panel.y, float(x), float(y)]
+        [panel.title, series.label, panel.x, panel.y, panel.names[round(x)] if panel.names else x, float(y)]
         for series in panel.series
-        for x, y in zip(np.asarray(series.x), np.asarray(series.y), strict=True)
+        for x, y in zip(np.asarray(series.x, float).tolist(), np.asarray(series.y), strict=True)
     ]
 
 
@@ -86,40 +97,65 @@ def _axes(drawn: Figure, down: int, across: int) -> list[Axes]:
     return list(drawn.subplots(down, across, squeeze=False).flat)
 
 
-def _panel(axes: Axes, panel: Panel, letters: int) -> None:
-    axes.set(title=panel.title, xlabel=fill(panel.x, letters), ylabel=panel.y)
+def _panel(axes: Axes, panel: Panel) -> None:
+    axes.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
     for at, series in enumerate(panel.series):
         _draw(axes, series, PALETTE[COLOURS[(at if series.colour is None else series.colour) % len(COLOURS)]])
     for level in panel.levels:
         axes.axhline(level, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
-    if panel.log:
-        axes.set(xscale="log", yscale="log")
-    for mark in panel.marks:
-        _mark(axes, mark)
+    if panel.names:
+        axes.set_xticks(range(len(panel.names)), panel.names, rotation=35, ha="right", rotation_mode="anchor")
+    _marks(axes, sorted(panel.marks, key=lambda mark: mark.x))
     axes.grid()
-    if len(panel.series) > 1:
-        axes.legend(fontsize=7.5, labelcolor=INK)
 
 
 def _draw(axes: Axes, series: Series, colour: str) -> None:
     if series.look in ("line", "dashed"):
         style = "-" if series.look == "line" else (0, (5, 1.5))
         axes.plot(series.x, series.y, color=colour, linestyle=style, linewidth=1.4, label=series.label)
-    else:
-        face = colour if series.look == "points" else "none"
-        axes.plot(series.x, series.y, "o", color=colour, mfc=face, markersize=3.6, label=series.label)
+    elif series.look == "points":
+        axes.plot(series.x, series.y, "o", color=colour, markersize=3.6, label=series.label)
+    else:  # wider than points, which show through where both agree
+        axes.plot(series.x, series.y, "o", color=colour, mfc="none", markersize=5.6, label=series.label)
 
 
-def _mark(axes: Axes, mark: Mark) -> None:
-    axes.axvline(mark.x, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
+def _marks(axes: Axes, marks: Sequence[Mark]) -> None:
+    """Write each word on the left of its line, on the right where the mark before is near."""
+    for mark in marks:
+        axes.axvline(mark.x, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
+    low, high = axes.get_xlim()
+    before = -math.inf
+    for mark in marks:
+        _word(axes, mark, "left" if mark.x - before < NEAR * (high - low) else "right")
+        before = mark.x
+
+
+def _word(axes: Axes, mark: Mark, side: Literal["left", "right"]) -> None:
     axes.text(
         mark.x,
         0.99,
         mark.word,
         transform=axes.get_xaxis_transform(),
         rotation=90,
-        ha="right",
+        ha=side,
         va="top",
         fontsize=7.0,
         color=QUIET,
+        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3},
     )
+
+
+def _legend(drawn: Figure, every: Sequence[Axes], beside: int) -> None:
+    """Write one legend under all panels, ``beside`` entries across."""
+    named: dict[str, Artist] = {}
+    for axes in every:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    if len(named) > 1:
+        drawn.legend(
+            list(named.values()),
+            list(named),
+            loc="outside lower center",
+            ncols=min(beside, len(named)),
+            labelcolor=INK,
+        )

@@ -69,7 +69,7 @@ def _closure(rows: Sequence[Outcome]) -> Verdict:
         Series("(I Omega^2/2)(1 + 1/e_m)", range(len(rows)), identity, "rings"),
         Series("vibration", range(len(rows)), lost, "points"),
     )
-    panel = Panel("Closure of the computed sets", _axis(rows), "% of E_0", series)
+    panel = Panel("Closure of the computed sets", "set", "% of E_0", series, names=_names(rows))
     return Verdict("closure", sentence, panel)
 
 
@@ -98,7 +98,7 @@ def _moment(rows: Sequence[Outcome]) -> Verdict:
         f"motion gives values up to {max(spread):.2g} apart with the paper's arms and those of the edge, and "
         "-1 at the centre of the impulse."
     )
-    return Verdict("moment", sentence, Panel("e_m against angle", "angle, degrees", "e_m, -", series))
+    return Verdict("moment", sentence, Panel("e_m against angle", "angle, degrees", "e_m", series))
 
 
 def _critical(rows: Sequence[Outcome]) -> Verdict:
@@ -115,7 +115,8 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
         "Stands with a limit: mu_c is the ratio at which the tip stops without turning back, and no upper "
         f"bound. It is exceeded by more than 2 %, measured or computed, in {', '.join(above) or 'no set'}."
     )
-    return Verdict("critical", sentence, Panel("Impulse ratio and mu_c", _axis(rows), "mu, -", series))
+    panel = Panel("Impulse ratio and mu_c", "set", "mu", series, names=_names(rows))
+    return Verdict("critical", sentence, panel)
 
 
 def _heat(rows: Sequence[Outcome]) -> Verdict:
@@ -127,17 +128,18 @@ def _heat(rows: Sequence[Outcome]) -> Verdict:
         Series("friction work", at, rubbed, "points"),
         Series("vibration", at, [100 * row["E_vib_over_E_0"] for row in rows], "points"),
     )
-    ratio = [r / t for r, t in zip(rubbed, tangential, strict=True) if t > 0]
+    ratio = [100 * r / t for r, t in zip(rubbed, tangential, strict=True) if t > 0]
     sentence = (
         "Does not stand: E_lt is not the energy that can heat the contact. Friction, which can, takes "
-        f"{min(rubbed):.2g} to {max(rubbed):.2g} % of E_0 and {min(ratio):.0%} to {max(ratio):.0%} of E_lt; "
-        "what is left of E_lt is plastic flow and vibration."
+        f"{min(rubbed):.2g} to {max(rubbed):.2g} % of E_0 and {min(ratio):.0f} to {max(ratio):.0f} % of "
+        "E_lt; what is left of E_lt is plastic flow and vibration."
     )
-    return Verdict("heat", sentence, Panel("E_lt and friction work", _axis(rows), "% of E_0", series))
+    panel = Panel("E_lt and friction work", "set", "% of E_0", series, names=_names(rows))
+    return Verdict("heat", sentence, panel)
 
 
-def _axis(rows: Sequence[Outcome]) -> str:
-    return "set: " + ", ".join(f"{at} {row['scene_id']}" for at, row in enumerate(rows))
+def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
+    return tuple(row["scene_id"] for row in rows)
 
 
 def marker_section(rows: Sequence[Outcome]) -> Markup:

@@ -95,8 +95,8 @@ def _onset(found: Found) -> Picture:
 def _master(found: Found) -> Picture:
     known = Series("independent reference", *KNOWN, "rings", 6)
     groups: tuple[tuple[str, str, Measure, tuple[Series, ...]], ...] = (
-        ("by T1/tau, tau of the inclined rod", "T1/tau, -", lambda r: r.group, ()),
-        ("by T1/tau, tau of the whole mass", "T1/tau, -", lambda r: r.whole, (known,)),
+        ("by T1/tau, tau of the inclined rod", "T1/tau", lambda r: r.group, ()),
+        ("by T1/tau, tau of the whole mass", "T1/tau", lambda r: r.whole, (known,)),
         ("by gamma", "gamma, m^-0.3815", lambda r: r.drop.gamma, ()),
     )
     panels = []
@@ -117,7 +117,7 @@ def _blind(blind: Sequence[Drop], results: Results) -> Picture:
         f, share = _over_friction(blind, results, length)
         series.append(Series(words, f, [100 * s for s in share], "line", at))
         marks.append(Mark(blind_ratio(Drop(length)), f"mu* of {words}"))
-    panel = Panel("elastic, 45 degrees", "f, -", "vibration, % of E_0", tuple(series), tuple(marks))
+    panel = Panel("elastic, 45 degrees", "f", "vibration, % of E_0", tuple(series), tuple(marks))
     words = "A contact force of ratio mu* does not excite the first bending mode."
     return Picture("blind-direction", words, (panel,), 1)
 

@@ -17,7 +17,7 @@ __all__ = ["paper"]
 
 MEASURED = ("e", "mu", "Omega")
 OUTPUTS = (*MEASURED, "E_vib/E_0")
-UNITS = {"e": "e, -", "mu": "mu, -", "Omega": "Omega, rad/s"}
+UNITS = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
 Told = dict[str, Any]
 
 
@@ -71,13 +71,14 @@ def _ranks(t: Told, names: Sequence[str]) -> Picture:
     panels = tuple(
         Panel(
             output,
-            f"input: {', '.join(f'{k} {name}' for k, name in enumerate(names))}",
-            "Sobol index, -",
+            "input",
+            "Sobol index",
             (
                 Series("first order", at - 0.08, found["first"][i], "points"),
                 Series("total", at + 0.08, found["total"][i], "rings"),
             ),
             levels=(0.0, 1.0),
+            names=tuple(names),
         )
         for i, output in enumerate(OUTPUTS)
     )

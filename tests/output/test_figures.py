@@ -5,7 +5,6 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import result_maker
-from matplotlib.figure import Figure
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.figures import (
@@ -16,7 +15,6 @@ from fem_impact.figures import (
     study_partition_figure,
 )
 from fem_impact.figures.accounts import FINAL, RUNNING
-from fem_impact.figures.lines import LETTERS, Panel, Series, _panel
 from fem_impact.figures.style import percent
 from fem_impact.output import HISTORY, read_table
 
@@ -118,12 +116,3 @@ def test_import_stays_light():
     code = "import sys, fem_impact.figures, fem_impact.render, fem_impact.report; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"matplotlib", "pyvista", "vtkmodules", "h5py", "PIL"} & set(done.stdout.split())
-
-
-def test_a_long_label_is_broken_where_the_picture_is_narrow():
-    axes = Figure().subplots()
-    words = "set: " + ", ".join(f"{at} a-set" for at in range(20))
-    _panel(axes, Panel("sets", words, "y", (Series("one", [0.0], [1.0]),)), LETTERS["narrow"])
-    lines = axes.get_xlabel().splitlines()
-    assert max(map(len, lines)) <= 46
-    assert " ".join(lines) == words
