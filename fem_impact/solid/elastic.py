@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_impact.solid.calls import Call
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts, Part
+from fem_impact.solid.items import Accounts
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.slices import SliceOperator
@@ -34,12 +34,8 @@ class ElasticRod:
     d: Array
     y: Array
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return the product with the stiffness."""
-        return [self._multiply]
-
-    def _multiply(self, state: State) -> None:
+    def find(self, state: State) -> None:
+        """Multiply with the stiffness."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
@@ -69,17 +65,21 @@ class ElasticBlock:
     stiffness: NodeProduct
     place: slice
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return the product with the stiffness."""
-        return [self._multiply]
-
-    def _multiply(self, state: State) -> None:
+    def find(self, state: State) -> None:
+        """Multiply with the stiffness."""
         self.stiffness.multiply(state.x[self.place])
+
+    def finding(self, state: State, dt: Array) -> Call:
+        """Return the call that `find` makes."""
+        return self.stiffness.multiplication(state.x[self.place])
 
     def collect(self, state: State) -> None:
         """Add the elastic forces of block and boundary springs."""
         self.stiffness.add_to(state.force[self.place], -1.0)
+
+    def collecting(self, state: State) -> Call:
+        """Return the call that `collect` makes."""
+        return self.stiffness.addition(state.force[self.place], -1.0)
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""
@@ -123,10 +123,8 @@ class Weight:
     weight: Array
     reference: Array
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return nothing: the weight is known."""
-        return []
+    def find(self, state: State) -> None:
+        """Do nothing: the weight is known."""
 
     def collect(self, state: State) -> None:
         """Add the weight."""

@@ -5,13 +5,15 @@ The loop holds two lists of these, and observers, and nothing else. An effect th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import ClassVar, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.solid.calls import Call
 from fem_impact.solid.state import State
 
 Accounts = dict[str, float]
-Part = Callable[[State], None]
 
 
 class Account(Protocol):
@@ -28,30 +30,37 @@ class Account(Protocol):
 
 
 class Force(Account, Protocol):
-    """An item that adds forces at the present positions; ``body`` is rod or barrier.
-
-    Its work is done in parts that write nothing but what is their own, so that threads may share them.
-    """
+    """An item that adds forces at the present positions; ``body`` is rod or barrier."""
 
     @property
     def body(self) -> str:
         """Return the body it acts on."""
         ...
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return the parts of the work, the same at every call."""
+    def find(self, state: State) -> None:
+        """Do the work; write nothing but what is the item's own."""
         ...
 
     def collect(self, state: State) -> None:
-        """Add to ``state.force`` what the parts have found."""
+        """Add to ``state.force`` what was found."""
+        ...
+
+
+class Handed(Force, Protocol):
+    """A force whose work a second thread can do, by calls (see :mod:`~fem_impact.solid.calls`)."""
+
+    def finding(self, state: State, dt: NDArray[np.float64]) -> Call:
+        """Return the call for a share in `find`; ``dt`` (1,) holds the step that led to ``x``."""
+        ...
+
+    def collecting(self, state: State) -> Call:
+        """Return the call for `collect`."""
         ...
 
 
 def add_force(item: Force, state: State) -> None:
     """Do all the work of one item."""
-    for part in item.parts:
-        part(state)
+    item.find(state)
     item.collect(state)
 
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from fem_impact.solid.helper import Helper, share
+from fem_impact.solid.helper import COLLECT, FIND, Helper
+from fem_impact.solid.items import Force
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -38,12 +39,33 @@ def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
 def evaluate(model: Model, state: State, helper: Helper | None = None) -> None:
     """Set the forces of the present positions.
 
-    A ``helper`` shares the work. What the parts find is added in one order, body by body, so results are the
-    same to the last bit whoever did them.
+    A ``helper`` shares the work. No number is a sum of what two threads found, so results are the same to the
+    last bit whoever did it.
     """
-    share(model.parts, state, helper)
-    share(model.sums, state, helper)
+    if helper is None:
+        find(model.forces, state)
+        collect(model.forces, state)
+    else:
+        helper.begin(FIND, state.dt)
+        find(helper.finds, state)
+        helper.finish()
+        helper.begin(COLLECT, state.dt)
+        collect(helper.collects, state)
+        helper.finish()
     model.hanging.collect(state.force)
+
+
+def find(forces: Sequence[Force], state: State) -> None:
+    """Find forces, and clear the sum that they will be added to."""
+    state.force[:] = 0.0
+    for force in forces:
+        force.find(state)
+
+
+def collect(forces: Sequence[Force], state: State) -> None:
+    """Add up what was found."""
+    for force in forces:
+        force.collect(state)
 
 
 def advance(model: Model, state: State) -> None:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from functools import partial
-from itertools import chain
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,7 +12,7 @@ from numpy.typing import NDArray
 from fem_impact.modes import MassStiffness
 from fem_impact.solid.contact import ContactBook
 from fem_impact.solid.geometry import Geometry
-from fem_impact.solid.items import Account, Force, Impulse, Part
+from fem_impact.solid.items import Account, Force, Impulse
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.masspoints import MassPoints
@@ -25,16 +23,6 @@ if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
 
 Array = NDArray[np.float64]
-
-
-def clear(state: State) -> None:
-    """Set the sum of forces to zero; no other part touches it."""
-    state.force[:] = 0.0
-
-
-def _collect(forces: Sequence[Force], state: State) -> None:
-    for force in forces:
-        force.collect(state)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,8 +36,6 @@ class Model:
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
-    parts : the work before forces are summed, which threads may share: body by body, the largest at both ends
-    sums : what adds the parts' forces up, one for each body, which share no unknowns
     hanging : ties of the locally refined meshes
     zones : the yielding zones among the forces
     book : record of the contact
@@ -72,14 +58,6 @@ class Model:
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
-    parts: Sequence[Part] = field(init=False)
-    sums: Sequence[Part] = field(init=False)
-
-    def __post_init__(self) -> None:
-        bodies = [[force for force in self.forces if force.body == body] for body in ("rod", "barrier")]
-        rod, barrier = (sorted((force.parts for force in forces), key=len) for forces in bodies)
-        object.__setattr__(self, "parts", [*chain(*rod), clear, *reversed([*chain(*barrier)])])
-        object.__setattr__(self, "sums", [partial(_collect, forces) for forces in bodies if forces])
 
     @property
     def step(self) -> float:

@@ -8,7 +8,6 @@ the angle turned in a step.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi, sqrt
 from typing import ClassVar
@@ -17,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts, Part
+from fem_impact.solid.items import Accounts
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
@@ -52,12 +51,8 @@ class ElasticNose:
     d: Array
     y: Array
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return the product with the stiffness."""
-        return [self._multiply]
-
-    def _multiply(self, state: State) -> None:
+    def find(self, state: State) -> None:
+        """Multiply with the stiffness."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0

@@ -117,19 +117,21 @@ def solve(
     if progress is not None:
         observers.append(_meter(progress, scene, model, looking.watch))
     _warm_up(model)
-    clock = Stopwatch()
-    if out is not None:
-        holders = looking.holders(model, state, clock)
-        saved = Checkpoint(out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason))
-        observers.append(saved)
-        if resume:
-            saved.restore()
-            advance(model, state)  # the forces of the checkpoint's step are known
-    try:
-        with _helper(threads) as helper:
+    with _helper(model, state, threads) as helper:
+        clock = Stopwatch()
+        if out is not None:
+            holders = looking.holders(model, state, clock)
+            saved = Checkpoint(
+                out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason)
+            )
+            observers.append(saved)
+            if resume:
+                saved.restore()
+                advance(model, state)  # the forces of the checkpoint's step are known
+        try:
             march(model, state, observers, helper)
-    finally:
-        looking.flush()
+        finally:
+            looking.flush()
     looking.watch.observe(state)
     return _result(scene, model, view, state, looking, clock)
 
@@ -171,8 +173,10 @@ def _result(
     return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
 
-def _helper(threads: int) -> AbstractContextManager[Helper | None]:
-    return Helper() if threads > 1 else nullcontext()
+def _helper(model: Model, state: State, threads: int) -> AbstractContextManager[Helper | None]:
+    """Return a second thread's context where it is asked for and has work."""
+    shared = bool(model.zones) or model.geometry.barrier is not None
+    return Helper(model, state) if threads > 1 and shared else nullcontext()
 
 
 def _warm_up(model: Model) -> None:

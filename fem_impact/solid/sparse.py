@@ -8,6 +8,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
+from fem_impact.solid.calls import Call, call_of
 from fem_impact.solid.elements import Kind, element_stiffness
 from fem_impact.solid.fours import add_product, load, spread, store, three
 from fem_impact.solid.kernels import inlined, kernel
@@ -109,12 +110,20 @@ class NodeProduct:
 
     def multiply(self, x: Array) -> None:
         """Set ``product`` to the product with ``x`` less the origin."""
-        take_nodes(self.places, self.origin, x, self.moved)
-        multiply_blocks(self.start, self.columns, self.kinds, self.blocks, self.moved, self.product)
+        multiply_nodes(*self.multiplication(x))
+
+    def multiplication(self, x: Array) -> Call:
+        """Return the call that `multiply` makes."""
+        rows = self.start, self.columns, self.kinds, self.blocks
+        return Multiplication(self.places, self.origin, x, *rows, self.moved, self.product)
 
     def add_to(self, y: Array, share: float = 1.0) -> None:
         """Add a share of the product to ``y``."""
-        add_nodes(self.places, share, self.product, y)
+        add_nodes(*self.addition(y, share))
+
+    def addition(self, y: Array, share: float) -> Call:
+        """Return the call that `add_to` makes."""
+        return Addition(self.places, share, self.product, y)
 
     @property
     def energy(self) -> float:
@@ -147,16 +156,11 @@ def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def take_nodes(places, origin, x, d):  # type: ignore[no-untyped-def]
-    """Set d to the values of the nodes less their origin."""
+def multiply_nodes(places, origin, x, start, columns, kinds, blocks, d, f):  # type: ignore[no-untyped-def]
+    """Set d to the values of the nodes less their origin, f to a symmetric block-sparse product with d."""
     for i in range(len(places)):
         for c in range(3):
             d[i, c] = x[places[i, c]] - origin[i, c]
-
-
-@kernel
-def multiply_blocks(start, columns, kinds, blocks, d, f):  # type: ignore[no-untyped-def]
-    """Set f to a symmetric block-sparse product with d."""
     f[:] = 0.0
     for i in range(len(d)):
         first, last = start[i], start[i + 1]
@@ -169,6 +173,10 @@ def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
     for i in range(len(places)):
         for c in range(3):
             y[places[i, c]] += share * f[i, c]
+
+
+Multiplication = call_of(multiply_nodes, "Multiplication")
+Addition = call_of(add_nodes, "Addition")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,26 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_impact.solid.calls import Call
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
-from fem_impact.solid.items import Accounts, Part
+from fem_impact.solid.items import Accounts
+from fem_impact.solid.signals import Signal, make_signals
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
+from fem_impact.solid.yielding_kernel import (
+    ROWS,
+    Blocks,
+    Subtraction,
+    Update,
+    elastic_energy,
+    subtract_nodal,
+    update,
+)
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Counts = NDArray[np.uint32]
-
-PART = 16  # blocks that a thread takes at a time: 60 to 90 us of work, a call costs some
 
 
 @dataclass(slots=True)
@@ -34,7 +40,8 @@ class YieldingZone:
     count : number of true elements
     blocks : their places and state
     around : nodes (k, 3), starts and entries for `subtract_nodal`
-    room : (parts, ROWS * LANES) for each part of the update to work in
+    taken : number of blocks that are advanced or have been
+    room : (2, ROWS * LANES) for each thread to work in
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
     rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
@@ -45,6 +52,7 @@ class YieldingZone:
     count: int
     blocks: Blocks
     around: tuple[Counts, Ints, Counts]
+    taken: Signal
     room: Array
     G: float
     K: float
@@ -74,22 +82,26 @@ class YieldingZone:
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
-        room = np.zeros((-(-blocks // PART), ROWS * LANES))
-        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate)
+        taken, room = make_signals(1)[0], np.zeros((2, ROWS * LANES))
+        return cls(body, len(dof), state, _around(dof), taken, room, G, lame + 2 * G / 3, constants, rate)
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return the updates of so many blocks each."""
-        return [partial(self._advance, i) for i in range(len(self.room))]
-
-    def _advance(self, part: int, state: State) -> None:
-        first, last = PART * part, min(PART * (part + 1), len(self.blocks.dof))
+    def find(self, state: State) -> None:
+        """Advance the blocks, but for those that another thread takes."""
         constants = self.G, self.K, self.law, self.rate
-        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[part], first, last)
+        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[0], self.taken, False)
+
+    def finding(self, state: State, dt: Array) -> Call:
+        """Return the call by which a second thread takes blocks, from the last on."""
+        constants = self.G, self.K, self.law, self.rate
+        return Update(dt, state.x, state.v, self.blocks, *constants, self.room[1], self.taken)
 
     def collect(self, state: State) -> None:
         """Subtract the nodal forces."""
-        subtract_nodal(*self.around, self.blocks.nodal.ravel(), state.force)
+        subtract_nodal(*self.collecting(state))
+
+    def collecting(self, state: State) -> Call:
+        """Return the call that `collect` makes."""
+        return Subtraction(*self.around, self.blocks.nodal.ravel(), self.taken, state.force)
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""

@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_impact.solid.calls import call_of
 from fem_impact.solid.hexmodes import (
     CORNERS,
     LANES,
@@ -28,6 +29,7 @@ from fem_impact.solid.hexmodes import (
 )
 from fem_impact.solid.kernels import inlined, kernel
 from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
+from fem_impact.solid.signals import add_one, tell
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.uint32]
@@ -190,12 +192,17 @@ class Blocks(NamedTuple):
 
 
 @kernel
-def update(x, v, dt, z, G, K, law, rate, w, first, last):  # type: ignore[no-untyped-def]
-    """Advance some blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
+def update(x, v, dt, z, G, K, law, rate, w, taken, backwards):  # type: ignore[no-untyped-def]
+    """Advance blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
 
-    ``w`` (ROWS * LANES,) is room to work in.
+    ``w`` (ROWS * LANES,) is room to work in. Goes on until all blocks are taken, of which ``taken`` counts
+    those of two threads. One goes backwards from the last, so that each has nearly the same blocks in every
+    step, and their data stay in its caches.
     """
-    for b in range(first, last):
+    count, own = len(z.dof), 0
+    while add_one(taken) < count:
+        b = count - 1 - own if backwards else own
+        own += 1
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
         w[FORCE * LANES : (FORCE + 21) * LANES] = 0.0
@@ -213,11 +220,19 @@ def update(x, v, dt, z, G, K, law, rate, w, first, last):  # type: ignore[no-unt
 
 
 @kernel
-def subtract_nodal(places, start, entries, nodal, force):  # type: ignore[no-untyped-def]
+def update_backwards(dt, x, v, z, G, K, law, rate, w, taken):  # type: ignore[no-untyped-def]
+    """Do as the second thread what `update` does; ``dt`` (1,) holds the step."""
+    update(x, v, dt[0], z, G, K, law, rate, w, taken, True)
+
+
+@kernel
+def subtract_nodal(places, start, entries, nodal, taken, force):  # type: ignore[no-untyped-def]
     """Subtract the forces of all elements around each node, always in the same order.
 
-    ``entries`` are the places of the first components in the flat ``nodal``, in rows over nodes.
+    ``entries`` are the places of the first components in the flat ``nodal``, in rows over nodes. From then on
+    no block is ``taken``.
     """
+    tell(taken, 0)
     for i in range(len(places)):
         t, b, n = 0.0, 0.0, 0.0
         for p in range(start[i], start[i + 1]):
@@ -252,3 +267,7 @@ def elastic_energy(x, z, G, K, w):  # type: ignore[no-untyped-def]
         for g in range(8):
             _add_energy(sums, z.stress[b, g], z.weight[b, g], 4.0 * G)
     return sums.sum()
+
+
+Update = call_of(update_backwards, "Update")
+Subtraction = call_of(subtract_nodal, "Subtraction")

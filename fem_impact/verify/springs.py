@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.items import Accounts, Part
+from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 from fem_impact.verify.reference.bricks import spring_force
 from meshes import HexMesh
@@ -51,10 +50,8 @@ class NodeSprings:
     def __post_init__(self) -> None:
         self.anchor = np.zeros((len(self.nodes), 2))
 
-    @property
-    def parts(self) -> Sequence[Part]:
-        """Return nothing: few springs are quickly done."""
-        return []
+    def find(self, state: State) -> None:
+        """Do nothing: few springs are quickly done."""
 
     def collect(self, state: State) -> None:
         """Add the springs' forces; where friction gives way, the anchor follows."""

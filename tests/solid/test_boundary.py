@@ -13,7 +13,6 @@ from fem_impact.solid.boundary import RADIATION, radiating_share, spread_boundar
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.elements import isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.solid.model import clear
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.verify.reference.radiation import radiation_resistance
 from meshes import OUTER
@@ -111,8 +110,6 @@ class Column:
         self.pots = Dashpots(held, damping[held], inverse[held])
         self.model = SimpleNamespace(
             forces=[self.block],
-            parts=[clear, *self.block.parts],
-            sums=[self.block.collect],
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
             hanging=Hanging.of([(mesh.tie, places)]),

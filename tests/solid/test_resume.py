@@ -114,6 +114,7 @@ WORK_SPACE = {
     *(
         "Blocks.pressure",
         "Blocks.nodal",
+        "YieldingZone.taken",
         "YieldingZone.room",
         "MassPoints.room",
     ),
