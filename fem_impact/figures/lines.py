@@ -141,7 +141,7 @@ def _word(axes: Axes, mark: Mark, side: Literal["left", "right"]) -> None:
         va="top",
         fontsize=7.0,
         color=QUIET,
-        bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.3},
+        zorder=1.5,  # under the curves: data come first
     )
 
 

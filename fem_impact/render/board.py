@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import io
 from dataclasses import dataclass
+from textwrap import shorten
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -19,7 +20,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-__all__ = ["Board", "blank", "clock", "colour_bar", "heading", "picture", "write"]
+__all__ = ["Board", "below", "blank", "clock", "colour_bar", "heading", "picture", "write"]
+
+CLOCK, LETTER = 220, 11
+"""Pixels that clock and margins take of the first line, and that a letter of the title takes of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,9 +74,10 @@ def blank(frame: Frame) -> Figure:
 
 
 def heading(drawn: Figure, frame: Frame, title: str) -> None:
-    """Write the title of the film."""
+    """Write the title of the film, as much of it as fits beside the clock."""
     place = (24 / frame.width, 1 - 27 / frame.height)
-    drawn.text(*place, title, fontsize=14, weight="bold", color=INK, va="center")
+    words = shorten(title, (frame.width - CLOCK) // LETTER, placeholder=" …")
+    drawn.text(*place, words, fontsize=14, weight="bold", color=INK, va="center")
 
 
 def _words(drawn: Figure, layout: Layout, motion: Motion, title: str) -> None:
@@ -100,8 +105,13 @@ def colour_bar(drawn: Figure, frame: Frame, view: Rectangle, field: str, span: t
     ends = "both" if span[0] < 0 else "max"
     bar = drawn.colorbar(colours, cax=axes, orientation="horizontal", extend=ends)
     bar.ax.tick_params(labelsize=8, color=QUIET, labelcolor=INK, length=2, pad=2)
-    place = (view.left / frame.width, 1 - (view.top + view.height + 19) / frame.height)
-    drawn.text(*place, f"{shown.name},\n{shown.unit}", fontsize=9, color=INK, va="center")
+    below(drawn, frame, view, f"{shown.name},\n{shown.unit}", INK)
+
+
+def below(drawn: Figure, frame: Frame, view: Rectangle, words: str, colour: str) -> None:
+    """Write up to two lines under the left corner of a view, which is pasted over what rises above it."""
+    place = (view.left / frame.width, 1 - (view.top + view.height + 6) / frame.height)
+    drawn.text(*place, words, fontsize=9, color=colour, va="top")
 
 
 def picture(drawn: Figure) -> Image:

@@ -35,7 +35,7 @@ class Field(NamedTuple):
 FIELDS = {
     "mises": Field("von Mises stress", "MPa", 1e-6),
     "velocity": Field("speed", "m/s", 1.0),
-    "strain": Field("strain along\nthe axis", "1e-6", 1e6, "coolwarm", True),
+    "strain": Field("axial strain", "µm/m", 1e6, "coolwarm", True),
 }
 """The fields that can be shown."""
 

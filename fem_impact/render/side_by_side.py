@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_impact.figures.style import INK, QUIET
 from fem_impact.output import read_fields
-from fem_impact.render.board import blank, clock, colour_bar, heading, picture, write
+from fem_impact.render.board import below, blank, clock, colour_bar, heading, picture, write
 from fem_impact.render.encode import encode
 from fem_impact.render.film import RenderResult, context, require_libraries, target
 from fem_impact.render.layout import Abreast, Rectangle
@@ -134,14 +134,13 @@ class Board:
 
 def _title(drawn: Figure, layout: Abreast, view: Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
-    drawn.text(*place, fill(title, view.width // 8), fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
+    words = fill(title, view.width // 8, max_lines=2, placeholder=" …")
+    drawn.text(*place, words, fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
 
 
 def _scale(drawn: Figure, layout: Abreast, peak: float) -> None:
-    view = layout.views[0]
-    place = (view.left / layout.width, 1 - (view.top + view.height + 19) / layout.height)
     words = f"one scale; deformation × {peak:g},\nfading to × 1 at the contact"
-    drawn.text(*place, words, fontsize=9, color=QUIET, va="center")
+    below(drawn, layout, layout.views[0], words, QUIET)
 
 
 def _frames(board: Board, motions: Sequence[Motion], times: np.ndarray) -> Iterator[np.ndarray]:

@@ -1,0 +1,63 @@
+"""The words around the views of a film: none is cut, and none runs into another."""
+
+import pytest
+from matplotlib.figure import Figure
+
+from fem_impact.render.board import blank, clock, colour_bar, heading
+from fem_impact.render.layout import Abreast, Layout
+from fem_impact.render.motion import FIELDS
+from fem_impact.render.side_by_side import TITLE, _scale, _title
+
+LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3
+
+
+def boxes(drawn: Figure):
+    """Return the boxes of a figure's words, pixels from the upper left corner: left, top, right, bottom."""
+    drawn.draw_without_rendering()
+    found = [text.get_window_extent() for text in drawn.texts]
+    return [(box.x0, drawn.bbox.y1 - box.y1, box.x1, drawn.bbox.y1 - box.y0) for box in found]
+
+
+@pytest.mark.parametrize("field", FIELDS)
+@pytest.mark.parametrize("count", [None, 3, 4])
+def test_words_under_a_view_clear_the_view_the_bar_and_the_strip(field, count):
+    frame = Layout(1280, 720) if count is None else Abreast(1280, 720, count)
+    view = frame.close if count is None else frame.views[1]
+    drawn = blank(frame)
+    colour_bar(drawn, frame, view, field, (-1.0, 1.0))
+    if count:
+        _scale(drawn, frame, 1000.0)
+    for left, top, right, bottom in boxes(drawn):
+        assert view.top + view.height <= top
+        assert bottom < frame.height - 176
+        assert right - left < (130 if left == view.left else view.width)
+
+
+class Pen:
+    """Takes the place of a word that is written anew on every frame."""
+
+    def text(self, place, text, font, **_):
+        self.left = place[0] - font.getlength(text)
+
+
+@pytest.mark.parametrize("title", [TITLE, LONG])
+def test_a_title_ends_before_the_clock(title):
+    frame, pen = Layout(1280, 720), Pen()
+    drawn = blank(frame)
+    heading(drawn, frame, title)
+    clock(pen, frame, 8000e-6)
+    ((_, _, right, _),) = boxes(drawn)
+    assert right < pen.left
+    assert title == LONG or drawn.texts[0].get_text() == TITLE
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_titles_of_rods_clear_the_heading_and_each_other(count):
+    frame = Abreast(1280, 720, count)
+    drawn = blank(frame)
+    heading(drawn, frame, TITLE)
+    for view in frame.views:
+        _title(drawn, frame, view, LONG)
+    (_, _, _, bottom), *titles = boxes(drawn)
+    assert all(top >= bottom for _, top, _, _ in titles)
+    assert all(a[2] <= b[0] for a, b in zip(titles, titles[1:], strict=False))
