@@ -1,5 +1,7 @@
 """The words around the views of a film: none is cut, and none runs into another."""
 
+from itertools import pairwise
+
 import pytest
 from matplotlib.figure import Figure
 
@@ -60,4 +62,4 @@ def test_titles_of_rods_clear_the_heading_and_each_other(count):
         _title(drawn, frame, view, LONG)
     (_, _, _, bottom), *titles = boxes(drawn)
     assert all(top >= bottom for _, top, _, _ in titles)
-    assert all(a[2] <= b[0] for a, b in zip(titles, titles[1:], strict=False))
+    assert all(a[2] <= b[0] for a, b in pairwise(titles))
