@@ -14,6 +14,7 @@ from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
 from fem_impact.errors import RunError, SceneError
+from fem_impact.wrap import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.cost import Cost, Mesh
@@ -47,7 +48,9 @@ def cost(options: Options) -> int:
     if options.json:
         print_json({**found.to_dict(), "advice": answers})
     else:
-        sys.stdout.write("\n".join([text_table(found), "", *answers, f"results: {out}"]) + "\n")
+        told = [line for answer in answers for line in wrapped(answer)]
+        told += [f"all quantities: {out / 'cost.txt'}", f"results: {out}"]
+        sys.stdout.write("\n".join([text_table(found, names), "", *told]) + "\n")
     return RunError.exit_code if found.failures else 0
 
 

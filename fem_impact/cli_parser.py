@@ -79,7 +79,7 @@ def build_parser() -> argparse.ArgumentParser:
     codes = "\n".join(f"  {code:>3}  {words}" for code, words in EXIT_CODES.items())
     parser = argparse.ArgumentParser(
         prog="fem-impact",
-        description="Where the energy of a dropped steel rod goes: finite elements beside rigid theory.",
+        description="Where the energy of a dropped steel rod goes: finite elements and rigid theory.",
         epilog=f"exit codes:\n{codes}",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
@@ -117,7 +117,7 @@ def read_line(argv: Sequence[str] | None) -> Options:
 
 def _command(commands: Commands, name: str, words: str, handler: str) -> argparse.ArgumentParser:
     """Add one command with the options that all share."""
-    parser = commands.add_parser(name, help=words, description=f"{words.capitalize()}.")
+    parser = commands.add_parser(name, help=words, description=f"{words[0].upper()}{words[1:]}.")
     parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
     parser.set_defaults(handler=handler)
     return parser
@@ -176,8 +176,9 @@ def _add_study(commands: Commands) -> None:
 def _add_render(commands: Commands) -> None:
     parser = _command(commands, "render", "make a film of the stress waves", "fem_impact.cli_show:render")
     several = f"{_RESULT}; several make one film side by side"
+    film = "film to write: .mp4, .webp, .gif, or .png for a folder of frames (default: beside the fields)"
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
-    parser.add_argument("--out", type=Path, metavar="FILE", help="film to write (default: beside the fields)")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=film)
 
 
 def _add_report(commands: Commands) -> None:
@@ -199,11 +200,16 @@ def _add_cost(commands: Commands) -> None:
     parser = _command(commands, "cost", words, "fem_impact.cli_cost:cost")
     _add_scene_words(parser)
     parser.add_argument(
-        "--target", default="", metavar="SHARE", help="name the cheapest setting, such as '2 %%'"
+        "--target",
+        default="",
+        metavar="SHARE",
+        help="name the cheapest setting within an error, such as '2 %%'",
     )
-    parser.add_argument("--budget", default="", metavar="TIME", help="name the best setting, such as '30 s'")
     parser.add_argument(
-        "--of", default="", metavar="NAMES", help="quantities that are meant (default: e,E_vib)"
+        "--budget", default="", metavar="TIME", help="name the best setting within a CPU time, such as '30 s'"
+    )
+    parser.add_argument(
+        "--of", default="", metavar="NAMES", help="quantities that count, as --of e,mu (default: e,E_vib)"
     )
     parser.add_argument(
         "--finest", default="", metavar="SIZE", help="leave out finer meshes than this, such as '0.25 mm'"
@@ -218,7 +224,9 @@ def _add_cost(commands: Commands) -> None:
 def _add_verify(commands: Commands) -> None:
     words = "run problems with known answers through the solver and judge it"
     parser = _command(commands, "verify", words, "fem_impact.cli_verify:verify")
-    parser.add_argument("problem", nargs="?", metavar="NAME", help="one problem (default: all of them)")
+    parser.add_argument(
+        "problem", nargs="?", metavar="NAME", help="one problem, such as bar (default: all of them)"
+    )
     changed = "change one parameter, such as --set length='80 mm' (a bare number is SI); may be repeated"
     parser.add_argument(
         "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
@@ -230,7 +238,9 @@ def _add_verify(commands: Commands) -> None:
 def _add_stress(commands: Commands) -> None:
     words = "run hard cases and show that each closes its balances, is refused or detected"
     parser = _command(commands, "stress", words, "fem_impact.cli_stress:stress")
-    parser.add_argument("--only", default="", metavar="NAME", help="one case (default: all of them)")
+    parser.add_argument(
+        "--only", default="", metavar="NAME", help="one case, such as angle-60 (default: all of them)"
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/stress)")
     parser.add_argument(
         "--workers", type=_at_least_one, metavar="N", help="cases at a time (default: one a core)"

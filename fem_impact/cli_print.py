@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from fem_impact.wrap import wrapped
+
 __all__ = ["print_json", "print_outcome", "print_table"]
 
 _PAPER = ("restitution e (paper's arms)", "e_paper", "")
@@ -30,6 +32,7 @@ _SHARES = (
     ("contact closing", "W_closing_over_E_0"),
     ("residual of the ledger", "residual_over_E_0"),
 )
+_SKIN = ("friction, plate's top 0.1 mm", "W_skin_over_E_0")
 
 
 def print_json(document: Any) -> None:
@@ -45,10 +48,11 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     lines += [_motion(record, *row) for row in (restitution, *_MOTION)]
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
-    lines += ["", _share(record, "friction, plate's top 0.1 mm", "W_skin_over_E_0")]
+    lines += ["", _share(record, *_SKIN)]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
     lines += _accuracy(record)
-    lines += ["", *(f"note: {sentence}" for sentence in _sentences(record))]
+    lines += _unknown(record)
+    lines += ["", *(line for sentence in _sentences(record) for line in wrapped(f"note: {sentence}"))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
 
@@ -86,13 +90,24 @@ def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None
 def _motion(record: Mapping[str, Any], words: str, key: str, unit: str) -> str:
     band = (record["bands"] or {}).get(key)
     spread = f" +- {_number(band)}" if band is not None else ""
-    return f"  {words:<30} {_value(record, key)}{spread} {unit}".rstrip()
+    told = f"{spread} {unit}" if record[key] is not None else ""
+    return f"  {words:<30} {_value(record, key)}{told}".rstrip()
 
 
 def _share(record: Mapping[str, Any], words: str, key: str) -> str:
     share = record[key]
-    text = f"{100 * share:9.3f} %" if share is not None else f"not known: {_reason(record, key)}"
-    return f"  {words:<30} {text}"
+    text = f"{100 * share:9.3f} %" if share is not None else f"{'not known':>11}"
+    return f"  {words:<30} {text.replace('-0.000', ' 0.000')}"
+
+
+def _unknown(record: Mapping[str, Any]) -> list[str]:
+    """Return why shares are not known, each reason once."""
+    named: dict[str, list[str]] = {}
+    for words, key in (*_SHARES, _SKIN):
+        if record[key] is None:
+            named.setdefault(_reason(record, key), []).append(words)
+    told = [wrapped(f"not known ({'; '.join(words)}): {reason}", "  ") for reason, words in named.items()]
+    return [line for lines in ([""], *told) for line in lines] if told else []
 
 
 def _vibration_note(record: Mapping[str, Any]) -> str:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 from fem_impact.cli_changes import changed_scene
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json, print_table
 from fem_impact.scene import BARRIERS, DEFAULTS, Scene, load, shipped, source_of, validity
+from fem_impact.wrap import wrapped
 
 __all__ = ["check", "scenes"]
 
@@ -73,24 +75,29 @@ def _sources(scene: Scene) -> dict[str, str]:
 
 def _readable(scene: Scene, statement: dict[str, Any]) -> str:
     lines = [scene.to_toml().rstrip(), "", "Sources"]
-    lines += [f"  {key}: {source}" for key, source in statement["sources"].items()]
+    lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
     lines += ["", "Values used where a scene does not state them"]
-    lines += [f"  {d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"]]
+    lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Effects"]
     lines += [line for effect in statement["effects"] for line in _effect_lines(effect)]
-    lines += [f"  warning: {sentence}" for sentence in statement["warnings"]]
+    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
     lines += ["", "Validity"]
-    inside = "  inside the measured range of speed, angle, rod, steels and surfaces"
-    lines += [f"  {sentence}" for sentence in statement["validity"]] or [inside]
-    return "\n".join([*lines, "", f"The scene is valid; digest {statement['digest']}."]) + "\n"
+    inside = "inside the measured range of speed, angle, rod, steels and surfaces"
+    lines += _wrapped(statement["validity"] or [inside])
+    return "\n".join([*lines, "", "The scene is valid; its digest:", statement["digest"]]) + "\n"
 
 
-def _effect_lines(effect: dict[str, Any]) -> tuple[str, str]:
+def _wrapped(sentences: Iterable[str]) -> list[str]:
+    return [line for sentence in sentences for line in wrapped(sentence, "  ")]
+
+
+def _effect_lines(effect: dict[str, Any]) -> list[str]:
     number = "not finite" if effect["number"] is None else f"{effect['number']:.2g}"
     verdict = f"{'on ' if effect['on'] else 'off'} {effect['name']}{' (forced)' if effect['forced'] else ''}"
     decided = f"{effect['measure']}: {number}, threshold {effect['threshold']:g}"
     told = [decided, _harm(effect), _time(effect)]
-    return f"  {verdict}: {effect['sentence']}", f"        {'; '.join(words for words in told if words)}"
+    decision = wrapped("; ".join(words for words in told if words), " " * 8, "")
+    return [*wrapped(f"{verdict}: {effect['sentence']}", "  ", " " * 4), *decision]
 
 
 def _harm(effect: dict[str, Any]) -> str:
@@ -104,4 +111,7 @@ def _harm(effect: dict[str, Any]) -> str:
 
 
 def _time(effect: dict[str, Any]) -> str:
-    return "" if effect["share"] is None else f"it takes about {effect['share']:.0%} of the run time"
+    if effect["share"] is None:
+        return ""
+    share = "under 1" if effect["share"] < 0.005 else f"about {100 * effect['share']:.0f}"
+    return f"it takes {share} % of the run time"

@@ -94,7 +94,7 @@ EXIT_CODES: dict[int, str] = {
     SceneError.exit_code: "the scene was refused before any work",
     OutputPathError.exit_code: "the output place cannot be written, or the disk is full",
     ResultError.exit_code: "a result handed in cannot be read",
-    RunError.exit_code: "the run stopped early, its ledger did not close, or a check of `verify` failed",
+    RunError.exit_code: "a run stopped early or its ledger did not close, or `verify` failed",
     MissingLibraryError.exit_code: "a library for pictures or films is missing; results are kept",
     130: "interrupted; what was computed is kept",
 }

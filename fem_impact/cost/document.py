@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from fem_impact.cost.judge import Judged
@@ -45,46 +46,54 @@ def _row(setting: Judged) -> list[str | float | int | None]:
     return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
 
 
-def text_table(cost: Cost) -> str:
-    """Return limits and orders, then one line a setting: times, and each quantity's error in per cent.
+def text_table(cost: Cost, names: Sequence[str] = NAMES) -> str:
+    """Return limits and orders, then one line a setting: times, and the error of quantities in per cent.
 
     An asterisk marks the Pareto front of that quantity. What the places of the barrier's grid tell of each
     setting follows, the bands of the pairs of meshes, and what leaving an effect out changes.
     """
     width = max(len(setting.name) for setting in cost.settings)
+    shown = [quantity for quantity in QUANTITIES if quantity.name in names]
+    truth = [cost.truth[quantity.name] for quantity in shown]
     head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
-    lines = [head + "".join(f"{name:>11}" for name in NAMES)]
-    truth = [cost.truth[name] for name in NAMES]
-    blank = " " * (width + 36)
-    lines += [f"{'limit':<{len(blank)}}" + "".join(f"{t.value:>11.4g}" for t in truth)]
-    lines += [f"{'uncertainty of the limit, %':<{len(blank)}}"]
-    lines[-1] += "".join(f"{100 * t.uncertainty / t.scale:>11.2g}" for t in truth)
-    lines += [f"{'observed order':<{len(blank)}}"]
-    lines[-1] += "".join(f"{'-' if t.order is None else f'{t.order:.2f}':>11}" for t in truth)
-    lines += [_line(setting, width) for setting in cost.settings if setting.kind != "effect"]
+    above = {
+        head: [quantity.name for quantity in shown],
+        "unit": [quantity.unit for quantity in shown],
+        "limit": [f"{t.value:.4g}" for t in truth],
+        "uncertainty of the limit, %": [f"{100 * t.uncertainty / t.scale:.2g}" for t in truth],
+        "observed order": ["-" if t.order is None else f"{t.order:.2f}" for t in truth],
+    }
+    lines = [f"{words:<{len(head)}}{_cells(texts)}" for words, texts in above.items()]
+    pick = partial(_line, width=width, names=[quantity.name for quantity in shown])
+    lines += [pick(setting) for setting in cost.settings if setting.kind != "effect"]
     lines += ["errors in %, the limit's uncertainty included; * on the Pareto front"]
     meshes = [setting for setting in cost.settings if setting.kind in ("mesh", "pair")]
-    lines += _block("scatter of the grid's places in %, as standard error", meshes, "scatter", width)
+    lines += _block("scatter of the grid's places in %, as standard error", meshes, "scatter", pick)
     pairs = [setting for setting in cost.settings if setting.band]
-    lines += _block("bands of the extrapolations in %, scatter included", pairs, "band", width)
+    lines += _block("bands of the extrapolations in %, scatter included", pairs, "band", pick)
     left_out = [setting for setting in cost.settings if setting.kind == "effect"]
-    lines += _block("changes in % by leaving an effect out, on the same mesh", left_out, "error", width)
-    return "\n".join(lines)
+    lines += _block("changes in % by leaving an effect out, on the same mesh", left_out, "error", pick)
+    return "\n".join(line.rstrip() for line in lines)
 
 
-def _block(title: str, settings: Sequence[Judged], field: str, width: int) -> list[str]:
+def _cells(texts: Iterable[str]) -> str:
+    """Return numbers flush right, with room for an asterisk behind each."""
+    return "".join(f"{text:>11}" if text.endswith("*") else f"{text:>10} " for text in texts)
+
+
+def _block(title: str, settings: Sequence[Judged], field: str, line: Callable[[Judged], str]) -> list[str]:
     """Return a line a setting with the numbers of one field, below a title; nothing without settings."""
-    lines = [_line(replace(s, error=dict(getattr(s, field)), front=[]), width) for s in settings]
+    lines = [line(replace(s, error=dict(getattr(s, field)), front=[])) for s in settings]
     return ["", title, *lines] if lines else []
 
 
-def _line(setting: Judged, width: int) -> str:
+def _line(setting: Judged, width: int, names: Sequence[str]) -> str:
     steps = "-" if setting.element_steps is None else f"{setting.element_steps:.2g}"
     memory = "-" if setting.peak_memory_MB is None else f"{setting.peak_memory_MB:.0f}"
     head = f"{setting.name:<{width}} {setting.wall_s:>8.3g} {setting.cpu_s:>8.3g} {steps:>10} {memory:>6}"
-    return head + "".join(f"{_cell(setting, name):>11}" for name in NAMES)
+    return head + _cells(_cell(setting, name) for name in names)
 
 
 def _cell(setting: Judged, name: str) -> str:
     error = setting.error[name]
-    return "-" if error is None else f"{100 * error:.3g}{'*' if name in setting.front else ' '}"
+    return "-" if error is None else f"{100 * error:.3g}{'*' if name in setting.front else ''}"

@@ -111,12 +111,18 @@ def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> Co
     Raises
     ------
     RunError
-        As `measure`.
+        As `measure`, and where nothing is stored.
     """
     settings = ladder(scene, family)
     with Store.open(out / STORE) as base:
         held = {job.name: stored(base, job) for job in _jobs(settings)}
-    return conclude(scene, settings, {name: result for name, result in held.items() if result is not None})
+    found = {name: result for name, result in held.items() if result is not None}
+    if not found:
+        raise RunError(
+            f"{out}: holds no run of {scene.id} by this version of the program. "
+            "Leave out --stored to run its settings."
+        )
+    return conclude(scene, settings, found)
 
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:

@@ -68,7 +68,7 @@ ELASTIC = Effect(
     "barrier-elastic",
     "The barrier is an elastic block on springs.",
     "The barrier is no purely elastic block.",
-    "barrier's share of the contact compliance",
+    "barrier's share of the contact compliance (elastic above, where nothing yields)",
     LEAST_SHARE,
     COMPLIANCE,
     compliance_share,

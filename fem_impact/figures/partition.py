@@ -50,5 +50,4 @@ def _label(account: Account, outcome: Mapping[str, Any]) -> str:
     if account.key == "E_vib_over_E_0" and outcome.get("E_vib_below_floor"):
         return f"below floor ({percent(outcome['E_vib_floor_over_E_0'] or 0.0)})"
     width = (outcome.get("bands") or {}).get(account.key)
-    known = percent(outcome[account.key])
-    return known if width is None else f"{known}  ± {percent(width)}"
+    return percent(outcome[account.key], width)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -92,10 +93,19 @@ def save(drawn: Figure, path: Path) -> None:
         drawn.savefig(draft, format=path.suffix.lstrip("."), dpi=150, metadata=dated)
 
 
-def percent(fraction: float) -> str:
-    """Return a fraction of E_0 as text in per cent, with as many digits as it deserves."""
+def percent(fraction: float, band: float | None = None) -> str:
+    """Return a fraction of E_0 as text in per cent, with two digits or more; with its band, as many places.
+
+    Examples
+    --------
+    >>> percent(0.626), percent(0.00219), percent(0.0412, 0.00027)
+    ('62.6 %', '0.22 %', '4.12 ± 0.03 %')
+    """
     value = 100.0 * fraction
-    if abs(value) >= 0.095:
+    if band:
+        places = max(1, -math.floor(math.log10(100.0 * band)))
+        return f"{value:.{places}f} ± {100.0 * band:.{places}f} %"
+    if abs(value) >= 0.95:
         return f"{value:.1f} %"
     return f"{value:.2g} %" if value else "0 %"
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from fem_impact.wrap import wrapped
 
 __all__ = ["assess_text"]
 
@@ -25,7 +26,7 @@ def assess_text(document: Document) -> str:
 
 
 def _wrap(text: str, indent: str = "  ") -> list[str]:
-    return textwrap.wrap(text, 100, initial_indent=indent, subsequent_indent=f"{indent}  ")
+    return wrapped(text, indent)
 
 
 def _case(d: Document) -> Iterator[str]:
@@ -34,7 +35,7 @@ def _case(d: Document) -> Iterator[str]:
     drop = (
         f"dropped {c['height_m']:g} m on a {c['surface']} plate at {math.degrees(c['angle_rad']):g} degrees"
     )
-    yield f"{sizes}, {drop}"
+    yield from _wrap(f"{sizes}, {drop}", "")
     speed = math.hypot(c["v_n_m_per_s"], c["v_t_m_per_s"])
     yield f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J"
 
@@ -51,14 +52,16 @@ def _losses(d: Document) -> Iterator[str]:
     b, energy = d["basis"], d["case"]["E_0_J"]
     yield ""
     sets = ", ".join(f"{name} ({100 * w:.0f} %)" for name, w in b["weights"].items())
-    yield f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}"
-    head = f"{'mean':>7}{'95 % of impacts':>18}{'mean, J':>10}"
-    yield f"  {'':<22}{head}   all {b['all_tests']} tests of the surface"
+    yield from _wrap(
+        f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
+    )
+    head = f"{'mean':>6}{'95 % of impacts':>18}{'mean, J':>9}"
+    yield f"  {'':<21}{head}  all {b['all_tests']} of the surface"
     for name, words in WORDS.items():
         s = d["losses"][name]
         spread = f"{100 * s['low']:.0f} to {100 * s['high']:.0f}"
         every = f"{100 * s['all_low']:.0f} to {100 * s['all_high']:.0f}"
-        yield f"  {words:<22}{100 * s['mean']:7.1f}{spread:>18}{s['mean'] * energy:10.3g}   {every}"
+        yield f"  {words:<21}{100 * s['mean']:6.1f}{spread:>18}{s['mean'] * energy:9.3g}  {every}"
 
 
 def _worst(d: Document) -> Iterator[str]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from fem_impact.wrap import wrapped
 
 __all__ = ["audit_text"]
 
@@ -40,7 +41,7 @@ def _columns(document: Document) -> Iterator[str]:
         found = [c for c in document["columns"] if c["lines"] == which]
         if found:
             words = ", ".join(f"{c['column']} {c['agree']}/{c['numbers']}" for c in found)
-            yield from textwrap.wrap(f"{which}: {words}", 100, initial_indent="  ", subsequent_indent="    ")
+            yield from wrapped(f"{which}: {words}", "  ")
 
 
 def _constants(document: Document) -> Iterator[str]:
@@ -61,7 +62,7 @@ def _apart(document: Document) -> Iterator[str]:
     yield "Disagreements, by reason (printed | recomputed; rounding allows)"
     found = document["disagreements"]
     for why in dict.fromkeys(d["explanation"] for d in found):
-        yield from textwrap.wrap(f"- {why or 'no explanation is known'}", 100, subsequent_indent="  ")
+        yield from wrapped(f"- {why or 'no explanation is known'}")
         yield from (_place(d) for d in found if d["explanation"] == why)
     if not found:
         yield "  none"
@@ -102,7 +103,7 @@ def _correlated(document: Document) -> Iterator[str]:
         f"give about {0.05 * len(pairs):.0f} of {len(pairs)}, and numbers worked out from the same "
         "velocities share errors."
     )
-    yield from textwrap.wrap(words, 100)
+    yield from wrapped(words, hang="")
 
 
 def _spread(s: Mapping[str, Any]) -> str:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
+
+from fem_impact.wrap import wrapped
 
 __all__ = ["own_text"]
 
@@ -50,7 +51,7 @@ def _scatter(d: Document) -> Iterator[str]:
         f"{name.replace('_over_E_0', '/E_0')} {s['mean']:.3f} ({s['sd']:.3f})"
         for name, s in d["scatter"].items()
     ]
-    yield from textwrap.wrap(", ".join(words), 100, initial_indent="  ", subsequent_indent="  ")
+    yield from wrapped(", ".join(words), "  ", "")
 
 
 def _rest(d: Document) -> Iterator[str]:
@@ -62,7 +63,7 @@ def _rest(d: Document) -> Iterator[str]:
     )
     yield f"Critical impulse ratio: {_number(d['mu_c'])}"
     for note in d["notes"]:
-        yield from textwrap.wrap(f"note: {note}", 100, subsequent_indent="  ")
+        yield from wrapped(f"note: {note}")
 
 
 def _span(estimate: Mapping[str, Any]) -> str:

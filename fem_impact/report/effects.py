@@ -33,7 +33,6 @@ def _row(choice: Mapping[str, Any]) -> list[str]:
         choice["measure"],
         number(choice["number"]),
         number(choice["threshold"]),
-        f"± {choice['change_of_e']:.1g}",
-        f"± {choice['change_of_E_vib_over_E_0']:.1g}",
+        *(f"± {choice[key]:.1g}".replace("-", "−") for key in ("change_of_e", "change_of_E_vib_over_E_0")),
         "–" if choice["share"] is None else percent(choice["share"]),
     ]

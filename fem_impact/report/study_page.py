@@ -163,7 +163,7 @@ def _share(row: Outcome, key: str) -> str:
     if row[key] is None:
         return "–"
     width = (row["bands"] or {}).get(key)
-    return percent(row[key]) if width is None else f"{percent(row[key])} ± {percent(width)}"
+    return percent(row[key], width)
 
 
 def _failures(study: Study) -> Markup:

@@ -2,6 +2,7 @@
 
 import csv
 import json
+import re
 from dataclasses import replace
 from importlib import import_module
 
@@ -238,7 +239,7 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
 
 
 def test_what_never_ran_cannot_be_judged(tmp_path):
-    with pytest.raises(RunError, match="no two meshes gave a result"):
+    with pytest.raises(RunError, match=r"holds no run of t5b .* Leave out --stored"):
         judge_stored(SCENE, tmp_path)
 
 
@@ -301,7 +302,7 @@ def test_documents(cost, tmp_path):
     assert (tmp_path / "cost.svg").read_text().count("<svg") == 1
     text = text_table(cost)
     assert (tmp_path / "cost.txt").read_text() == text + "\n"
-    assert "1.00" in text.splitlines()[3]
+    assert "1.00" in text.splitlines()[4]
     assert "modal" in text and "changes in % by leaving an effect out" in text
     assert float(rows[-1]["scatter_e"]) == cost.settings[-1].scatter["e"]
     line = text.split("scatter of the grid's places")[1].splitlines()[1]
@@ -320,3 +321,10 @@ def test_unknown_quantities_are_refused():
     assert chosen(["mu"]) == ("mu",)
     with pytest.raises(SceneError, match="muu"):
         chosen(["muu"])
+
+
+def test_the_table_holds_the_quantities_asked_for_in_columns(cost):
+    head, unit, *rows = text_table(cost, ("e", "Omega")).split("\nerrors in %")[0].splitlines()
+    assert head.split()[-2:] == ["e", "Omega"] and unit.split() == ["unit", "-", "rad/s"]
+    ends = [{match.end() for match in re.finditer(r"\S+", row.replace("*", " "))} for row in (unit, *rows)]
+    assert all({head.index(" e ") + 2, len(head)} <= found for found in ends)

@@ -106,10 +106,20 @@ def test_place_that_cannot_be_written(history, tmp_path):
         (2e-7, "2e-05 %"),
         (0.0, "0 %"),
         (-0.02, "-2.0 %"),
+        (0.00219, "0.22 %"),
+        (0.0095, "0.9 %"),
     ],
 )
 def test_percent(fraction, text):
     assert percent(fraction) == text
+
+
+@pytest.mark.parametrize(
+    ("band", "text"),
+    [(0.0, "4.1 %"), (0.00027, "4.12 ± 0.03 %"), (0.006, "4.1 ± 0.6 %"), (0.2, "4.1 ± 20.0 %")],
+)
+def test_a_share_has_as_many_places_as_its_band(band, text):
+    assert percent(0.0412, band) == text
 
 
 def test_import_stays_light():

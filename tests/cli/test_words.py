@@ -1,0 +1,43 @@
+"""What a terminal of 80 columns shows: no line broken in a word, every reason once, names as they are."""
+
+import pytest
+
+from fem_impact.cli_parser import build_parser
+from fem_impact.wrap import wrapped
+
+COMMANDS = list(build_parser()._subparsers._group_actions[0].choices)
+
+
+@pytest.mark.parametrize("command", [None, *COMMANDS])
+def test_help_fits_and_keeps_names(capsys, monkeypatch, command):
+    monkeypatch.setenv("COLUMNS", "80")
+    with pytest.raises(SystemExit):
+        build_parser().parse_args([*([command] if command else []), "--help"])
+    text = capsys.readouterr().out
+    assert max(map(len, text.splitlines())) <= 80
+    assert "html" not in text
+
+
+def test_sentences_of_a_scene_fit(cli):
+    text = cli("check", "t5b")[1].partition("\nSources\n")[2]
+    assert "barrier.material.nu" in text
+    assert max(map(len, text.splitlines())) < 80
+
+
+def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
+    known = {"W_friction_over_E_0": 0.3, "residual_over_E_0": -1e-9}
+    stand.outcome = stand.an_outcome(**known, assumptions=["as far as anybody can tell " * 6])
+    out = cli("run", "t5b", "--quiet")[1]
+    motion, shares = out.split("of the initial energy")
+    sentences = " ".join(shares.split())
+    assert "  V_n after                      not known: not in the stand-in\n" in motion
+    assert sentences.count("not in the stand-in") == 1
+    assert "not known (retained as rigid motion; vibration of the rod; plastic work, rod;" in sentences
+    assert "  friction                          30.000 %\n" in shares
+    assert "  residual of the ledger             0.000 %\n" in shares
+    assert max(map(len, out.splitlines())) < 80
+
+
+def test_names_are_never_broken():
+    name = "a-name-" * 20
+    assert wrapped(f"the word {name} stands whole", "  ") == ["  the word", f"    {name}", "    stands whole"]
