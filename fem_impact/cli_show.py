@@ -18,6 +18,7 @@ def render(options: Options) -> int:
     out = checked_file(options.out) if options.out else None
     from fem_impact import render as films
 
+    sys.stderr.write("drawing the film ...\n")
     film = films.render(results[0], out) if len(results) == 1 else films.render_side_by_side(results, out)
     if options.json:
         print_json({"path": str(film.path) if film.path else None, "notes": list(film.notes)})

@@ -42,6 +42,8 @@ def _report(options: Options, out: Path) -> int:
     """Write one page over the studies that stand beside ``out``."""
     from fem_impact.report import write_all
 
+    if not options.quiet:
+        sys.stderr.write("reading the studies and drawing their figures ...\n")
     path = write_all(out.parent, out)
     if options.json:
         print_json({"path": str(path)})

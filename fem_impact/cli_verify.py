@@ -8,6 +8,7 @@ from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
 from fem_impact.errors import RunError, SceneError
 from fem_impact.verify import PROBLEMS, Problem, Verification, problem
+from fem_impact.wrap import wrapped
 
 __all__ = ["verify"]
 
@@ -26,9 +27,11 @@ def verify(options: Options) -> int:
     chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
     done = []
     for one in chosen:
+        sys.stderr.write(f"{one.name}: {one.words} ...\n")
         done.append(one.run(changes))
         if not options.json:
             sys.stdout.write(_text(done[-1]))
+            sys.stdout.flush()
     if options.json:
         documents = [found.document() for found in done]
         print_json(documents[0] if options.problem else documents)
@@ -97,6 +100,8 @@ def _text(found: Verification) -> str:
     for c in found.checks:
         mark = "FAIL" if not c.passed else "    " if c.kind == "shown" else "ok  "
         allowed = f"not judged: {c.note}" if c.kind == "shown" else f"allowed {c.tolerance:g} {c.kind}"
-        values = f"{c.computed:.6g} {c.unit}, reference {c.reference:.6g}"
-        lines.append(f"  {mark} {c.name}: {values}, error {c.error:+.2e}, {allowed}")
+        unit = "" if c.unit == "1" else f" {c.unit}"
+        values = f"{c.computed:.6g}{unit}, reference {c.reference:.6g}"
+        lines += wrapped(f"{mark} {c.name}: {values},", "  ", " " * 5)
+        lines += wrapped(f"error {c.error:+.2e}, {allowed}", " " * 7, "")
     return "\n".join(lines) + "\n"

@@ -124,17 +124,19 @@ def meter_for(stream: TextIO, width: int = 100) -> Meter:
 
 
 def describe(progress: Progress | CaseProgress) -> str:
-    """Return one line: t, step, energy drift, contact state (or cases done) and the time still needed."""
+    """Return one line: t, time still needed, step, energy drift, contact state; or cases done and that time.
+
+    What matters most stands first, for a narrow terminal cuts the end. Before the first step there is none.
+    """
     if isinstance(progress, CaseProgress):
         done = f"{progress.done} of {progress.total} runs done"
         return f"{done}, last {progress.note}, ETA {clock_text(progress.eta_s)}"
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
-        f"step {progress.step}",
-        f"energy drift {progress.energy_drift:+.1e}",
-        progress.contact,
         f"ETA {clock_text(progress.eta_s)}" if progress.eta_s is not None else "",
+        f"step {progress.step}  energy drift {progress.energy_drift:+.1e}" if progress.step else "",
+        progress.contact,
     )
     return "  ".join(part for part in parts if part)
 

@@ -92,7 +92,7 @@ def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
     Path("here/outcome.json").write_text("{}")
     code, _, err = cli("render", "here")
     assert code == 7
-    assert "install libegl1" in err
+    assert err == "drawing the film ...\nnote: install libegl1\n"
     assert json.loads(cli("render", "here", "--json")[1]) == {"path": None, "notes": ["install libegl1"]}
 
 

@@ -4,7 +4,7 @@ import io
 
 import pytest
 
-from fem_impact.progress import LineMeter, NullMeter, Progress, TerminalMeter, describe, meter_for
+from fem_impact.progress import LineMeter, NullMeter, Progress, TerminalMeter, compiling, describe, meter_for
 
 
 class Terminal(io.StringIO):
@@ -50,8 +50,14 @@ def test_a_log_gets_a_line_of_each_work_every_few_seconds():
 
 @pytest.mark.parametrize(("eta", "words"), [(None, ""), (5.4, "ETA 5 s"), (125.0, "ETA 2 min 05 s")])
 def test_the_time_still_needed_is_told_when_it_is_known(eta, words):
-    line = describe(Progress(0.0, 1e-3, 0, 0.0, "free", eta))
-    assert line.endswith(words) and ("ETA" in line) == bool(words)
+    line = describe(Progress(0.0, 1e-3, 1, 0.0, "free", eta))
+    assert line.startswith(f"t 0/1000 us  {words}") and ("ETA" in line) == bool(words)
+
+
+def test_a_terminal_of_80_columns_shows_the_time_still_needed_and_what_compiles():
+    long = Progress(2.5e-3, 2.5e-3, 99999, -1e-9, "120 nodes touch", 3599.0, "t3-contaminated")
+    assert "ETA 59 min 59 s" in describe(long)[:79]
+    assert describe(compiling(2.5e-3, 20)) == "t 0/2500 us  compiling the kernels, once, about 20 s"
 
 
 def test_quiet_is_quiet():

@@ -17,7 +17,7 @@ def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
     assert options["out"] == Path("here")
     for words in ("results: here", "0.5 +- 0.01", "not known: not in the stand-in", "E_0 = 0.39 J"):
         assert words in out
-    assert "t 100/2500 us  step 4000  energy drift +1.0e-06  touching, 12 nodes  ETA 1 min 01 s" in err
+    assert "t 100/2500 us  ETA 1 min 01 s  step 4000  energy drift +1.0e-06  touching, 12 nodes" in err
 
 
 def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):

@@ -108,8 +108,11 @@ def test_the_command_refuses_what_it_does_not_know(capsys):
 def test_the_command_prints_the_verdict(capsys):
     line = ["verify", "waves", "--set", "aspect=2"]
     assert main(line) == 6  # slices twice as high as cells are wide
-    shown = capsys.readouterr().out
-    assert "waves: FAILED" in shown and "longitudinal c/c0 at radius/wavelength 0.2" in shown
+    shown, told = capsys.readouterr()
+    assert told.startswith("waves: phase speeds")
+    assert "waves: FAILED" in shown and "longitudinal c/c0 at radius/wavelength 0.2: 0.9" in shown
+    assert max(map(len, shown.splitlines())) < 80
+    assert " 1, reference" not in shown
     main([*line, "--json"])
     document = json.loads(capsys.readouterr().out)
     assert document["parameters"]["aspect"] == 2
