@@ -18,6 +18,8 @@ from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(slots=True)
@@ -69,9 +71,10 @@ class ElasticBlock:
         """Multiply with the stiffness."""
         self.stiffness.multiply(state.x[self.place])
 
-    def finding(self, state: State, dt: Array) -> Call:
+    def finding(self, state: State, times: Array, touched: Bools) -> tuple[list[Call], list[Call]]:
         """Return the call that `find` makes."""
-        return self.stiffness.multiplication(state.x[self.place])
+        call = self.stiffness.multiplication(state.x[self.place])
+        return ([], [call]) if touched[self.place][self.stiffness.places].any() else ([call], [])
 
     def collect(self, state: State) -> None:
         """Add the elastic forces of block and boundary springs."""
@@ -91,20 +94,20 @@ class Dashpots:
     """Viscous boundary: takes radiated waves out, implicitly, so that it never limits the step."""
 
     moving: ClassVar[tuple[str, ...]] = ("radiated",)
-    place: Array
+    places: Ints
     damping: Array
     inverse_mass: Array
     radiated: float = 0.0
 
     def resolve(self, state: State) -> None:
         """Damp the boundary velocities; the dashpot force uses the mean velocity of the step."""
-        kicked = state.v[self.place]
-        old = kicked - state.kick * self.inverse_mass * state.force[self.place]
+        kicked = state.v[self.places]
+        old = kicked - state.kick * self.inverse_mass * state.force[self.places]
         share = 0.5 * state.kick * self.inverse_mass * self.damping
         new = (kicked - share * old) / (1 + share)
         mean = 0.5 * (old + new)
         self.radiated += state.kick * float(self.damping @ (mean * mean))
-        state.v[self.place] = new
+        state.v[self.places] = new
 
     def accounts(self, state: State) -> Accounts:
         """Return the energy radiated so far."""

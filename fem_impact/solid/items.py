@@ -49,8 +49,13 @@ class Force(Account, Protocol):
 class Handed(Force, Protocol):
     """A force whose work a second thread can do, by calls (see :mod:`~fem_impact.solid.calls`)."""
 
-    def finding(self, state: State, dt: NDArray[np.float64]) -> Call:
-        """Return the call for a share in `find`; ``dt`` (1,) holds the step that led to ``x``."""
+    def finding(
+        self, state: State, times: NDArray[np.float64], touched: NDArray[np.bool_]
+    ) -> tuple[list[Call], list[Call]]:
+        """Return calls for a share in `find`: those that need no ``touched`` unknown (size,), and the others.
+
+        The first of two ``times`` will be the step that led to ``x``, s.
+        """
         ...
 
     def collecting(self, state: State) -> Call:
@@ -65,7 +70,12 @@ def add_force(item: Force, state: State) -> None:
 
 
 class Impulse(Account, Protocol):
-    """An item that changes the kicked velocities: contact, dashpots."""
+    """An item that changes the kicked velocities, of unknowns at its ``places``: contact, dashpots."""
+
+    @property
+    def places(self) -> NDArray[np.int64]:
+        """Return what it may change, an array of any shape."""
+        ...
 
     def resolve(self, state: State) -> None:
         """Change ``state.v`` and book the work done with the mean of old and new velocity."""

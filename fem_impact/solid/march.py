@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from fem_impact.solid.helper import COLLECT, FIND, Helper
-from fem_impact.solid.items import Force
-from fem_impact.solid.kernels import kernel
+import numpy as np
+
+from fem_impact.solid.helper import Helper
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
+from fem_impact.solid.work import clear, drift, kick
 
 
 class Observer(Protocol):
@@ -22,60 +23,45 @@ class Observer(Protocol):
         ...
 
 
-@kernel
-def add_product(y, a, b, c):  # type: ignore[no-untyped-def]
-    """Add a b c to y in one pass, without temporaries."""
-    for i in range(len(y)):
-        y[i] += a * b[i] * c[i]
-
-
-@kernel
-def add_multiple(y, a, b):  # type: ignore[no-untyped-def]
-    """Add a b to y in one pass."""
-    for i in range(len(y)):
-        y[i] += a * b[i]
-
-
 def evaluate(model: Model, state: State, helper: Helper | None = None) -> None:
     """Set the forces of the present positions.
 
     A ``helper`` shares the work. No number is a sum of what two threads found, so results are the same to the
     last bit whoever did it.
     """
-    if helper is None:
-        find(model.forces, state)
-        collect(model.forces, state)
-    else:
-        helper.begin(FIND, state.dt)
-        find(helper.finds, state)
-        helper.finish()
-        helper.begin(COLLECT, state.dt)
-        collect(helper.collects, state)
-        helper.finish()
-    model.hanging.collect(state.force)
-
-
-def find(forces: Sequence[Force], state: State) -> None:
-    """Find forces, and clear the sum that they will be added to."""
-    state.force[:] = 0.0
-    for force in forces:
+    work = helper.left if helper else model.work
+    if helper:
+        helper.find(state)
+    for force in work.finds:
         force.find(state)
-
-
-def collect(forces: Sequence[Force], state: State) -> None:
-    """Add up what was found."""
-    for force in forces:
+    if helper:
+        helper.finish()
+        helper.collect()
+    clear(state.force, work.cleared)
+    for force in work.collects:
         force.collect(state)
+    work.gathered.collect(state.force)
+    if helper:
+        helper.finish()
 
 
-def advance(model: Model, state: State) -> None:
-    """Kick, resolve impulses, drift; forces must be up to date."""
+def advance(model: Model, state: State, helper: Helper | None = None) -> None:
+    """Kick, resolve impulses, drift; forces must be up to date.
+
+    A ``helper`` moves what the last impulse cannot touch, and goes on to the forces there.
+    """
+    work = helper.left if helper else model.work
     state.kick = 0.5 * (state.dt + state.dt_next)
-    add_product(state.v, state.kick, model.inverse_mass, state.force)
-    for item in model.impulses:
+    times = np.array([state.dt_next, state.kick])
+    kick(state.v, times, model.inverse_mass, state.force, work.kicked)
+    for item in model.impulses[:-1]:
         item.resolve(state)
-    model.hanging.expand(state.v)
-    add_multiple(state.x, state.dt_next, state.v)
+    if helper:
+        helper.move(times)
+    for item in model.impulses[-1:]:
+        item.resolve(state)
+    work.expanded.expand(state.v)
+    drift(state.x, times, state.v, work.drifted)
     state.dt = state.dt_next
     state.time += state.dt
     state.step += 1
@@ -91,4 +77,4 @@ def march(model: Model, state: State, observers: Sequence[Observer], helper: Hel
         evaluate(model, state, helper)
         if any([o.observe(state) for o in observers if state.step % o.every == 0]):
             return
-        advance(model, state)
+        advance(model, state, helper)

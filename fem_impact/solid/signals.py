@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from fem_impact.solid.kernels import inlined, kernel
 
-__all__ = ["Signal", "add_one", "look", "make_signals", "tell", "wait_for_change"]
+__all__ = ["Signal", "add_one", "look", "make_signals", "tell", "wait_for"]
 
 Signal = NDArray[np.int64]
 
@@ -86,21 +86,21 @@ def _pause(typing):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _looked(signal, old):  # type: ignore[no-untyped-def]
+def _looked(signal, least):  # type: ignore[no-untyped-def]
     for _ in range(LOOKS):
-        if look(signal) != old:
+        if look(signal) >= least:
             return True
         _pause()
     return False
 
 
 @kernel
-def wait_for_change(signal, old):  # type: ignore[no-untyped-def]
-    """Wait until a signal is not ``old`` any more; return whether it is not after 10 ms or more."""
-    if _looked(signal, old):
+def wait_for(signal, least):  # type: ignore[no-untyped-def]
+    """Wait until a signal is ``least`` or more; return whether it is after 10 ms or a little more."""
+    if _looked(signal, least):
         return True
     for _ in range(PATIENCE):
         _sleep(NAP)
-        if look(signal) != old:
+        if look(signal) >= least:
             return True
     return False

@@ -210,17 +210,38 @@ class Hanging:
         start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
         return cls(np.concatenate(slaves), start, np.concatenate(masters), np.concatenate(weights))
 
+    def rows(self, some: NDArray[np.bool_]) -> Hanging:
+        """Return the ties of some of the hanging nodes, (k,)."""
+        counts = np.diff(self.start)
+        entries = np.repeat(some, counts)
+        start = np.concatenate([[0], np.cumsum(counts[some])]).astype(np.int64)
+        return Hanging(self.slaves[some], start, self.masters[entries], self.weights[entries])
+
+    def follow(self, moved: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Return (k,) which nodes hang on any of the ``moved`` unknowns (size,)."""
+        node = np.repeat(np.arange(len(self.slaves)), np.diff(self.start))
+        return np.bincount(node, moved[self.masters[:, 0]], minlength=len(self.slaves)) > 0
+
     def expand(self, x: Array) -> None:
         """Set the hanging values of ``x``."""
-        _expand(self.slaves, self.start, self.masters, self.weights, x)
+        expand_ties(*self.expansion(x))
+
+    def expansion(self, x: Array) -> Call:
+        """Return the call that `expand` makes."""
+        return Expansion(self.slaves, self.start, self.masters, self.weights, x)
 
     def collect(self, force: Array) -> None:
         """Hand the hanging forces to the masters and clear them."""
-        _collect(self.slaves, self.start, self.masters, self.weights, force)
+        gather_ties(*self.gathering(force))
+
+    def gathering(self, force: Array) -> Call:
+        """Return the call that `collect` makes."""
+        return Gathering(self.slaves, self.start, self.masters, self.weights, force)
 
 
 @kernel
-def _expand(slaves, start, masters, weights, x):  # type: ignore[no-untyped-def]
+def expand_ties(slaves, start, masters, weights, x):  # type: ignore[no-untyped-def]
+    """Set the hanging values to those between their masters."""
     for i in range(len(slaves)):
         t, b, n = 0.0, 0.0, 0.0
         for p in range(start[i], start[i + 1]):
@@ -231,7 +252,8 @@ def _expand(slaves, start, masters, weights, x):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _collect(slaves, start, masters, weights, force):  # type: ignore[no-untyped-def]
+def gather_ties(slaves, start, masters, weights, force):  # type: ignore[no-untyped-def]
+    """Add the hanging forces to those of their masters, and clear them."""
     for i in range(len(slaves)):
         t, b, n = force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]]
         for p in range(start[i], start[i + 1]):
@@ -239,3 +261,7 @@ def _collect(slaves, start, masters, weights, force):  # type: ignore[no-untyped
             force[masters[p, 1]] += weights[p] * b
             force[masters[p, 2]] += weights[p] * n
         force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]] = 0.0, 0.0, 0.0
+
+
+Expansion = call_of(expand_ties, "Expansion")
+Gathering = call_of(gather_ties, "Gathering")

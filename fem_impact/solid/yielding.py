@@ -28,6 +28,7 @@ from fem_impact.solid.yielding_kernel import (
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Counts = NDArray[np.uint32]
+Bools = NDArray[np.bool_]
 
 
 @dataclass(slots=True)
@@ -40,7 +41,7 @@ class YieldingZone:
     count : number of true elements
     blocks : their places and state
     around : nodes (k, 3), starts and entries for `subtract_nodal`
-    taken : number of blocks that are advanced or have been
+    order : of the blocks, for the first thread; taken : number of blocks that a thread has taken
     room : (2, ROWS * LANES) for each thread to work in
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
@@ -52,6 +53,7 @@ class YieldingZone:
     count: int
     blocks: Blocks
     around: tuple[Counts, Ints, Counts]
+    order: Counts
     taken: Signal
     room: Array
     G: float
@@ -82,18 +84,23 @@ class YieldingZone:
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
-        taken, room = make_signals(1)[0], np.zeros((2, ROWS * LANES))
-        return cls(body, len(dof), state, _around(dof), taken, room, G, lame + 2 * G / 3, constants, rate)
+        room, order = np.zeros((2, ROWS * LANES)), np.arange(blocks, dtype=np.uint32)
+        threads = order, make_signals(1)[0], room
+        return cls(body, len(dof), state, _around(dof), *threads, G, lame + 2 * G / 3, constants, rate)
 
     def find(self, state: State) -> None:
         """Advance the blocks, but for those that another thread takes."""
         constants = self.G, self.K, self.law, self.rate
-        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[0], self.taken, False)
+        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[0], self.order, self.taken)
 
-    def finding(self, state: State, dt: Array) -> Call:
-        """Return the call by which a second thread takes blocks, from the last on."""
+    def finding(self, state: State, times: Array, touched: Bools) -> tuple[list[Call], list[Call]]:
+        """Return the calls by which a second thread takes blocks; the first begins at the touched ones."""
+        waits = touched[self.blocks.dof].any(axis=(1, 2, 3))
+        self.order[:] = np.argsort(~waits, kind="stable")
+        early, waiting = self.order[waits.sum() :][::-1].copy(), self.order[: waits.sum()][::-1].copy()
         constants = self.G, self.K, self.law, self.rate
-        return Update(dt, state.x, state.v, self.blocks, *constants, self.room[1], self.taken)
+        given = times, state.x, state.v, self.blocks, *constants, self.room[1]
+        return [Update(*given, early, self.taken)], [Update(*given, waiting, self.taken)]
 
     def collect(self, state: State) -> None:
         """Subtract the nodal forces."""

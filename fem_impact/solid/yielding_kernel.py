@@ -192,17 +192,17 @@ class Blocks(NamedTuple):
 
 
 @kernel
-def update(x, v, dt, z, G, K, law, rate, w, taken, backwards):  # type: ignore[no-untyped-def]
+def update(x, v, dt, z, G, K, law, rate, w, order, taken):  # type: ignore[no-untyped-def]
     """Advance blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
 
-    ``w`` (ROWS * LANES,) is room to work in. Goes on until all blocks are taken, of which ``taken`` counts
-    those of two threads. One goes backwards from the last, so that each has nearly the same blocks in every
-    step, and their data stay in its caches.
+    ``w`` (ROWS * LANES,) is room to work in. Goes through the blocks in ``order`` until all are ``taken``.
+    Two threads may do so in opposite orders: each then has nearly the same blocks in every step, and their
+    data stay in its caches.
     """
-    count, own = len(z.dof), 0
-    while add_one(taken) < count:
-        b = count - 1 - own if backwards else own
-        own += 1
+    for i in range(len(order)):
+        if add_one(taken) >= len(z.dof):
+            return
+        b = order[i]
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
         w[FORCE * LANES : (FORCE + 21) * LANES] = 0.0
@@ -220,9 +220,9 @@ def update(x, v, dt, z, G, K, law, rate, w, taken, backwards):  # type: ignore[n
 
 
 @kernel
-def update_backwards(dt, x, v, z, G, K, law, rate, w, taken):  # type: ignore[no-untyped-def]
-    """Do as the second thread what `update` does; ``dt`` (1,) holds the step."""
-    update(x, v, dt[0], z, G, K, law, rate, w, taken, True)
+def update_later(times, x, v, z, G, K, law, rate, w, order, taken):  # type: ignore[no-untyped-def]
+    """Do what `update` does; the step is the first of two ``times``, known only then."""
+    update(x, v, times[0], z, G, K, law, rate, w, order, taken)
 
 
 @kernel
@@ -269,5 +269,5 @@ def elastic_energy(x, z, G, K, w):  # type: ignore[no-untyped-def]
     return sums.sum()
 
 
-Update = call_of(update_backwards, "Update")
+Update = call_of(update_later, "Update")
 Subtraction = call_of(subtract_nodal, "Subtraction")

@@ -14,6 +14,7 @@ from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.elements import isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.solid.work import whole
 from fem_impact.verify.reference.radiation import radiation_resistance
 from meshes import OUTER
 
@@ -112,7 +113,7 @@ class Column:
             forces=[self.block],
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
-            hanging=Hanging.of([(mesh.tie, places)]),
+            work=whole([self.block], Hanging.of([(mesh.tie, places)]), size),
         )
         self.mass, self.up, self.length = mass, places[:, 2], cells * h
         self.state = shapes.at_rest(mesh.points.ravel())
