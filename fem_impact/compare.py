@@ -121,7 +121,7 @@ def _unseen_verdict(outcome: Mapping[str, Any], quantity: Quantity) -> str:
 def text_table(rows: list[Row]) -> str:
     """Return the rows as aligned text."""
     head = (
-        f"{'set':<16}{'quantity':<22}{'model':>9} {'+- mesh':>8}  {'measured':>9} {'SD':>7}  "
+        f"{'set':<16}{'quantity':<22}{'model':>9} {'± mesh':>8}  {'measured':>9} {'SD':>7}  "
         f"{'95 % of mean':<18}verdict"
     )
     lines = [head, "-" * len(head)]
@@ -133,5 +133,6 @@ def text_table(rows: list[Row]) -> str:
             measured = f"{row['measured_mean']:9.3f} {row['measured_sd']:7.3f}  {span:<18}"
         band = f"{row['band']:8.4f}" if row["band"] is not None else f"{'-':>8}"
         model = f"{row['model']:9.4f}" if row["model"] is not None else f"{'-':>9}"
-        lines.append(f"{row['set']:<16}{row['quantity']:<22}{model} {band}  {measured}{row['verdict']}")
+        name = row["quantity"] + (f", {row['unit']}" if "/s" in row["unit"] else "")
+        lines.append(f"{row['set']:<16}{name:<22}{model} {band}  {measured}{row['verdict']}")
     return "\n".join(lines)

@@ -16,6 +16,9 @@ if TYPE_CHECKING:
 
 __all__ = ["comparison_figure"]
 
+TITLE = {"wide": 9.5, "narrow": 7.5}
+"""Sizes of a panel's title, points, at which the longest stays over its panel."""
+
 
 def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide") -> Path:
     """Draw measured means with their 95 % intervals, and the model with its two-mesh band.
@@ -38,7 +41,7 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
     with figure(path, shape, 0.6 + lines * (0.75 + 0.24 * len(sets))) as drawn:
         panels = _panels(drawn, lines, columns)
         for panel, quantity in zip(panels, quantities, strict=False):
-            _panel(panel, [row for row in rows if row["quantity"] == quantity], sets)
+            _panel(panel, [row for row in rows if row["quantity"] == quantity], sets, TITLE[shape])
         for panel in panels[len(quantities) :]:
             panel.set_visible(False)
         _legend(drawn, panels[0], shape)
@@ -53,9 +56,9 @@ def _panels(drawn: Figure, lines: int, columns: int) -> list[Axes]:
     return list(drawn.subplots(lines, columns, sharey=True, squeeze=False).flat)
 
 
-def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str]) -> None:
+def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size: float) -> None:
     unit = rows[0]["unit"]
-    axes.set_title(rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else ""))
+    axes.set_title(rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else ""), fontsize=size)
     for row in rows:
         _line(axes, row, sets.index(row["set"]))
     axes.set_yticks(range(len(sets)), sets)

@@ -75,7 +75,8 @@ def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide
     down = math.ceil(len(panels) / across)
     labels = {series.label for panel in panels for series in panel.series}
     beside = max(1, LETTERS[shape] // (max(map(len, labels), default=0) + SAMPLE))
-    with figure(path, shape, 3.2 * down + 0.18 * math.ceil(len(labels) / beside) + 0.1) as drawn:
+    tall = 3.8 if any(panel.names for panel in panels) else 3.2
+    with figure(path, shape, tall * down + 0.18 * math.ceil(len(labels) / beside) + 0.1) as drawn:
         every = _axes(drawn, down, across)
         for axes, panel in zip(every, panels, strict=False):
             _panel(axes, panel)

@@ -13,6 +13,7 @@ from fem_impact.figures import (
     ledger_figure,
     partition_figure,
     study_partition_figure,
+    style,
 )
 from fem_impact.figures.accounts import FINAL, RUNNING
 from fem_impact.figures.style import percent
@@ -70,6 +71,19 @@ def test_figures_of_a_study(tmp_path):
     shares = read_table(tmp_path / "partition.csv")
     assert shares.texts("scene_id") == list(result_maker.SETS)
     assert len(read_table(tmp_path / "comparison.csv")) == len(compared)
+
+
+@pytest.mark.parametrize("shape", ["wide", "narrow"])
+def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, shape):
+    names = ["locked-in rod/E_0", "plastic barrier/E_0", "locked-in barrier/E_0", "locked-in barrier/E_0 "]
+    first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
+    kept, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+    comparison_figure([first | {"quantity": name} for name in names], tmp_path / "comparison.svg", shape)
+    kept[0].draw_without_rendering()  # the file had other dots per inch
+    boxes = [axes._left_title.get_window_extent() for axes in kept[0].axes]
+    assert all(0 < box.x0 and box.x1 <= kept[0].bbox.x1 for box in boxes)
+    assert not any(a.overlaps(b) for at, a in enumerate(boxes) for b in boxes[:at])
 
 
 def test_unknown_share_is_left_out(tmp_path, record):

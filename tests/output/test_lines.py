@@ -17,6 +17,7 @@ def drawn(monkeypatch, tmp_path):
 
     def draw(panels, shape="wide"):
         lines_figure(panels, tmp_path / "lines.svg", shape)
+        kept[-1].draw_without_rendering()  # the file had other dots per inch
         return kept[-1]
 
     return draw

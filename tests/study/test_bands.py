@@ -83,6 +83,7 @@ def test_rows_of_every_measured_set(name):
     assert by_name["friction/E_0"]["verdict"] == "not measurable by camera"
     table = text_table(rows)
     assert len(table.splitlines()) == len(rows) + 2
+    assert " Omega, rad/s  " in table and " V_n, m/s  " in table and " mu  " in table
 
 
 def test_vibration_below_its_floor_says_so():
