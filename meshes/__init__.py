@@ -1,6 +1,6 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
 
-from meshes.block import block, with_thin_skin
+from meshes.block import block, thin_skin_rise, with_thin_skin
 from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
@@ -31,6 +31,7 @@ __all__ = [
     "sphere",
     "step_bound",
     "step_limit",
+    "thin_skin_rise",
     "volume",
     "with_thin_skin",
     "without_slices",

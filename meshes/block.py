@@ -13,7 +13,7 @@ from meshes.refine import refine
 from meshes.topology import CORNERS
 from meshes.zone import Zone
 
-__all__ = ["block", "box_cells", "with_thin_skin"]
+__all__ = ["block", "box_cells", "thin_skin_rise", "with_thin_skin"]
 
 FloatArray = npt.NDArray[np.float64]
 IntArray = npt.NDArray[np.int64]
@@ -55,27 +55,39 @@ def block(
     return mesh
 
 
-def with_thin_skin(mesh: HexMesh, cell: float, share: float) -> HexMesh:
-    """Draw the rows of a block towards its top; the sides and the columns stay.
+def with_thin_skin(mesh: HexMesh, cell: float, rows: int) -> HexMesh:
+    """Draw the rows of a block to its top, each half as high as that below; sides and columns stay.
 
     Parameters
     ----------
     mesh : HexMesh
         As `block` gives it.
     cell : float, m
-        Edge of the finest cells; rows are regular again about six of them deep.
-    share : float
-        Height of a vanishing row at the top over what it was, above 0, at most 1. The first row gets
-        0.61 of its height at 0.5.
+        Edge of the finest cells.
+    rows : int
+        How many are drawn: the first is left with 2^-rows of its height, those below with all of it.
 
     Returns
     -------
     HexMesh
-        The bottom of the block rises by 2 (1 - share) cells.
+        The bottom of the block rises by `thin_skin_rise` cells.
     """
-    points, reach = mesh.points.copy(), 2.0 * cell
-    points[:, 2] -= (1.0 - share) * reach * np.expm1(points[:, 2] / reach)
+    points = mesh.points.copy()
+    depth = -points[:, 2] / cell
+    drawn = np.minimum(depth, rows)
+    points[:, 2] = -cell * (depth - drawn + (2.0**drawn - 1.0) * 0.5**rows)
     return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def thin_skin_rise(rows: int) -> float:
+    """Return by how many cells the bottom of a block rises where so many rows are drawn together.
+
+    Examples
+    --------
+    >>> thin_skin_rise(2)
+    1.25
+    """
+    return float(rows - 1 + 0.5**rows)
 
 
 def box_cells(counts: IntArray) -> IntArray:

@@ -20,7 +20,7 @@ from fem_impact.solid.body import Body, make_body, nose_and_whole, slices_of, st
 from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
-from fem_impact.solid.geometry import Geometry, build_geometry, levels_of
+from fem_impact.solid.geometry import HEAVY, Geometry, build_geometry, levels_of
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import Force, Impulse
@@ -29,7 +29,7 @@ from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble_mass, tie_operator
 from fem_impact.solid.stable import stable_step
-from meshes import SKIN
+from meshes import SKIN, HexMesh
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -55,7 +55,19 @@ def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -
         yields = barrier.finest & (spec.barrier_law is not None)
         steel = scene.barrier.material
         found.append(make_body("barrier", barrier, barrier.points, layout.barrier, steel, yields, kind))
+        if geometry.skin_rows:
+            found[1].mass[:] *= skin_weight(barrier, geometry.tip_size)[:, None]
     return found
+
+
+def skin_weight(barrier: HexMesh, h: float) -> Array:
+    """Return the factor (m,) of the masses of a barrier's cells, ``h`` m wide at the contact.
+
+    One as low as c h with c < `HEAVY` gets (`HEAVY` / c)^2 times its mass, and so the step of one `HEAVY` h
+    high. These cells move no faster than the indentation grows.
+    """
+    z = barrier.points[barrier.cells][:, :, 2]
+    return np.asarray(np.maximum(1.0, HEAVY * h / np.ptp(z, axis=1)) ** 2)
 
 
 def _complete_mass(rod: Body, geometry: Geometry, scene: Scene, rest: float) -> None:

@@ -46,24 +46,23 @@ def test_cells_at_the_zone_are_finest(fine):
     assert (fine.level[touching] == 3).all()
 
 
-def test_thin_skin_draws_rows_to_the_top_and_nothing_else(fine):
-    thin = meshes.with_thin_skin(fine, 0.25e-3, 0.5)
+def test_thin_skin_halves_rows_towards_the_top_and_moves_nothing_else(fine):
+    thin = meshes.with_thin_skin(fine, 0.25e-3, 3)
     assert thin.points[:, :2] == pytest.approx(fine.points[:, :2], abs=1e-15)
     under = fine.points[(fine.points[:, :2] == 0.0).all(axis=1)][:, 2].argsort()[::-1]
     column = thin.points[(fine.points[:, :2] == 0.0).all(axis=1)][under, 2]
-    row = -np.diff(column[:8]) / 0.25e-3
+    row = -np.diff(column[:6]) / 0.25e-3
     assert column[0] == 0.0
-    assert row[0] == pytest.approx(1.0 - np.expm1(-0.5) / -1.0, abs=1e-12)
-    assert (np.diff(row[:6]) > 0.0).all()
-    assert row[5] == pytest.approx(1.0, abs=0.05)
-    assert thin.points[:, 2].min() == pytest.approx(fine.points[:, 2].min() + 0.25e-3, rel=1e-6)
+    assert row == pytest.approx([0.125, 0.25, 0.5, 1.0, 1.0], abs=1e-12)
+    rise = 0.25e-3 * meshes.thin_skin_rise(3)
+    assert thin.points[:, 2].min() == pytest.approx(fine.points[:, 2].min() + rise, rel=1e-12)
     assert meshes.quality(thin).min_scaled_jacobian > 0.9
 
 
 def test_thin_skin_keeps_the_ties(fine):
-    thin = meshes.with_thin_skin(fine, 0.25e-3, 0.5)
+    thin = meshes.with_thin_skin(fine, 0.25e-3, 3)
     assert np.abs(thin.tie @ thin.points - thin.points).max() < 1e-18
-    assert meshes.quality(meshes.with_thin_skin(fine, 0.25e-3, 1.0)).volume == pytest.approx(
+    assert meshes.quality(meshes.with_thin_skin(fine, 0.25e-3, 0)).volume == pytest.approx(
         meshes.quality(fine).volume, rel=1e-13
     )
 

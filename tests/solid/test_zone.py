@@ -7,6 +7,7 @@ import solid_scenes as scenes
 from fem_impact.estimates import contact_estimate
 from fem_impact.reduce import reduce
 from fem_impact.scene import load
+from fem_impact.simulate import simulate
 from fem_impact.solid.geometry import DRAG, SLIDE, build_geometry, half_widths
 from fem_impact.solid.run import solve
 
@@ -56,3 +57,30 @@ def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
     e = [reduce(s, solve(s))["e_edge"] for s in (still, still.replace("accuracy.grid_shift", 0.5))]
     assert 0 < abs(e[1] - e[0]) < 0.002
+
+
+@pytest.mark.parametrize(
+    ("effects", "rows"),
+    [
+        (("vibration", "friction", "barrier-elastoplastic"), 3),
+        (("vibration", "barrier-elastoplastic"), 0),
+        (("vibration", "friction", "barrier-elastic"), 0),
+    ],
+)
+def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
+    geometry = build_geometry(SCENE.replace("effects", effects), 2e-6, True)
+    z = geometry.barrier.points[geometry.barrier.cells][:, :, 2]
+    assert geometry.skin_rows == rows
+    assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
+
+
+def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
+    scene = SCENE.replace("save.frames", 0)
+    heavy = simulate(scene)
+    monkeypatch.setattr("fem_impact.solid.build.HEAVY", 0.0)
+    true = simulate(scene)
+    assert heavy["steps"] < 0.3 * true["steps"]
+    for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0", "E_plastic_barrier_over_E_0"):
+        assert heavy[key] == pytest.approx(true[key], abs=1e-3)
+    assert heavy["Omega_rad_per_s"] == pytest.approx(true["Omega_rad_per_s"], rel=5e-3)
+    assert heavy["e_edge"] != true["e_edge"]
