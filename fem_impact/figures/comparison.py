@@ -64,6 +64,8 @@ def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size:
     axes.set_yticks(range(len(sets)), sets)
     axes.set_ylim(len(sets) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
+    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
+    axes.xaxis.set_major_formatter("{x:g}")
     axes.grid()
 
 

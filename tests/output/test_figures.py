@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from itertools import pairwise
 from xml.etree import ElementTree
 
 import numpy as np
@@ -84,6 +85,23 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, s
     boxes = [axes._left_title.get_window_extent() for axes in kept[0].axes]
     assert all(0 < box.x0 and box.x1 <= kept[0].bbox.x1 for box in boxes)
     assert not any(a.overlaps(b) for at, a in enumerate(boxes) for b in boxes[:at])
+
+
+@pytest.mark.parametrize("shape", ["wide", "narrow"])
+@pytest.mark.parametrize("scale", [1e-3, 1.3e-3, 1e-4, 0.47, 30.0])
+def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, shape, scale):
+    kept, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
+    first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": None}
+    first |= {"measured_low": None, "measured_sd": None, "band": 0.0}
+    shares = [first | {"quantity": name, "model": 0.0} for name in "abcd"]
+    others = [share | {"set": "t4", "model": 0.54 * scale, "band": 0.35 * scale} for share in shares]
+    comparison_figure([*shares, *others], tmp_path / "comparison.svg", shape)
+    kept[0].draw_without_rendering()
+    for axes in kept[0].axes:
+        boxes = [word.get_window_extent() for word in axes.get_xticklabels()]
+        assert len(boxes) > 1 and "0" in [word.get_text() for word in axes.get_xticklabels()]
+        assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
 
 
 def test_unknown_share_is_left_out(tmp_path, record):
