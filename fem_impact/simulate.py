@@ -44,7 +44,7 @@ def simulate(
     progress : called every few hundred steps of the solid fidelity
     resume : go on from the checkpoint in ``out`` (solid); without one there, start at the beginning
     checkpoint_s : wall time between checkpoints of the solid fidelity
-    threads : 2 lets a second thread sum part of the forces of the solid fidelity; not a bit changes
+    threads : 2 lets a second thread do part of every step of the solid fidelity; not a bit changes
 
     Raises
     ------

@@ -99,7 +99,7 @@ def solve(
     resume : go on from the checkpoint in ``out``, bit for bit as if the run had never stopped
     interval : s of wall time between checkpoints
     model : a prepared model of the scene instead of a built one
-    threads : 2 lets a second thread sum part of the forces; not a bit changes
+    threads : 2 lets a second thread do part of every step; not a bit changes
 
     Raises
     ------
