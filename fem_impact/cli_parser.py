@@ -48,7 +48,7 @@ class Options(argparse.Namespace):
     readme: str = ""
     quick: bool = False
     workers: int | None = None
-    threads: int = 1
+    threads: int | None = None
     scheduler: str = ""
     target: str = ""
     budget: str = ""
@@ -137,8 +137,8 @@ def _add_run(commands: Commands) -> None:
         "--threads",
         type=int,
         choices=[1, 2],
-        default=1,
-        help="2: the second shares the forces, or with a target runs the second mesh (default: 1)",
+        help="2: the second shares the forces, or with a target runs the second mesh (default: 2 where two "
+        "cores are idle)",
     )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(

@@ -11,6 +11,7 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
+from fem_impact.cores import idle_cores
 from fem_impact.errors import RunError
 
 if TYPE_CHECKING:
@@ -18,11 +19,14 @@ if TYPE_CHECKING:
 
 __all__ = ["run"]
 
+ENOUGH = 1.5  # idle cores for a second thread: two that share one core take twice as long as one alone
+
 
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
-    _say_plan(scene, options)
+    threads = options.threads or (2 if idle_cores() >= ENOUGH else 1)
+    _say_plan(scene, options, threads)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.simulate import simulate
 
@@ -35,7 +39,7 @@ def run(options: Options) -> int:
             progress=meter,
             resume=options.resume,
             checkpoint_s=options.checkpoint,
-            threads=options.threads,
+            threads=threads,
         )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None
@@ -48,13 +52,13 @@ def run(options: Options) -> int:
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
-def _say_plan(scene: Scene, options: Options) -> None:
+def _say_plan(scene: Scene, options: Options, threads: int) -> None:
     """Before the work: what the measured costs chose for the error that the scene allows."""
     if scene.accuracy.target is None:
         return
     from fem_impact.cost import plan
 
-    sentence = plan(scene, options.fidelity or None, options.threads).sentence
+    sentence = plan(scene, options.fidelity or None, threads).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

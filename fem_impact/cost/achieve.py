@@ -10,7 +10,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from fem_impact.cost.limits import Placed, extrapolated, truths
+from fem_impact.cost.limits import Placed, pair_limit, truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
 from fem_impact.cost.settings import placed
 from fem_impact.cost.stored import Plan, plan
@@ -127,4 +127,4 @@ def _limits(meshes: Sequence[Placed]) -> dict[str, float]:
         return means[0]
     fine, coarse = means
     ratio = meshes[1][0]["tip_size_m"] / meshes[0][0]["tip_size_m"]
-    return {key: extrapolated(fine[key], coarse[key], ratio) for key in keys}
+    return {key: pair_limit(fine[key], coarse[key], ratio)[0] for key in keys}

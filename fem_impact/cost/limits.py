@@ -11,11 +11,13 @@ from typing import Any
 
 from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.outcome import Outcome
-from fem_impact.study.richardson import LOWEST, limit
+from fem_impact.study.richardson import limit
 
-__all__ = ["Placed", "Truth", "extrapolated", "known_mean", "mean", "pair_limit", "standard_error", "truths"]
+__all__ = ["Placed", "Truth", "known_mean", "mean", "pair_limit", "standard_error", "truths"]
 
-PAIR_ORDER = 1.0  # assumed where two meshes are all there is
+# order of convergence: of 13 sets and nine quantities, bands from here up held 99 of 100 limits of all meshes
+LOWEST = 0.75
+OPPOSITE = 0.6  # error of a mean over opposite places over that of as many places taken at random
 
 Placed = Sequence[Outcome]  # the runs on one mesh, the grid of the barrier at other places
 
@@ -51,34 +53,30 @@ def known_mean(quantity: Quantity, runs: Placed) -> float:
 
 
 def standard_error(quantity: Quantity, runs: Placed) -> float:
-    """Return the standard error of that mean, of two runs half their difference; 0 for one run alone.
+    """Return the standard error of that mean; 0 for one run alone.
 
-    Places half a cell apart differ in opposite ways: at four places on each of 21 meshes, half the
-    difference was in the root mean square three times what the mean of two was off that of four.
+    Places half a cell apart err in opposite ways: in nine quantities on the coarsest mesh of 13 sets, the
+    means of two opposite pairs differed in the root mean square by .72 of half the difference within a pair,
+    where places taken at random would by 1.41.
     """
     values = [_known(quantity, run) for run in runs]
-    return stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
-
-
-def extrapolated(fine: float, coarse: float, ratio: float, order: float = PAIR_ORDER) -> float:
-    """Return the limit of q_0 + c h^order from two meshes; ``ratio`` is coarse over fine size.
-
-    Examples
-    --------
-    >>> extrapolated(1.1, 1.2, 2.0)
-    1.0
-    """
-    return float(fine + (fine - coarse) / (ratio**order - 1))
+    return OPPOSITE * stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
 
 
 def pair_limit(fine: float, coarse: float, ratio: float) -> tuple[float, float]:
-    """Return the first-order limit of two meshes and its half-width.
+    """Return the limit of two meshes and its half-width; ``ratio`` is coarse over fine size.
 
-    Two meshes tell no order. The band holds what every order from `LOWEST` up would give, the lowest that
-    a fit over more meshes is believed: root of the ratio times the step from the fine mesh to the limit.
+    Two meshes tell no order, so the band holds what every order from `LOWEST` up would give; the limit is its
+    middle.
+
+    Examples
+    --------
+    >>> value, half = pair_limit(1.1, 1.2, 2.0 ** (4 / 3))
+    >>> round(value, 6), round(half, 6)
+    (1.05, 0.05)
     """
-    value = extrapolated(fine, coarse, ratio)
-    return value, abs(extrapolated(fine, coarse, ratio, LOWEST) - value)
+    half = 0.5 * (fine - coarse) / (ratio**LOWEST - 1)
+    return fine + half, abs(half)
 
 
 def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:

@@ -35,8 +35,14 @@ def test_changes_are_applied_and_filed_apart(cli, stand):
     assert options["out"] == Path("results") / f"t5b-{scene.digest()[:8]}"
 
 
-@pytest.mark.parametrize(("asked", "threads"), [((), 1), (("--threads", "2"), 2)])
-def test_a_second_thread_where_it_is_asked_for(cli, stand, asked, threads):
+@pytest.mark.parametrize(
+    ("asked", "idle", "threads"),
+    [((), 1.8, 2), ((), 1.2, 1), (("--threads", "2"), 0.0, 2), (("--threads", "1"), 8.0, 1)],
+)
+def test_a_second_thread_where_it_is_asked_for_or_two_cores_are_idle(
+    cli, stand, monkeypatch, asked, idle, threads
+):
+    monkeypatch.setattr("fem_impact.cli_run.idle_cores", lambda: idle)
     cli("run", "t5b", *asked)
     assert stand.calls[0][2]["threads"] == threads
 

@@ -5,6 +5,7 @@ from cost_fakes import Here, run
 
 import fem_impact.simulate
 from fem_impact.cost import NEARNESS, Judged, achieve, measure, nearest, plan, stored, summarise, summary
+from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.settings import placed
 from fem_impact.errors import SceneError
 from fem_impact.progress import NullMeter
@@ -177,7 +178,7 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
     assert outcome["scene_digest"] == fine[0].digest()
     means = [sum(run(scene)["e_edge"] for scene in scenes) / len(scenes) for scenes in (fine, coarse)]
     ratio = coarse[0].accuracy.tip_size / fine[0].accuracy.tip_size
-    assert outcome["extrapolated"]["e_edge"] == pytest.approx(means[0] + (means[0] - means[1]) / (ratio - 1))
+    assert outcome["extrapolated"]["e_edge"] == pytest.approx(pair_limit(*means, ratio)[0])
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
