@@ -38,28 +38,32 @@ def summary_markdown(document: dict[str, Any]) -> str:
 
 
 def _pairs(scenes: Scenes) -> str:
-    """Return the table of the best pair of each scene, and how many meet `WANTED`."""
-    found = {name: best_pair(settings, TARGETED, WANTED) for name, (_, settings) in scenes.items()}
-    rows = [(name, scenes[name][0], pair) for name, pair in found.items() if pair]
-    head = ["set", "meshes, mm", *TARGETED, "off the limit, of both bands", "s on two cores"]
-    body = [[name, _sizes(pair), *_verdicts(q, pair), f"{pair.two_cores_s:.3g}"] for name, q, pair in rows]
-    met = {name: sum(pair.band[name] <= WANTED for *_, pair in rows) for name in TARGETED}
-    words = " and ".join(f"{name} in {count}" for name, count in met.items())
-    return f"{table(head, body)}\n\nTo {100 * WANTED:g} % by its own band: {words} of {len(rows)} sets."
-
-
-def _sizes(pair: Judged) -> str:
-    return pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
-
-
-def _verdicts(quantities: dict[str, Any], pair: Judged) -> list[str]:
-    told = [verdict(pair, quantities, name, WANTED) for name in TARGETED]
-    away = [abs((pair.value[name] or 0.0) - quantities[name]["limit"]) for name in TARGETED]
-    both = [
-        pair.band[name] * quantities[name]["scale"] + quantities[name]["uncertainty"] for name in TARGETED
+    """Return the table of each scene's best pair for each quantity, and how many meet `WANTED`."""
+    ran = {
+        scene: (q, settings) for scene, (q, settings) in scenes.items() if any(one.band for one in settings)
+    }
+    columns = [[_best(name, *of) for of in ran.values()] for name in TARGETED]
+    head = ["set", *(words for name in TARGETED for words in (name, "meshes, mm", "off", "s"))]
+    body = [
+        [scene, *(cell for told, _ in row for cell in told)]
+        for scene, *row in zip(ran, *columns, strict=True)
     ]
-    shares = [f"{gap / band:.1f}" if band else "-" for gap, band in zip(away, both, strict=True)]
-    return [*told, " / ".join(shares)]
+    words = " and ".join(
+        f"{name} in {sum(met for _, met in column)}" for name, column in zip(TARGETED, columns, strict=True)
+    )
+    return f"{table(head, body)}\n\nTo {100 * WANTED:g} % by its own band: {words} of {len(ran)} sets."
+
+
+def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tuple[list[str], bool]:
+    """Return cells of the best pair for a quantity, and whether it meets `WANTED`."""
+    pair = best_pair(settings, (name,), WANTED)
+    assert pair is not None  # scenes without a pair are left out
+    limit, scale = quantities[name], quantities[name]["scale"]
+    both = pair.band[name] * scale + limit["uncertainty"]
+    off = abs((pair.value[name] or 0.0) - limit["limit"]) / both if both else 0.0
+    sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
+    cells = [verdict(pair, quantities, name, WANTED), sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"]
+    return cells, pair.band[name] <= WANTED
 
 
 def _columns(groups: list[list[Judged]]) -> list[str]:
