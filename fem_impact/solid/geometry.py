@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, sin
+from math import cos, floor, log2, sin
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,8 +28,9 @@ SLIDE, DRAG = 5.0, 0.6
 # a flat face whose middle is no higher than this many depths may touch as a whole
 FLAT = 2.0
 # under a tip that sticks the plate shears in a layer some 0.05 mm thick: so many rows at its skin are drawn
-# together, each to half the height of the next
-SKIN_ROWS = 3
+# together, each to half the height of the next; the first no lower than a share of the indentation, or it is
+# crushed at the edge of the contact
+SKIN_ROWS, LOW = 3, 0.1
 # a row is as heavy as if it were so high, in cells, so that thin ones do not set the step. At 0.8 that took
 # .001 from e of t5b on 0.59 and 0.30 mm, and closing rose to 4e-4 and 1.2e-4 of E_0; both go with the square
 HEAVY = 0.65
@@ -96,7 +97,7 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap if conforming else gap - points[:, 2].min()
-    rows = SKIN_ROWS if conforming and "friction" in scene.active else 0
+    rows = skin_rows(scene, base / 2**levels) if conforming and "friction" in scene.active else 0
     barrier = _block(scene, base, levels, float(rho), rows) if meshed_barrier else None
     return Geometry(rod, points, barrier, base / 2**levels, conforming, rows)
 
@@ -106,6 +107,12 @@ def _fine_zone(scene: Scene, h: float, rho: float) -> tuple[float, float, float,
     t, b, n = half_widths(contact_estimate(scene), h)
     reach = face_reach(scene, rho)
     return t, max(b, rho) if reach > 0 else b, n, reach
+
+
+def skin_rows(scene: Scene, h: float) -> int:
+    """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick."""
+    halvings = floor(log2(h / (LOW * contact_estimate(scene).depth)))
+    return min(max(halvings, 0), SKIN_ROWS)
 
 
 def face_reach(scene: Scene, rho: float) -> float:
