@@ -97,7 +97,8 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap if conforming else gap - points[:, 2].min()
-    rows = skin_rows(scene, base / 2**levels) if conforming and "friction" in scene.active else 0
+    sticks = conforming and "friction" in scene.active and scene.surface.friction > 0
+    rows = skin_rows(scene, base / 2**levels) if sticks else 0
     barrier = _block(scene, base, levels, float(rho), rows) if meshed_barrier else None
     return Geometry(rod, points, barrier, base / 2**levels, conforming, rows)
 

@@ -6,9 +6,9 @@ import solid_scenes as scenes
 
 from fem_impact.estimates import contact_estimate
 from fem_impact.reduce import reduce
-from fem_impact.scene import load
+from fem_impact.scene import load, replace_all
 from fem_impact.simulate import simulate
-from fem_impact.solid.geometry import DRAG, SLIDE, build_geometry, half_widths
+from fem_impact.solid.geometry import DRAG, LOW, SLIDE, build_geometry, half_widths
 from fem_impact.solid.run import solve
 
 SCENE = load("t6-17").replace("accuracy.tip_size", "0.6 mm")
@@ -72,6 +72,21 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
     z = geometry.barrier.points[geometry.barrier.cells][:, :, 2]
     assert geometry.skin_rows == rows
     assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
+
+
+def test_without_friction_no_row_is_thin_whatever_is_on():
+    assert build_geometry(SCENE.replace("surface.friction", 0.0), 2e-6, True).skin_rows == 0
+
+
+def test_rows_are_no_lower_than_a_share_of_the_indentation():
+    """Under a fast long rod cells were crushed at the edge of the contact."""
+    fast = replace_all(load("t5b"), {"projectile.length": "200 mm", "impact.v_n": "-8 m/s"})
+    depth = contact_estimate(fast).depth
+    for size in ("0.6 mm", "0.3 mm", "0.15 mm"):
+        geometry = build_geometry(fast.replace("accuracy.tip_size", size), 2e-6, True)
+        assert 0 <= geometry.skin_rows < 3
+        assert geometry.tip_size * 0.5**geometry.skin_rows >= LOW * depth
+        assert geometry.tip_size * 0.5 ** (geometry.skin_rows + 1) < LOW * depth
 
 
 def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
