@@ -79,6 +79,16 @@ def test_an_edge_stays_sharp(lean, bend):
     assert (patch.bend[2:4] == bend).all()
 
 
+def test_a_level_normal_is_not_bent_and_does_not_spoil_the_sag():
+    """A side of an upright rod that a skew quad counts among what faces the barrier."""
+    t, b = np.meshgrid([-1e-3, 0.0, 1e-3], [0.0, 1e-3], indexing="ij")
+    points = np.stack([np.zeros_like(t), b, t], axis=-1).reshape(-1, 3)
+    patch = make_patch(np.array([[0, 1, 3, 2], [2, 3, 5, 4]]), np.arange(18).reshape(-1, 3), points)
+    found = patch.rounded(points.ravel())
+    assert not found.bend.any()
+    assert found.sag == 0.0
+
+
 def test_the_rod_is_coarser_than_a_barrier_that_flows_and_alike_otherwise():
     flowing, elastic = (scenes.model("vibration", b) for b in ("barrier-elastoplastic", "barrier-elastic"))
     for model, split in ((flowing, 1), (elastic, 2)):

@@ -20,7 +20,10 @@ from fem_impact.stress.page import MARKS, page
 from fem_impact.stress.run import ROW
 from fem_impact.stress.run import _model as model_of
 
-QUICK = ("flat-on-plane", "few-elements", "overlap", "between-nodes", "painleve", "upright-round", "resting")
+QUICK = (
+    *("flat-on-plane", "flat-on-block", "few-elements", "overlap", "between-nodes", "painleve"),
+    *("upright-round", "resting"),
+)
 
 
 def test_the_list_is_long_and_holds_refused_and_detected_ones():

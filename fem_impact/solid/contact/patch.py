@@ -15,6 +15,7 @@ Ints = NDArray[np.int64]
 
 # a node is on an edge, not on a rounding, where a quad leans more than this from the mean of those around
 EDGE = np.cos(np.radians(30.0))
+STEEP = 0.1  # a side of the rod, whose normal rises by less, is not bent: nothing can be held on it
 
 
 class Patch(NamedTuple):
@@ -47,7 +48,7 @@ class Patch(NamedTuple):
         flat /= np.linalg.norm(flat, axis=1)[:, None]
         least = np.ones(len(around))
         np.minimum.at(least, self.quads, np.einsum("qi,qai->qa", flat, around[self.quads]))
-        bend = np.where(least > EDGE, 0.5, 0.0)
+        bend = np.where((least > EDGE) & (around[:, 2] > STEEP), 0.5, 0.0)
         return self._replace(bend=bend, sag=_sag(corners, around[self.quads], bend[self.quads]))
 
 
@@ -74,8 +75,8 @@ def edge_neighbours(quads: Ints) -> Ints:
 def _sag(corners: Array, normals: Array, bend: Array) -> float:
     """Return half of what bending adds at other corners, at most: above the rise of an arc over its chord."""
     apart = corners[:, None, :, :] - corners[:, :, None, :]
-    rise = np.einsum("qabi,qai->qab", apart, normals) / normals[:, :, None, 2]
-    return float(0.5 * np.max(bend[:, :, None] * np.abs(rise)))
+    share = np.divide(bend, normals[:, :, 2], out=np.zeros_like(bend), where=bend > 0)
+    return float(0.5 * np.max(share[:, :, None] * np.abs(np.einsum("qabi,qai->qab", apart, normals))))
 
 
 def nearest_quads(x: Array, patch: Patch, other: Patch) -> Ints:
