@@ -46,4 +46,4 @@ def test_building_takes_little_memory():
     finally:
         tracemalloc.stop()
     elements = len(built.geometry.rod.mesh.cells) + len(built.geometry.barrier.cells)
-    assert peak < 25e6 + 4e3 * elements
+    assert peak < 25e6 + 4.5e3 * elements
