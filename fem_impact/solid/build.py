@@ -17,7 +17,7 @@ from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.modes import MassStiffness, rod_modes
 from fem_impact.solid.body import Body, make_body, nose_and_whole, slices_of, stiffness_of
-from fem_impact.solid.contact import PlaneContact, SurfaceContact, make_patch
+from fem_impact.solid.contact import STEEP, PlaneContact, SurfaceContact, make_patch
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.geometry import HEAVY, Geometry, build_geometry, levels_of
@@ -226,7 +226,7 @@ def facing_skin(body: Body) -> Ints:
     corners = body.points[quads]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
-    facing = steep < -0.1 if body.name == "rod" else steep > 0.1
+    facing = steep < -STEEP if body.name == "rod" else steep > STEEP
     finest = np.isin(quads, body.mesh.cells[body.mesh.finest]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
     found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]

@@ -98,9 +98,10 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap if conforming else gap - points[:, 2].min()
     sticks = conforming and "friction" in scene.active and scene.surface.friction > 0
-    rows = skin_rows(scene, base / 2**levels) if sticks else 0
+    tip = base / 2**levels
+    rows = skin_rows(scene, tip) if sticks else 0
     barrier = _block(scene, base, levels, float(rho), rows) if meshed_barrier else None
-    return Geometry(rod, points, barrier, base / 2**levels, conforming, rows)
+    return Geometry(rod, points, barrier, tip, conforming, rows)
 
 
 def _fine_zone(scene: Scene, h: float, rho: float) -> tuple[float, float, float, float]:

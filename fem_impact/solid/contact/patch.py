@@ -15,7 +15,7 @@ Ints = NDArray[np.int64]
 
 # a node is on an edge, not on a rounding, where a quad leans more than this from the mean of those around
 EDGE = np.cos(np.radians(30.0))
-STEEP = 0.1  # a side of the rod, whose normal rises by less, is not bent: nothing can be held on it
+STEEP = 0.1  # a normal that rises less is that of a side: no such quad takes part, and no such node is bent
 
 
 class Patch(NamedTuple):
