@@ -105,7 +105,7 @@ def _harm(effect: dict[str, Any]) -> str:
     if effect["name"] in BARRIERS and not effect["on"]:
         return ""
     return (
-        f"without it e changes by about {effect['change_of_e']:.1g}, "
+        f"leaving it out changes e by about {effect['change_of_e']:.1g}, "
         f"E_vib by {effect['change_of_E_vib_over_E_0']:.1g} of E_0"
     )
 

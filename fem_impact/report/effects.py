@@ -7,12 +7,13 @@ from typing import Any
 
 from fem_impact.figures.style import percent
 from fem_impact.report.html import Markup, number, section, table
+from fem_impact.scene import BARRIERS
 
 __all__ = ["effects_section"]
 
 HEAD = (
     *("effect", "in the model", "decided by", "number", "threshold"),
-    *("e without it", "E_vib/E₀ without it", "run time"),
+    *("change of e", "change of E_vib/E₀", "run time"),
 )
 
 
@@ -20,8 +21,8 @@ def effects_section(outcome: Mapping[str, Any]) -> Markup:
     """Return the table of effects, nothing where a fidelity has none."""
     rows = [_row(choice) for choice in outcome["effect_choices"] or []]
     caption = (
-        "An effect is needed when its number is above its threshold; the changes are rough sizes of what "
-        "leaving it out does; the run time is that of its own parts, of friction and rates about."
+        "An effect is needed when its number is above its threshold. The changes are about what leaving it "
+        "out does. The run time is the share of its own parts; that of friction and rates is estimated."
     )
     return section("Effects", table(HEAD, rows, caption, numbers=range(3, 8)))
 
@@ -33,6 +34,13 @@ def _row(choice: Mapping[str, Any]) -> list[str]:
         choice["measure"],
         number(choice["number"]),
         number(choice["threshold"]),
-        *(f"± {choice[key]:.1g}".replace("-", "−") for key in ("change_of_e", "change_of_E_vib_over_E_0")),
+        *_changes(choice),
         "–" if choice["share"] is None else percent(choice["share"]),
     ]
+
+
+def _changes(choice: Mapping[str, Any]) -> list[str]:
+    """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    if choice["name"] in BARRIERS and not choice["on"]:
+        return ["–", "–"]
+    return [f"± {choice[key]:.1g}".replace("-", "−") for key in ("change_of_e", "change_of_E_vib_over_E_0")]

@@ -51,8 +51,9 @@ class Dimension:
     units: tuple[Unit, ...]
 
     def unit(self, symbol: str) -> Unit | None:
-        """Return the unit of that symbol, or None."""
-        return next((u for u in self.units if u.symbol == symbol), None)
+        """Return the unit of that symbol, with or without its spaces, or None."""
+        bare = symbol.replace(" ", "")
+        return next((u for u in self.units if u.symbol.replace(" ", "") == bare), None)
 
     @property
     def symbols(self) -> str:
@@ -79,8 +80,10 @@ DIMENSIONS: dict[str, Dimension] = {
         ),
         Dimension("density", "kg_per_m3", "kg/m3", "7850 kg/m3", (Unit("kg/m3"), Unit("g/cm3", 3))),
         Dimension("temperature", "K", "K", "430 degC", (Unit("K"), Unit("degC", offset=273.15))),
-        Dimension("conductivity", "W_per_m_K", "W/(mK)", "53 W/(m K)", (Unit("W/(mK)"), Unit("W/mK"))),
-        Dimension("heat capacity", "J_per_kg_K", "J/(kgK)", "440 J/(kg K)", (Unit("J/(kgK)"), Unit("J/kgK"))),
+        Dimension("conductivity", "W_per_m_K", "W/(m K)", "53 W/(m K)", (Unit("W/(m K)"), Unit("W/mK"))),
+        Dimension(
+            *("heat capacity", "J_per_kg_K", "J/(kg K)", "440 J/(kg K)"), (Unit("J/(kg K)"), Unit("J/kgK"))
+        ),
         Dimension("time", "s", "ms", "2.5 ms", (Unit("s"), Unit("ms", -3), Unit("us", -6), Unit("ns", -9))),
     )
 }

@@ -9,6 +9,7 @@ import result_maker
 from fem_impact.errors import ResultError
 from fem_impact.output import write_bytes
 from fem_impact.report import draw_study, read_study, write_report
+from fem_impact.report.effects import effects_section
 from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
 
 VOID = {"meta", "link", "img", "source", "br"}
@@ -257,3 +258,12 @@ def test_pieces_escape_and_vanish_when_empty():
     assert bullets([]).text == table(("a",), []).text == section("Title").text == ""
     assert '<td class="inside">&amp;</td>' in table(("a",), [[cell("&", "inside")]]).text
     assert with_band(0.5, None) == "0.5"
+
+
+def test_a_barrier_beside_the_one_in_use_has_no_change_to_tell():
+    told = {"forced": False, "measure": "m", "number": 1.0, "threshold": 0.5, "share": None}
+    told |= {"change_of_e": 0.2, "change_of_E_vib_over_E_0": 3e-4}
+    names = {"barrier-elastic": False, "barrier-elastoplastic": True, "gravity": False}
+    text = str(effects_section({"effect_choices": [told | {"name": n, "on": on} for n, on in names.items()]}))
+    elastic, plastic, gravity = text.split("<tr>")[-3:]
+    assert "± 0.2" not in elastic and "± 0.2" in plastic and "± 0.2" in gravity

@@ -23,6 +23,8 @@ DECIMAL = [(name, u.symbol, u.power) for name, u in PLAIN]
         ("430 degC", "temperature", 703.15),
         ("0 °C", "temperature", 273.15),
         ("53 W/(m K)", "conductivity", 53.0),
+        ("53 W/(mK)", "conductivity", 53.0),
+        ("440 J/(kg K)", "heat capacity", 440.0),
         ("0.35 mm", "length", 0.00035),
         ("0.7mm", "length", 0.0007),
         ("2.1 m/s", "speed", 2.1),
@@ -42,6 +44,14 @@ DECIMAL = [(name, u.symbol, u.power) for name, u in PLAIN]
 )
 def test_reads_quantities_as_the_nearest_float(text, dimension, expected):
     assert parse_quantity(text, dimension, "key") == expected
+
+
+@pytest.mark.parametrize(
+    ("value", "dimension", "text"),
+    [(53.0, "conductivity", "53 W/(m K)"), (440.0, "heat capacity", "440 J/(kg K)")],
+)
+def test_writes_metres_and_kelvin_apart_so_that_nobody_reads_millikelvin(value, dimension, text):
+    assert format_quantity(value, dimension) == text
 
 
 @pytest.mark.parametrize(
