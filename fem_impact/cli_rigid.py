@@ -12,6 +12,7 @@ from fem_impact.cli_out import checked_file
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
 from fem_impact.errors import SceneError
+from fem_impact.wrap import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.paper import Drawn
@@ -120,6 +121,7 @@ def _figure_entry(drawn: Drawn) -> dict[str, Any]:
 
 
 def _figure_text(drawn: Drawn) -> str:
-    lines = [drawn.sentence, "", "The paper's statements:"]
-    lines += [f"  {'holds' if s.holds else 'FAILS'}: {s.claim}: {s.found}" for s in drawn.statements]
+    lines = [*wrapped(drawn.sentence, hang=""), "", "The paper's statements:"]
+    for s in drawn.statements:
+        lines += wrapped(f"{'holds' if s.holds else 'FAILS'}: {s.claim}: {s.found}", "  ")
     return "\n".join([*lines, "", f"picture: {drawn.picture}", f"data: {drawn.data}"]) + "\n"

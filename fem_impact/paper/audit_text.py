@@ -26,10 +26,10 @@ def audit_text(document: Document) -> str:
 
 def _summary(document: Document) -> Iterator[str]:
     s = document["summary"]
-    yield (
+    yield from wrapped(
         f"{s['agree']} of {s['numbers']} printed numbers follow from the printed velocities within rounding."
     )
-    yield (
+    yield from wrapped(
         f"{s['marker_velocities_apart']} tip velocities do not (they are a marker's, not the contact "
         "point's), "
         f"{s['others_apart']} other numbers do not; {s['unexplained']} of all these are unexplained."
@@ -79,7 +79,7 @@ def _row(row: str) -> str:
 
 def _scatter(document: Document) -> Iterator[str]:
     yield ""
-    yield (
+    yield from wrapped(
         "Scatter, mean (SD); e_m of the mean motion with its 95 % interval for a contact point known "
         "to 0.5 mm"
     )

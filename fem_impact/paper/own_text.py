@@ -25,7 +25,7 @@ def _head(d: Document) -> Iterator[str]:
         f"{d['tests']} tests of a rod {size}: {rod['mass_kg']:.4f} kg, k2 = "
         f"{1e6 * rod['k_squared_m2']:.1f} mm2"
     )
-    yield (
+    yield from wrapped(
         f"contact point: d_c = {1e3 * arms['d_c_m']:.2f} mm, d_d = {1e3 * arms['d_d_m']:.2f} mm "
         f"({arms['source']})"
     )
@@ -33,15 +33,18 @@ def _head(d: Document) -> Iterator[str]:
 
 def _coefficients(d: Document) -> Iterator[str]:
     yield ""
-    yield (
+    yield from wrapped(
         "Coefficients of the mean motion, 95 % intervals (velocity scatter, contact point 0.5 mm, "
         "tracking 2 %)"
     )
-    yield f"  {'':<5}{'value':>8}   {'first order':<20}{'bootstrap':<20}standard uncertainty by source"
+    yield f"  {'':<5}{'value':>8}   {'first order':<20}bootstrap"
+    for name, c in d["coefficients"].items():
+        yield f"  {name:<5}{_number(c['value']):>8}   {_span(c['first_order']):<20}{_span(c['bootstrap'])}"
+    yield ""
+    yield "Standard uncertainty by source"
     for name, c in d["coefficients"].items():
         parts = ", ".join(f"{k} {_number(v)}" for k, v in c["first_order"]["parts"].items())
-        spans = f"{_span(c['first_order']):<20}{_span(c['bootstrap']):<20}"
-        yield f"  {name:<5}{_number(c['value']):>8}   {spans}{parts}"
+        yield f"  {name:<5}{parts}"
 
 
 def _scatter(d: Document) -> Iterator[str]:
@@ -57,8 +60,8 @@ def _scatter(d: Document) -> Iterator[str]:
 def _rest(d: Document) -> Iterator[str]:
     centre = d["impulse_centre"]
     yield ""
-    yield (
-        f"Centre of the impulse (where e_m = -1): d_c = {1e3 * centre['d_c_m']:.2f} mm, "
+    yield from wrapped(
+        f"Centre of impulse (e_m = -1): d_c = {1e3 * centre['d_c_m']:.2f} mm, "
         f"{1e3 * centre['from_contact_m']:+.2f} mm from the contact point"
     )
     yield f"Critical impulse ratio: {_number(d['mu_c'])}"

@@ -37,6 +37,15 @@ def readme_lines():
     return found.group(1).splitlines()
 
 
+def test_lines_fit_a_terminal(cli, camera_file):
+    """All but the wide tables of the audit."""
+    rod = ("--length", "80 mm", "--diameter", "19 mm", "--tip", "B", "--angle", "45 deg")
+    tests = camera_file("1,-1.572,-1.602,0.381,-0.371,3.607", "2,-1.516,-1.507,0.271,-0.369,1.019")
+    told = [cli("figure", "7", "--out", tests.parent)[1].partition("\npicture: ")[0]]
+    told += [cli("coefficients", tests, *rod)[1], cli("audit", "--set", "t5b")[1].partition("\n\n")[0]]
+    assert [line for text in told for line in text.splitlines() if len(line) > 79] == []
+
+
 def test_the_commands_of_the_readme_work(cli, camera_file):
     lines = readme_lines()
     assert {shlex.split(line)[1] for line in lines} == set(COMMANDS)
