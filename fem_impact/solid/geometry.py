@@ -34,9 +34,6 @@ SKIN_ROWS, LOW = 3, 0.1
 # a row is as heavy as if it were so high, in cells, so that thin ones do not set the step. At 0.8 that took
 # .001 from e of t5b on 0.59 and 0.30 mm, and closing rose to 4e-4 and 1.2e-4 of E_0; both go with the square
 HEAVY = 0.65
-# how much less often the rod's tip is split than a barrier that conforms to it: of two surfaces the one whose
-# nodes are held against the other must be the finer, and should be the softer
-COARSER = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +45,7 @@ class Geometry:
     rod : RodMesh; rod_points : (n, 3) float64, m, lowest point at t = 0, n = gap: that of the round surface
         over a conforming barrier, else that of the nodes
     barrier : HexMesh or None
-    tip_size : finest cell edge, m: of the barrier (along t and b), or of the rod over a plane
+    tip_size : finest cell edge, m; in the barrier along t and b
     conforming : the barrier flows under all of the contact, see `SurfaceContact`
     skin_rows : thin rows of cells at the top of the barrier
     """
@@ -83,14 +80,13 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     body, alpha = projectile(scene), scene.impact.angle
     base, levels = body.diameter / scene.accuracy.across, levels_of(scene)
     conforming = meshed_barrier and barrier_conforms(scene)
-    coarser = COARSER if conforming and levels > COARSER else 0
     rho, z = body.contact_point(alpha)
     turn = to_barrier_frame(alpha)
     lowest = np.array([float(rho), 0.0, float(z)])
-    h = base / 2 ** (levels - coarser)
+    h = base / 2**levels
     t, b, n, reach = _fine_zone(scene, h, float(rho))
     zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
-    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels - coarser)
+    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
     if not vibrating:
         from fem_impact.solid.rigid_rest import rest_points
 
@@ -98,10 +94,9 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     points = (rod.mesh.points - lowest) @ turn.T
     points[:, 2] += gap if conforming else gap - points[:, 2].min()
     sticks = conforming and "friction" in scene.active and scene.surface.friction > 0
-    tip = base / 2**levels
-    rows = skin_rows(scene, tip) if sticks else 0
+    rows = skin_rows(scene, h) if sticks else 0
     barrier = _block(scene, base, levels, float(rho), rows) if meshed_barrier else None
-    return Geometry(rod, points, barrier, tip, conforming, rows)
+    return Geometry(rod, points, barrier, h, conforming, rows)
 
 
 def _fine_zone(scene: Scene, h: float, rho: float) -> tuple[float, float, float, float]:

@@ -24,17 +24,15 @@ def scene(
     angle=pi / 4,
     omega=0.0,
     max_time=2.5e-3,
-    rod_yield=546e6,
     sharp=False,
 ):
-    """A rod with a 3 mm edge on a mesh fit for tests: too coarse for the harder rod to yield."""
+    """A rod with a 3 mm edge on a mesh fit for tests."""
     base = load("t5b")
-    steel = replace(base.projectile.material, yield_stress=rod_yield)
     return replace(
         base,
         id="test",
         measured=None,
-        projectile=replace(base.projectile, length=length, material=steel, **(SHARP if sharp else {})),
+        projectile=replace(base.projectile, length=length, **(SHARP if sharp else {})),
         surface=replace(base.surface, state="custom", friction=f, friction_low=f, friction_high=f),
         impact=replace(base.impact, angle=angle, v_n=v_n, v_t=v_t, omega=omega),
         effects=effects,

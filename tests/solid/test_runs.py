@@ -31,7 +31,7 @@ def elastic():
 
 @pytest.fixture(scope="module")
 def yielding():
-    return scenes.run(*YIELD, length=0.08, v_n=-2.1, v_t=-2.1, rod_yield=330e6)
+    return scenes.run(*YIELD, length=0.08, v_n=-2.1, v_t=-2.1)
 
 
 def _outcome(result):
@@ -97,8 +97,8 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
 
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
-    assert found["E_locked_rod_over_E_0"] > 0.5 * found["E_vib_over_E_0"] > 0
-    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], rel=0.1)
+    assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
+    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], abs=3e-4)
     assert found["E_vib_over_E_0"] < 0.01
 
 
@@ -106,7 +106,7 @@ def test_yielding_rod_and_plate(yielding):
     found = _outcome(yielding)
     assert 0.25 < found["e_edge"] < 0.45
     assert 0.45 < found["mu"] < 0.62
-    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.01
+    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.03
     assert found["W_friction_over_E_0"] > 0.1
     assert 0 < found["W_radiated_over_E_0"] < 0.01
     assert abs(found["W_closing_over_E_0"]) < 1e-3

@@ -16,7 +16,7 @@ YIELD = ("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "la
 
 
 def _made():
-    model = scenes.model(*YIELD, length=0.08, v_n=-4.0, v_t=-4.0, rod_yield=250e6)
+    model = scenes.model(*YIELD, length=0.08, v_n=-4.0, v_t=-4.0)
     return model, model.initial_state()
 
 
