@@ -41,9 +41,10 @@ class Mesh:
 FAMILY = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))
 APART = 2.0  # least ratio of the sizes of a pair: closer meshes extrapolate their scatter
 PLAIN = Mesh(8, 2)  # the coarsest: on it elements, steps and effects are changed
-# of a meshed barrier's grid along t, in cells at the contact: a mesh is run at each, the one that scatters
-# most and costs least at more
-PLACES, MORE_PLACES = (0.0, 0.5), (0.0, 0.25, 0.5, 0.75)
+FINEST = FAMILY[-1]
+# of a meshed barrier's grid along t, in cells at the contact: a mesh is run at each, the finest, which
+# scatters least and costs most, at fewer
+PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
     "mean dilatation": replace(PLAIN, element="bbar"),
@@ -91,7 +92,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
     """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
-    places = MORE_PLACES if (mesh.across, mesh.levels) == (PLAIN.across, PLAIN.levels) else PLACES
+    places = FEWER_PLACES if mesh == FINEST else PLACES
     return [on_mesh(scene, mesh, place) for place in places[: 1 if "barrier-rigid" in scene.active else None]]
 
 

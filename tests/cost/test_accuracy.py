@@ -173,7 +173,7 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
 
     monkeypatch.setattr(achieve, "simulate", kept)
     outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
-    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 6))]
+    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
     fine, coarse = (placed(load("t5b"), mesh) for mesh in plan(asking(0.05)).meshes)
     assert outcome["scene_digest"] == fine[0].digest()
     means = [sum(run(scene)["e_edge"] for scene in scenes) / len(scenes) for scenes in (fine, coarse)]

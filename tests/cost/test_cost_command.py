@@ -33,7 +33,7 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert Path("results/cost/t5b/cost.svg").exists()
     code, out, _ = cli("cost", "t5b", "--json", "--target", "20 %")
     cheapest, pair = json.loads(out)["advice"]
-    assert cheapest == "Cheapest within 20 % of e and E_vib: modal, error 13 % in 0.01 s."
+    assert cheapest == "Cheapest within 20 % of e and E_vib: modal, error 11 % in 0.01 s."
     assert pair.startswith("Two meshes against 20 %, solid 0.594 and 0.297 mm extrapolated: e 0.3059 ± ")
 
 

@@ -5,7 +5,6 @@ import json
 import pytest
 from study_fakes import outcome
 
-from fem_impact.cost import FAMILY
 from fem_impact.progress import NullMeter
 from fem_impact.scale import Failure
 from fem_impact.study import Request
@@ -23,7 +22,7 @@ NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
 
 def run(size, place=0.0):
     """An outcome whose e is .4 - 100/m x size, and lies .01 higher or lower at places of the grid."""
-    e = 0.4 - 100.0 * size + (0.01 if place else -0.01)
+    e = 0.4 - 100.0 * size + (0.01 if place in (0.25, 0.5) else -0.01)
     return outcome(**NUMBERS | {"tip_size_m": size, "e_paper": e, "cpu_s": 7.0})
 
 
@@ -38,12 +37,14 @@ def study(out, broken=()):
     return conclude(request, results, NullMeter())
 
 
-def test_every_mesh_is_run_at_two_places_of_the_grid():
+def test_every_mesh_is_run_at_the_places_of_the_grid_that_the_ladder_has():
     jobs = jobs_of("t5b", False)
-    assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [[0.0, 0.5]] * len(FAMILY)
+    assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [
+        [0.0, 0.25, 0.5, 0.75]
+    ] * 3 + [[0.0, 0.5]]
     sizes = [mesh[0].scene.accuracy.tip_size for mesh in jobs]
     assert sizes == sorted(sizes, reverse=True)
-    assert len({job.name for mesh in jobs for job in mesh}) == 2 * len(FAMILY)
+    assert len({job.name for mesh in jobs for job in mesh}) == 14
 
 
 def test_every_quantity_has_its_limit():
@@ -84,7 +85,9 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
 
 def test_a_failed_mesh_is_said_and_the_others_still_count(tmp_path):
     found = study(tmp_path, broken={0.594})
-    assert [f["scene_id"] for f in found.document["failures"]] == ["t5b-0.594-0", "t5b-0.594-0.5"]
+    assert [f["scene_id"] for f in found.document["failures"]] == [
+        f"t5b-0.594-{place}" for place in ("0", "0.25", "0.5", "0.75")
+    ]
     assert "| t5b | e |" in found.text
 
 
@@ -94,6 +97,6 @@ def test_two_meshes_have_no_limit(tmp_path):
 
 def test_a_quick_study_leaves_out_the_dear_runs(tmp_path):
     full, quick = (plan(Request(tmp_path, ("t5b",), quick=q), {}) for q in (False, True))
-    assert (len(full), len(quick)) == (8, 3)
+    assert (len(full), len(quick)) == (14, 3)
     finest = min(job.scene.accuracy.tip_size for job in full)
     assert all(job.scene.accuracy.tip_size > finest for job in quick)
