@@ -28,11 +28,12 @@ PAPER = "paper"
 def cost(options: Options) -> int:
     """Run the ladder of settings, judge it, and name the cheapest setting that does."""
     from fem_impact.cost import chosen
-    from fem_impact.scene.units import parse_quantity, parse_share
+    from fem_impact.paper import quantity
+    from fem_impact.scene.units import parse_share
 
     names = chosen(name.strip() for name in options.of.split(",") if name.strip())
     target = parse_share(options.target, "--target") if options.target else None
-    budget = parse_quantity(options.budget, "time", "--budget") if options.budget else None
+    budget = quantity(options.budget, "time", "--budget") if options.budget else None
     if options.scene == PAPER:
         return _paper(options, names)
     scene = changed_scene(options.scene, options.changes)
@@ -57,9 +58,9 @@ def cost(options: Options) -> int:
 def _family(scene: Scene, finest: str) -> list[Mesh]:
     """Return the meshes that are no finer at the tip than wanted."""
     from fem_impact.cost import FAMILY
-    from fem_impact.scene.units import parse_quantity
+    from fem_impact.paper import quantity
 
-    least = parse_quantity(finest, "length", "--finest") if finest else 0.0
+    least = quantity(finest, "length", "--finest") if finest else 0.0
     sizes = [mesh.tip_size(scene.projectile.diameter) for mesh in FAMILY]
     if least > sizes[1]:
         raise SceneError(

@@ -58,9 +58,9 @@ def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     ("words", "complaint"),
     [
         (["--target", "2"], "--target"),
-        (["--budget", "30"], "has no unit"),
+        (["--budget", "30"], 'has no unit. Write it with its unit, such as --budget "30 s".'),
         (["--of", "speed"], "is not a quantity of interest"),
-        (["--finest", "0.25"], "has no unit"),
+        (["--finest", "0.25"], 'has no unit. Write it with its unit, such as --finest "0.25 mm".'),
         (["--finest", "0.5 mm"], "Give at most 0.396 mm."),
     ],
 )
