@@ -15,8 +15,12 @@ TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
 """Radius of each measured tip, m (a plain tip has a sharp edge)."""
 
 _EXAMPLES = {
-    **{"--diameter": "19 mm", "--height": "0.82 m", "--angle": "45 deg", "--tip-radius": "3 mm"},
-    **{"--budget": "30 s", "--finest": "0.25 mm"},
+    "--diameter": "19 mm",
+    "--height": "0.82 m",
+    "--angle": "45 deg",
+    "--tip-radius": "3 mm",
+    "--budget": "30 s",
+    "--finest": "0.25 mm",
 }
 
 
