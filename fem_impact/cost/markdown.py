@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from fem_impact.cost.judge import Judged
-from fem_impact.cost.pairs import best_pair, verdict
+from fem_impact.cost.pairs import best_pair
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.study.markdown import table
 
@@ -43,7 +43,7 @@ def _pairs(scenes: Scenes) -> str:
         scene: (q, settings) for scene, (q, settings) in scenes.items() if any(one.band for one in settings)
     }
     columns = [[_best(name, *of) for of in ran.values()] for name in TARGETED]
-    head = ["set", *(words for name in TARGETED for words in (name, "meshes, mm", "off", "s"))]
+    head = ["set", *(words for name in TARGETED for words in (name, "% (scatter)", "meshes, mm", "off", "s"))]
     body = [
         [scene, *(cell for told, _ in row for cell in told)]
         for scene, *row in zip(ran, *columns, strict=True)
@@ -55,15 +55,18 @@ def _pairs(scenes: Scenes) -> str:
 
 
 def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tuple[list[str], bool]:
-    """Return cells of the best pair for a quantity, and whether it meets `WANTED`."""
+    """Return cells of the best pair for a quantity, and whether it meets `WANTED`: then its band is bold."""
     pair = best_pair(settings, (name,), WANTED)
     assert pair is not None  # scenes without a pair are left out
     limit, scale = quantities[name], quantities[name]["scale"]
     both = pair.band[name] * scale + limit["uncertainty"]
     off = abs((pair.value[name] or 0.0) - limit["limit"]) / both if both else 0.0
+    found = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * scale:.4f}"
+    met = pair.band[name] <= WANTED
+    band = f"**{_percent(pair.band[name])}**" if met else _percent(pair.band[name])
     sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
-    cells = [verdict(pair, quantities, name, WANTED), sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"]
-    return cells, pair.band[name] <= WANTED
+    scatter = f"({_percent(pair.scatter[name])})"
+    return [found, f"{band} {scatter}", sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"], met
 
 
 def _columns(groups: list[list[Judged]]) -> list[str]:
