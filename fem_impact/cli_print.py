@@ -32,7 +32,7 @@ _SHARES = (
     ("contact closing", "W_closing_over_E_0"),
     ("residual of the ledger", "residual_over_E_0"),
 )
-_SKIN = ("friction, plate's top 0.1 mm", "W_skin_over_E_0")
+_SKIN = ("friction + plate's top 0.1 mm", "W_skin_over_E_0")
 
 
 def print_json(document: Any) -> None:
