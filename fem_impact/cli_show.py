@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 
 from fem_impact.cli_out import checked_file, checked_result
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import MissingLibraryError
+from fem_impact.errors import MissingLibraryError, ResultError
 
 __all__ = ["render", "report"]
 
@@ -16,6 +17,8 @@ def render(options: Options) -> int:
     """Make a film of the stress waves of a result, or of several side by side."""
     results = [checked_result(result) for result in options.results]
     out = checked_file(options.out) if options.out else None
+    for result in results:
+        _check_fields(result)
     from fem_impact import render as films
 
     sys.stderr.write("drawing the film ...\n")
@@ -26,6 +29,14 @@ def render(options: Options) -> int:
         sys.stderr.writelines(f"note: {note}\n" for note in film.notes)
         sys.stdout.write(f"film: {film.path}\n" if film.path else "")
     return 0 if film.path else MissingLibraryError.exit_code
+
+
+def _check_fields(result: Path) -> None:
+    if not (result / "fields.vtkhdf").is_file():
+        raise ResultError(
+            f"{result}: holds no fields.vtkhdf, which only the finite elements write. "
+            "Run its scene with --fidelity solid."
+        )
 
 
 def report(options: Options) -> int:

@@ -28,6 +28,8 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
 
     Pictures that were drawn after the run are only drawn ``again`` if that is asked for.
     """
+    if outcome["fidelity"] != "solid":
+        return section("Over time", paragraph("No curves over time: only the finite elements write them."))
     since = None if again else folder / "history.csv"
     try:
         history = read_table(folder / "history.csv")

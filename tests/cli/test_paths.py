@@ -87,9 +87,18 @@ def test_results_that_are_none(cli, stand, command):
         assert words in err
 
 
-def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
+def test_a_film_of_a_reduced_model_is_refused_with_the_remedy(cli, stand):
     Path("here").mkdir()
     Path("here/outcome.json").write_text("{}")
+    code, err = refused(cli, stand, "render", "here")
+    assert code == 5
+    assert "Run its scene with --fidelity solid." in err
+
+
+def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
+    Path("here").mkdir()
+    for name in ("outcome.json", "fields.vtkhdf"):
+        Path("here", name).write_text("{}")
     code, _, err = cli("render", "here")
     assert code == 7
     assert err == "drawing the film ...\nnote: install libegl1\n"
@@ -99,7 +108,8 @@ def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
 def test_several_results_make_one_film(cli, stand):
     for name in ("here", "there"):
         Path(name).mkdir()
-        Path(name, "outcome.json").write_text("{}")
+        for file in ("outcome.json", "fields.vtkhdf"):
+            Path(name, file).write_text("{}")
     cli("render", "here", "there", "--out", "both.gif")
     cli("render", "here", "--out", "one.gif")
     assert [(name, args) for name, args, _ in stand.calls] == [

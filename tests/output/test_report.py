@@ -109,6 +109,12 @@ def test_everything_from_outside_is_escaped(run):
     assert words.count('<script>alert("x")</script>&') >= 8
 
 
+def test_a_reduced_model_is_said_to_have_no_curves(tmp_path):
+    run = result_maker.write_result(tmp_path, fidelity="modal")
+    (run / "history.csv").unlink()
+    assert "No curves over time: only the finite elements write them." in read(write_report(run))[1]
+
+
 def test_missing_history_is_said_and_not_fatal(run):
     (run / "history.csv").unlink()
     words = read(write_report(run))[1]
