@@ -204,9 +204,10 @@ def _peaks(maps: Maps) -> list[str]:
             gamma, share = _curve(maps, same, "E_vib_over_E_0")
             if gamma:
                 top = int(np.argmax(share))
+                last = f", and {share[-1]:.2g} % at gamma {gamma[-1]:.0f}" if gamma[top] < gamma[-1] else ""
                 told.append(
                     f"{kind}, {state}, 45 degrees: vibration is largest at gamma {gamma[top]:.0f} with "
-                    f"{share[top]:.2g} % of E_0 and {share[-1]:.2g} % at gamma {gamma[-1]:.0f}."
+                    f"{share[top]:.2g} % of E_0{last}."
                 )
     return told
 

@@ -78,6 +78,7 @@ def test_the_study_says_what_later_contacts_give_back(tmp_path, drawn):
     longest = 0.5 * 0.1 * length_of(120.0)
     assert f"{len(more)} touch again; in {len(more)} of these" in found.text
     assert f"at most {100 * longest:.2g} % of E_0 (gamma 120" in found.text
+    assert "largest at gamma 120 with" in found.text and "% at gamma 120" not in found.text
     anchor = found.document["sheets"][0]["rows"][0]
     assert anchor[0] == pytest.approx(float(slenderness(PAPER_RODS["0.08 m"], 0.019)))
     assert "vibration/E_0: modes less finite elements over 1 anchors: mean -0.010" in found.text
