@@ -8,14 +8,15 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_impact.modes import MassStiffness
-from fem_impact.solid.hexmodes import CORNERS, reference_gradients
-from fem_impact.solid.kernels import allocating_kernel
+from fem_impact.solid.hexmodes import CORNERS, cofactors, reference_gradients
+from fem_impact.solid.kernels import kernel
 
 Array = NDArray[np.float64]
 
 SAFETY = 0.9  # of the stable step
 ACCURACY = 1e-3  # of the largest eigenvalue; it lies far inside the safety factor
 REFERENCE = np.ascontiguousarray(reference_gradients(CORNERS))
+GRAM = np.einsum("qai,qaj->qij", REFERENCE, REFERENCE)
 
 
 def stable_step(K: sp.csr_matrix | MassStiffness, inverse_mass: Array, share: float = SAFETY) -> float:
@@ -44,34 +45,30 @@ def gradient_squares(x: Array, places: NDArray[np.int64]) -> Array:
     An element's largest frequency grows like the square root of this number.
     """
     squares = np.empty(len(places))
-    _gradient_squares(x, places, REFERENCE, squares)
+    _gradient_squares(x, places, REFERENCE, GRAM, squares)
     return squares
 
 
-@allocating_kernel
-def _gradient_squares(x, places, reference, squares):  # type: ignore[no-untyped-def]
-    J, C = np.empty((3, 3)), np.empty((3, 3))
+@kernel
+def _gradient_squares(x, places, reference, gram, squares):  # type: ignore[no-untyped-def]
     for e in range(len(places)):
-        squares[e] = 0.0
+        p, worst = places[e], 0.0
         for q in range(8):
-            J[:] = 0.0
+            j00, j01, j02, j10, j11, j12, j20, j21, j22 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
             for a in range(8):
-                for i in range(3):
-                    value = x[places[e, a, i]]
-                    for j in range(3):
-                        J[i, j] += value * reference[q, a, j]
-            for i in range(3):
-                m, n = (i + 1) % 3, (i + 2) % 3
-                for j in range(3):
-                    k, l = (j + 1) % 3, (j + 2) % 3
-                    C[i, j] = J[m, k] * J[n, l] - J[m, l] * J[n, k]
-            det = J[0, 0] * C[0, 0] + J[0, 1] * C[0, 1] + J[0, 2] * C[0, 2]
+                X, Y, Z = reference[q, a, 0], reference[q, a, 1], reference[q, a, 2]
+                t, b, n = x[p[a, 0]], x[p[a, 1]], x[p[a, 2]]
+                j00, j01, j02 = j00 + t * X, j01 + t * Y, j02 + t * Z
+                j10, j11, j12 = j10 + b * X, j11 + b * Y, j12 + b * Z
+                j20, j21, j22 = j20 + n * X, j21 + n * Y, j22 + n * Z
+            c = cofactors(j00, j01, j02, j10, j11, j12, j20, j21, j22)
+            det = j00 * c[0] + j01 * c[1] + j02 * c[2]
             total = 0.0
-            for a in range(8):
-                for i in range(3):
-                    g = C[i, 0] * reference[q, a, 0] + C[i, 1] * reference[q, a, 1]
-                    g += C[i, 2] * reference[q, a, 2]
-                    total += g * g
-            squares[e] = max(squares[e], total / (det * det)) if det > 0.0 else np.nan
+            for i in range(3):
+                k, l, m = c[3 * i], c[3 * i + 1], c[3 * i + 2]
+                total += gram[q, 0, 0] * k * k + gram[q, 1, 1] * l * l + gram[q, 2, 2] * m * m
+                total += 2.0 * (gram[q, 0, 1] * k * l + gram[q, 1, 2] * l * m + gram[q, 2, 0] * m * k)
+            worst = max(worst, total / (det * det)) if det > 0.0 else np.nan
             if not det > 0.0:
                 break
+        squares[e] = worst
