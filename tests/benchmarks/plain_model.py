@@ -21,7 +21,7 @@ from pathlib import Path
 
 from fem_impact.cost import FAMILY, QUANTITIES, TARGETED, Mesh
 from fem_impact.cost.limits import truths
-from fem_impact.cost.settings import PLACES
+from fem_impact.cost.settings import FEWER_PLACES
 from fem_impact.scene import load
 
 PRESENT = Path(__file__).parents[2]
@@ -69,7 +69,7 @@ def off(run, quantity, truth):
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    truth = truths([[outcome(PRESENT, name, mesh, out, place) for place in PLACES] for mesh in FAMILY])
+    truth = truths([[outcome(PRESENT, name, mesh, out, place) for place in FEWER_PLACES] for mesh in FAMILY])
     runs = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
     lines = []
     for quantity in TARGETED:
