@@ -187,7 +187,7 @@ def test_the_best_pair_is_the_quickest_that_meets_the_target_or_the_one_widest_a
         "solid 0.594 and 0.297 mm extrapolated",
         "solid 0.594 and 0.198 mm extrapolated",
     )
-    words = "0.3059 ± 0.0165 (0.0002 of it scatter), reached: 5.3 %"
+    words = "0.3059 ± 0.0166 (0.0002 of it scatter), reached: 5.3 %"
     assert verdict(loose, cost.quantities, "e", 0.2) == words
     told = pair_sentence(cost.settings, cost.quantities, TARGETED, 0.02)
     assert told.startswith("Two meshes against 2 %, solid 0.594 and 0.198 mm extrapolated: e 0.3032 ± ")
