@@ -44,12 +44,12 @@ def test_the_short_rod_on_an_elastic_block(f, e, bending):
 
 @pytest.mark.validation
 def test_the_short_rod_comes_nearer_with_smaller_cells():
-    """It ends 10 % above the reference, whose contact is that of half-spaces; 0.6 mm bend it by 57 %."""
+    """It ends 5 % beside the reference, whose contact is that of half-spaces; coarse cells hardly bend it."""
     errors = [
         checks(verify("oblique-rod", SHORT | {"f": 0.0, "tip_size": h}))["bending energy / E_0"].error
-        for h in (6e-4, 3e-4, 1.5e-4)
+        for h in (1.2e-3, 6e-4, 3e-4)
     ]
-    assert abs(errors[0]) > 5 * max(abs(error) for error in errors[1:])
+    assert abs(errors[0]) > 10 * max(abs(error) for error in errors[1:])
 
 
 @pytest.mark.validation
