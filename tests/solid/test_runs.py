@@ -98,7 +98,7 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
     assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
-    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], abs=2e-4)
+    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], abs=3e-4)
     assert found["E_vib_over_E_0"] < 0.01
 
 
