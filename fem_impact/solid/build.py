@@ -47,12 +47,12 @@ PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
     rod, barrier = geometry.rod.mesh, geometry.barrier
-    yields = rod.finest & (spec.rod_law is not None)
+    yields = geometry.may_yield["rod"] & (spec.rod_law is not None)
     steel, kind = scene.projectile.material, scene.accuracy.element
     found = [make_body("rod", rod, geometry.rod_points, layout.rod, steel, yields, kind)]
     _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
     if barrier is not None:
-        yields = barrier.finest & (spec.barrier_law is not None)
+        yields = geometry.may_yield["barrier"] & (spec.barrier_law is not None)
         steel = scene.barrier.material
         found.append(make_body("barrier", barrier, barrier.points, layout.barrier, steel, yields, kind))
         if geometry.skin_rows:

@@ -77,7 +77,8 @@ def border_strain(model: Model, zone: YieldingZone) -> float:
     """Return the largest mean plastic strain of a yielding element that has a coarser, linear neighbour."""
     g = model.geometry
     mesh = g.rod.mesh if zone.body == "rod" or g.barrier is None else g.barrier
-    border = mesh.is_hanging[mesh.cells[mesh.finest]].any(axis=1)
+    yields = g.may_yield[zone.body]
+    border = np.isin(mesh.cells[yields], mesh.cells[~yields]).any(axis=1)
     return float(np.max(zone.plastic_strain(), where=border, initial=0.0))
 
 

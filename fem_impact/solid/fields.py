@@ -89,6 +89,5 @@ class Fields:
 
     def _yielding(self, body: str) -> Ints:
         g = self.model.geometry
-        mesh = g.rod.mesh if body == "rod" or g.barrier is None else g.barrier
         first = 0 if body == "rod" else len(g.rod.mesh.cells)
-        return first + np.flatnonzero(mesh.finest)
+        return first + np.flatnonzero(g.may_yield[body])

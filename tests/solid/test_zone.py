@@ -74,6 +74,19 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
     assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
 
 
+def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
+    scene = SCENE.replace("save.frames", 0)
+    part = solve(scene)
+    monkeypatch.setattr("fem_impact.solid.geometry._round", lambda mesh, *_: mesh.finest)
+    whole = solve(scene)
+    counts = [[zone.count for zone in found.model.zones] for found in (part, whole)]
+    assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75
+    few, many = (reduce(scene, found) for found in (part, whole))
+    for key in ("e_edge", "mu", "E_vib_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0"):
+        assert few[key] == pytest.approx(many[key], abs=2e-4)
+    assert few["e_edge"] != many["e_edge"]
+
+
 def test_without_friction_no_row_is_thin_whatever_is_on():
     on = SCENE.replace("effects", ("vibration", "friction", "barrier-elastoplastic"))
     assert build_geometry(on.replace("surface.friction", 0.0), 2e-6, True).skin_rows == 0
