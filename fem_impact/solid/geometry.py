@@ -113,9 +113,8 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
     """Return which of the finest cells (m,) reach into an ellipsoid about the contact, drawn out along -t."""
-    low, high = (getattr(points[mesh.cells], extreme)(axis=1) for extreme in ("min", "max"))
-    core = np.array([-along, 0.0, 0.0])
-    nearest = np.maximum(np.maximum(low, core - high), 0.0)
+    corners, core = points[mesh.cells], np.array([-along, 0.0, 0.0])
+    nearest = np.maximum(np.maximum(corners.min(axis=1), core - corners.max(axis=1)), 0.0)
     return np.asarray(mesh.finest & (np.linalg.norm(nearest / radii, axis=1) < ROUND))
 
 
