@@ -74,7 +74,7 @@ def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:
 
 
 def border_strain(model: Model, zone: YieldingZone) -> float:
-    """Return the largest mean plastic strain of a yielding element that has a coarser, linear neighbour."""
+    """Return the largest mean plastic strain of a yielding element that has a linear neighbour."""
     g = model.geometry
     mesh = g.rod.mesh if zone.body == "rod" or g.barrier is None else g.barrier
     yields = g.may_yield[zone.body]

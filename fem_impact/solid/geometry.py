@@ -113,9 +113,9 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
     """Return which of the finest cells (m,) reach into an ellipsoid about the contact, drawn out along -t."""
-    corners, core = points[mesh.cells], np.array([-along, 0.0, 0.0])
-    nearest = np.maximum(np.maximum(corners.min(axis=1), core - corners.max(axis=1)), 0.0)
-    return np.asarray(mesh.finest & (np.linalg.norm(nearest / radii, axis=1) < ROUND))
+    core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
+    away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
+    return np.asarray(mesh.finest & (away < ROUND))
 
 
 def _fine_zone(scene: Scene, h: float, rho: float) -> tuple[float, float, float, float]:
