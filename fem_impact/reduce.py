@@ -62,7 +62,11 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
         "bands": "one mesh alone has no band: run the study, or a second tip size",
     }
     if result.vibration_check is None:
-        reasons["E_vib_check_over_E_0"] = "the run ended before the last separation was certain"
+        reasons["E_vib_check_over_E_0"] = (
+            "the strain that the last forces release was not found"
+            if result.finished
+            else "the run ended before the last separation was certain"
+        )
     if result.heat is None:
         reasons |= dict.fromkeys((k.name for k in HEATING), "the contact-heating effect is off")
     if "vibration" not in scene.active:
@@ -167,6 +171,8 @@ def _cost(result: SolidResult) -> Values:
         "elements_yielding": sum(z.count for z in result.model.zones),
         "wall_s": cost.wall,
         "cpu_s": cost.cpu,
+        "setup_wall_s": cost.setup_wall,
+        "setup_cpu_s": cost.setup_cpu,
         "peak_memory_MB": cost.memory_MB,
         "min_step_s": cost.smallest_step,
         "tip_size_m": g.tip_size,

@@ -10,6 +10,7 @@ from pathlib import Path
 from statistics import fmean
 from typing import TYPE_CHECKING
 
+from fem_impact.cost.judge import seconds
 from fem_impact.cost.limits import Placed, pair_limit, truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
 from fem_impact.cost.settings import placed
@@ -54,14 +55,14 @@ def simulate_to_target(
     chosen = plan(scene, fidelity, threads)
     if not chosen.meshes:
         alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s, threads)
-        return _kept(_stated(alone, chosen, alone["wall_s"]), out)
+        return _kept(_stated(alone, chosen, seconds(alone, "wall_s")), out)
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
     work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
     lanes = [work[0::2], work[1::2]] if threads > 1 else [work]
     done = _side_by_side(lanes)
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
     meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
-    wall_s = max(sum(run["wall_s"] for run in lane) for lane in done)
+    wall_s = max(sum(seconds(run, "wall_s") for run in lane) for lane in done)
     return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), out)
 
 

@@ -32,6 +32,7 @@ REASONS = {
     **dict.fromkeys(
         ("element_steps", "elements_rod", "elements_barrier", "elements_yielding", "tip_size_m"), NOT_MESHED
     ),
+    **dict.fromkeys(("setup_wall_s", "setup_cpu_s"), "the modes of a rod are computed once and kept"),
     "peak_memory_MB": "the march holds a few vectors; the process is larger than it",
 }  # fmt: skip
 

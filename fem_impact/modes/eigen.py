@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse.csgraph import reverse_cuthill_mckee
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, cg, eigsh, splu
 
 from fem_impact.modes.stiffness import MassStiffness
 
@@ -20,6 +20,11 @@ DEFAULT_COUNT = 40
 RIGID = 3  # two translations and one turn in the symmetry plane
 SHIFT = 1e-5  # of the largest diagonal entry: closer to zero, float32 would keep too few digits of the factor
 ACCURACY = 1e-10  # of the eigenvalues
+RELEASED = 1e-5  # residual force, of the force that an energy is asked for
+
+
+def _nothing(force: Array) -> float | None:
+    return 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,11 +36,15 @@ class RodModes:
     omega : (k,) circular frequencies, rad/s, ascending
     shape : (n, k) over the rod's free unknowns, half-model mass-normalised: shape.T M shape = 1
     mass : (n,) lumped masses of the half rod, kg
+    released : from internal forces (n,), N, of a free rod the strain energy, J, that the whole rod releases
+        until they are gone, rigid acceleration apart: of all shapes that the mesh has, not of these modes;
+        None if it is not found
     """
 
     omega: Array
     shape: Array
     mass: Array
+    released: Callable[[Array], float | None] = field(default=_nothing, compare=False)
 
     @property
     def frequency(self) -> Array:
@@ -75,7 +84,7 @@ def rod_modes(
         x = roughly(b)
         return x + roughly(b - times(x) + shift * x)
 
-    inverse = LinearOperator(stiffness.shape, solve, dtype=np.float64)
+    inverse = _operator(solve, mass)
     start = solve(np.random.default_rng(0).normal(size=len(mass)))
     # with the inverse at hand the solver takes only the shape of its first argument
     vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ACCURACY)[1]
@@ -88,7 +97,21 @@ def rod_modes(
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
         )
-    return RodModes(np.sqrt(value[RIGID:]), scale @ vector[:, RIGID:], mass)
+    rigid = vector[:, :RIGID]
+
+    def released(force: Array) -> float | None:
+        pull = root * force
+        least = RELEASED**2 * float(np.linalg.norm(pull))  # what rounding leaves of a rigid acceleration
+        pull -= rigid @ (rigid.T @ pull)
+        whole, near = _operator(times, pull), _operator(roughly, pull)
+        given, failed = cg(whole, pull, rtol=RELEASED, atol=least, M=near)
+        return None if failed else float(pull @ given)
+
+    return RodModes(np.sqrt(value[RIGID:]), scale @ vector[:, RIGID:], mass, released)
+
+
+def _operator(product: Product, vector: Array) -> LinearOperator:
+    return LinearOperator((len(vector), len(vector)), product, dtype=np.float64)
 
 
 def _rough_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product, float]:

@@ -43,8 +43,8 @@ ENERGY = (
     "W_damping_over_E_0", "E_hourglass_over_E_0", "residual_over_E_0",
 )  # fmt: skip
 COST = (
-    "steps", "element_steps", "elements_rod", "elements_barrier", "elements_yielding", "wall_s", "cpu_s",
-    "peak_memory_MB", "min_step_s", "tip_size_m",
+    "steps", "element_steps", "elements_rod", "elements_barrier", "elements_yielding",
+    "wall_s", "cpu_s", "setup_wall_s", "setup_cpu_s", "peak_memory_MB", "min_step_s", "tip_size_m",
 )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core import event
 from numba.core.codegen import get_host_cpu_features
 
 SETTINGS: Any = numba.config
@@ -60,6 +61,15 @@ _use_whole_registers()
 def compiled_before(name: str = "yielding_kernel.update") -> bool:
     """Return whether a kernel that an earlier run of these sources compiled lies in the cache."""
     return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob(f"{name}-*.nbi"))
+
+
+_COMPILER = event.TimingListener()
+event.register("numba:compile", _COMPILER)
+
+
+def compile_seconds() -> float:
+    """Return the time, s, that this process has spent on compiling kernels; the cache costs none."""
+    return float(_COMPILER.duration) if _COMPILER.done else 0.0
 
 
 def kernel(function: F) -> F:

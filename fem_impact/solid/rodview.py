@@ -74,3 +74,13 @@ class RodView:
         """Return the vibration of the present motion; forces must be those of a free rod."""
         angle = self.angle(state, model)
         return flight(self.modes, self.turned_back(state.v, angle), self.turned_back(state.force, angle))
+
+    def vibration(self, state: State, model: Model) -> float | None:
+        """Return the energy, J, of all vibration that the mesh has; forces must be those of a free rod.
+
+        Kinetic energy beyond the rigid motion, and what the internal forces release: no mode has part in it,
+        so it checks the projection and tells what lies above its highest mode. None if that is not found.
+        """
+        kinetic = float(self.mass @ (state.v[self.places] ** 2).sum(axis=1)) - self.rigid(state).kinetic
+        strain = self.modes.released(self.turned_back(state.force, self.angle(state, model)))
+        return None if strain is None else kinetic + strain

@@ -10,8 +10,6 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from fem_impact.effects import specify
 from fem_impact.modes import Flight, RigidMotion
 from fem_impact.progress import Progress, compiling
@@ -37,12 +35,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What a run took."""
+    """What a run took.
 
-    wall: float
-    cpu: float
-    memory_MB: float
-    smallest_step: float
+    ``wall`` and ``cpu`` are s in its time loop, ``setup_wall`` and ``setup_cpu`` around it, compiling apart.
+    """
+
+    wall: float = 0.0
+    cpu: float = 0.0
+    setup_wall: float = 0.0
+    setup_cpu: float = 0.0
+    memory_MB: float = 0.0
+    smallest_step: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +60,7 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     skin_share : share of the barrier's plastic work that lies right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
-    vibration_check : twice the mean vibrational kinetic energy over a half-period, J, or None
+    vibration_check : energy of the vibration without modes, see `RodView.vibration`, J, or None
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own
     """
@@ -77,8 +80,8 @@ class SolidResult:
     vibration_check: float | None
     finished: bool
     reason: str
-    cost: Cost
     warnings: tuple[str, ...]
+    cost: Cost = Cost()
     heat: HeatWatch | None = None
     shares: dict[str, float] = field(default_factory=dict)
 
@@ -108,6 +111,7 @@ def solve(
     RunError
         If the motion is no longer finite.
     """
+    whole = Stopwatch()
     spec = specify(scene)
     model = model or build(scene, spec)
     view = RodView.of(model)
@@ -128,12 +132,18 @@ def solve(
             if resume:
                 saved.restore()
                 advance(model, state)  # the forces of the checkpoint's step are known
+        marching = Stopwatch()
         try:
             march(model, state, observers, helper)
         finally:
             looking.flush()
+        loop, here = clock.read(), marching.read()
     looking.watch.observe(state)
-    return _result(scene, model, view, state, looking, clock)
+    result = _result(scene, model, view, state, looking)
+    wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
+    result = replace(result, cost=Cost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest))
+    step_time = result.cost.cpu / max(result.steps, 1)
+    return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
 
 def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch) -> Meter:
@@ -142,12 +152,10 @@ def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, wat
     return Meter(progress, watch, model, scene.accuracy.max_time, scene.id)
 
 
-def _result(
-    scene: Scene, model: Model, view: RodView, state: State, looking: Watchers, clock: Stopwatch
-) -> SolidResult:
+def _result(scene: Scene, model: Model, view: RodView, state: State, looking: Watchers) -> SolidResult:
     ledger, stop = looking.watch.ledger, looking.stop
-    # the coasting below moves the state on: everything else is taken now
-    result = SolidResult(
+    free = stop.finished and model.rod_stiffness is not None
+    return SolidResult(
         scene=scene,
         model=model,
         view=view,
@@ -160,17 +168,12 @@ def _result(
         flight=view.flight(state, model),
         skin_share=skin_share(model),
         peak_force=looking.peak.largest,
-        vibration_check=None,
+        vibration_check=view.vibration(state, model) if free else None,
         finished=stop.finished,
         reason=looking.reason,
-        cost=Cost(clock.wall, clock.cpu, _peak_memory(), looking.guard.smallest),
         warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
         heat=looking.heat,
     )
-    if stop.finished and model.rod_stiffness is not None:
-        result = replace(result, vibration_check=coast(model, view, state))
-    step_time = result.cost.cpu / max(result.steps, 1)
-    return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
 
 def _helper(model: Model, state: State, threads: int) -> AbstractContextManager[Helper | None]:
@@ -182,34 +185,6 @@ def _helper(model: Model, state: State, threads: int) -> AbstractContextManager[
 def _warm_up(model: Model) -> None:
     """Let the force kernels compile on a throw-away state, so that times are times of the run."""
     evaluate(model, model.initial_state())
-
-
-def coast(model: Model, view: RodView, state: State) -> float:
-    """Fly the rod on for half a period of its first bending mode; return 2 <vibrational kinetic energy>, J.
-
-    Steps the rod alone, with its yielding zone, so this checks the modal projection independently. The
-    state is moved on.
-    """
-    probe = VibrationProbe(view, state.time + np.pi / float(view.modes.omega[0]))
-    state.v[model.layout.barrier_slice] = 0.0
-    march(model.coasting(), state, [probe])
-    return 2 * float(np.mean(probe.energies))
-
-
-class VibrationProbe:
-    """Samples the kinetic energy beyond the rigid motion until a time."""
-
-    every = 10
-
-    def __init__(self, view: RodView, end: float) -> None:
-        self.view, self.end = view, end
-        self.energies: list[float] = []
-
-    def observe(self, state: State) -> bool:
-        """Sample; stop at the end."""
-        v = state.v[self.view.places]
-        self.energies.append(float(self.view.mass @ (v**2).sum(axis=1)) - self.view.rigid(state).kinetic)
-        return state.time >= self.end
 
 
 def _peak_memory() -> float:

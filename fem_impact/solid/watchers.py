@@ -11,6 +11,7 @@ from fem_impact.estimates import contact_estimate
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.fields import Fields
+from fem_impact.solid.kernels import compile_seconds
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.moving import Moving
@@ -33,31 +34,43 @@ class Saved(Observer, Moving, Protocol):
     """An observer whose moving part a checkpoint keeps."""
 
 
+def _wall() -> float:
+    return time.perf_counter() - compile_seconds()
+
+
+def _cpu() -> float:
+    return time.process_time() - compile_seconds()
+
+
 @dataclass(slots=True)
 class Stopwatch:
-    """Wall and processor time of a run, also of its parts before a checkpoint, s."""
+    """Wall and processor time of a part of a run, s, compiling apart; what a checkpoint brings is added."""
 
     moving: ClassVar[tuple[str, ...]] = ("wall", "cpu")
-    begun_wall: float = field(default_factory=time.perf_counter)
-    begun_cpu: float = field(default_factory=time.process_time)
+    begun_wall: float = field(default_factory=_wall)
+    begun_cpu: float = field(default_factory=_cpu)
 
     @property
     def wall(self) -> float:
         """Time on the clock so far."""
-        return time.perf_counter() - self.begun_wall
+        return _wall() - self.begun_wall
 
     @wall.setter
     def wall(self, before: float) -> None:
-        self.begun_wall = time.perf_counter() - float(before)
+        self.begun_wall -= float(before)
 
     @property
     def cpu(self) -> float:
         """Processor time so far."""
-        return time.process_time() - self.begun_cpu
+        return _cpu() - self.begun_cpu
 
     @cpu.setter
     def cpu(self, before: float) -> None:
-        self.begun_cpu = time.process_time() - float(before)
+        self.begun_cpu -= float(before)
+
+    def read(self) -> tuple[float, float]:
+        """Return wall and processor time so far."""
+        return self.wall, self.cpu
 
 
 @dataclass(frozen=True, slots=True)

@@ -89,6 +89,21 @@ def test_flight_of_a_known_vibration(long):
     assert ahead.energies.sum() == pytest.approx(ahead.energy)
 
 
+def test_released_energy_is_that_of_all_shapes_whoever_knows_them(long):
+    """Of 20 modes the last eight are beyond the twelve; a common acceleration releases nothing."""
+    model, modes = long
+    a = np.random.default_rng(3).normal(size=20) * 1e-6
+    u = _modes(model, 20).shape @ a
+    force = -(model.rod_stiffness @ u)
+    strain = -u @ force  # whole rod: twice a half
+    assert modes.released(force) == pytest.approx(strain, rel=1e-6)
+    assert flight(modes, 0 * u, force).strain < 0.9 * strain
+    along = model.layout.rod[~model.geometry.rod.mesh.is_hanging][:, [0, 2]]
+    fall = np.zeros_like(u)
+    fall[along] = 1e5 * modes.mass[along]
+    assert modes.released(fall) < 1e-6 * strain
+
+
 def test_flight_moves_as_the_rod_would(long):
     _, modes = long
     a, b = np.random.default_rng(2).normal(size=(2, 12)) * 1e-6

@@ -153,6 +153,7 @@ NUMBERS = {
     "W_radiated_over_E_0": 0.004, "W_closing_over_E_0": 0.001, "residual_over_E_0": 2e-6,
     "marker_V_n_m_per_s": 0.315, "marker_V_t_m_per_s": -0.409, "marker_Omega_rad_per_s": 5.2,
     "marker_V_cn_m_per_s": 0.47, "marker_V_ct_m_per_s": -0.31, "wall_s": 81.5, "cpu_s": 84.2,
+    "setup_wall_s": 9.1, "setup_cpu_s": 9.0,
     "peak_memory_MB": 512.0, "min_step_s": 1.8e-8, "tip_size_m": 0.35e-3,
 }  # fmt: skip
 
