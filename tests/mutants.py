@@ -69,6 +69,13 @@ MUTANTS = (
         f"{RUNS}::test_locked_in_stress_is_not_vibration",
     ),
     Mutant(
+        "acceleration of the whole rod taken for strain in the check of the vibration",
+        "fem_impact/modes/eigen.py",
+        "        pull -= rigid @ (rigid.T @ pull)\n",
+        "",
+        "tests/modes/test_modes.py::test_released_energy_is_that_of_all_shapes_whoever_knows_them",
+    ),
+    Mutant(
         "sign of Omega",
         "fem_impact/modes/motion.py",
         "float(V[2]), float(V[0]), spin / inertia)",

@@ -20,7 +20,7 @@ DEFAULT_COUNT = 40
 RIGID = 3  # two translations and one turn in the symmetry plane
 SHIFT = 1e-5  # of the largest diagonal entry: closer to zero, float32 would keep too few digits of the factor
 ACCURACY = 1e-10  # of the eigenvalues
-RELEASED = 1e-5  # residual force, of the force that an energy is asked for
+RELEASED, MOST = 1e-5, 300  # residual force, of the force that an energy is asked for; steps (20 are common)
 
 
 def _nothing(force: Array) -> float | None:
@@ -104,7 +104,7 @@ def rod_modes(
         least = RELEASED**2 * float(np.linalg.norm(pull))  # what rounding leaves of a rigid acceleration
         pull -= rigid @ (rigid.T @ pull)
         whole, near = _operator(times, pull), _operator(roughly, pull)
-        given, failed = cg(whole, pull, rtol=RELEASED, atol=least, M=near)
+        given, failed = cg(whole, pull, rtol=RELEASED, atol=least, maxiter=MOST, M=near)
         return None if failed else float(pull @ given)
 
     return RodModes(np.sqrt(value[RIGID:]), scale @ vector[:, RIGID:], mass, released)

@@ -57,7 +57,6 @@ def test_rigid_and_vibrating_parts_are_all_the_energy(elastic):
     assert found["E_r_over_E_0"] + found["E_vib_over_E_0"] + found["W_closing_over_E_0"] == pytest.approx(
         1, abs=3e-4
     )
-    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], rel=0.06)
     assert found["mu"] == pytest.approx(0.0, abs=1e-7)
     assert abs(found["E_locked_rod_over_E_0"]) < 3e-4
 
@@ -95,10 +94,17 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
     assert after - before == pytest.approx(-2 * book.impulse[2], rel=2e-3)
 
 
+@pytest.mark.parametrize(("which", "most"), [("elastic", 2e-5), ("yielding", 2e-4)])
+def test_modes_hold_all_but_little_of_the_vibration(which, most, request):
+    """The check knows no modes: it holds what they do, and what lies above the highest of them."""
+    found = _outcome(request.getfixturevalue(which))
+    above = found["E_vib_check_over_E_0"] - found["E_vib_over_E_0"]
+    assert -1e-6 * found["E_vib_over_E_0"] < above < most
+
+
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
     assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
-    assert found["E_vib_check_over_E_0"] == pytest.approx(found["E_vib_over_E_0"], abs=3e-4)
     assert found["E_vib_over_E_0"] < 0.01
 
 
