@@ -19,7 +19,8 @@ Product = Callable[[Array], Array]
 DEFAULT_COUNT = 40
 RIGID = 3  # two translations and one turn in the symmetry plane
 SHIFT = 1e-5  # of the largest diagonal entry: closer to zero, float32 would keep too few digits of the factor
-ACCURACY = 1e-10  # of the eigenvalues
+ROUGH = 1e-6  # of the eigenvalues of the inverse, which has no more digits
+CORRECTIONS = 2  # bring frequencies to 1e-11 and residual forces to 1e-6; one: 1e-8 and 1e-4
 RELEASED, MOST = 1e-5, 300  # residual force, of the force that an energy is asked for; steps (20 are common)
 
 
@@ -80,19 +81,17 @@ def rod_modes(
     def times(x: Array) -> Array:
         return np.asarray(scale @ (stiffness @ (scale @ x)))
 
-    def solve(b: Array) -> Array:
-        x = roughly(b)
-        return x + roughly(b - times(x) + shift * x)
-
-    inverse = _operator(solve, mass)
-    start = solve(np.random.default_rng(0).normal(size=len(mass)))
+    inverse = _operator(roughly, mass)
+    start = roughly(np.random.default_rng(0).normal(size=len(mass)))
     # with the inverse at hand the solver takes only the shape of its first argument
-    vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ACCURACY)[1]
-    # beside the shift the lowest squares are small: Rayleigh-Ritz gives their digits back
-    value, mix = np.linalg.eigh(vector.T @ times(vector))
-    vector = vector @ mix
-    rest = roughly(times(vector) - vector * value)  # what rounding left in the highest frequencies
-    vector -= rest - vector @ (vector.T @ rest)
+    vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ROUGH)[1]
+    for _ in range(CORRECTIONS):
+        vector = np.linalg.qr(vector)[0]
+        # beside the shift the lowest squares are small: Rayleigh-Ritz gives their digits back
+        value, mix = np.linalg.eigh(vector.T @ times(vector))
+        vector = vector @ mix
+        rest = roughly(times(vector) - vector * value)  # what few digits left in the highest frequencies
+        vector -= rest - vector @ (vector.T @ rest)
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."

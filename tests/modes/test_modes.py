@@ -53,7 +53,7 @@ def test_modes_are_orthonormal_and_solve_the_eigenproblem(long):
     assert modes.shape.T @ (M[:, None] * modes.shape) == pytest.approx(np.eye(12), abs=1e-9)
     free = model.inverse_mass[:n] > 0
     left, right = model.rod_stiffness @ modes.shape, M[:, None] * modes.shape * modes.omega**2
-    assert abs(left - right)[free].max() < 1e-6 * abs(right).max()
+    assert abs(left - right)[free].max() < 3e-6 * abs(right).max()
     assert not modes.shape[~free].any()
 
 
