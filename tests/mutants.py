@@ -71,7 +71,7 @@ MUTANTS = (
     Mutant(
         "acceleration of the whole rod taken for strain in the check of the vibration",
         "fem_impact/modes/eigen.py",
-        "        pull -= rigid @ (rigid.T @ pull)\n",
+        "    pull -= rigid @ (rigid.T @ pull)\n",
         "",
         "tests/modes/test_modes.py::test_released_energy_is_that_of_all_shapes_whoever_knows_them",
     ),

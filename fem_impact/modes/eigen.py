@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 import scipy.sparse as sp
@@ -96,17 +97,19 @@ def rod_modes(
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
         )
-    rigid = vector[:, :RIGID]
-
-    def released(force: Array) -> float | None:
-        pull = root * force
-        least = RELEASED**2 * float(np.linalg.norm(pull))  # what rounding leaves of a rigid acceleration
-        pull -= rigid @ (rigid.T @ pull)
-        whole, near = _operator(times, pull), _operator(roughly, pull)
-        given, failed = cg(whole, pull, rtol=RELEASED, atol=least, maxiter=MOST, M=near)
-        return None if failed else float(pull @ given)
-
+    released = partial(_released, _operator(times, mass), inverse, root, vector[:, :RIGID])
     return RodModes(np.sqrt(value[RIGID:]), scale @ vector[:, RIGID:], mass, released)
+
+
+def _released(
+    stiffness: LinearOperator, inverse: LinearOperator, root: Array, rigid: Array, force: Array
+) -> float | None:
+    """Return what `RodModes` tells of ``released``, by conjugate gradients with the rough inverse at hand."""
+    pull = root * force
+    least = RELEASED**2 * float(np.linalg.norm(pull))  # what rounding leaves of a rigid acceleration
+    pull -= rigid @ (rigid.T @ pull)
+    given, failed = cg(stiffness, pull, rtol=RELEASED, atol=least, maxiter=MOST, M=inverse)
+    return None if failed else float(pull @ given)
 
 
 def _operator(product: Product, vector: Array) -> LinearOperator:

@@ -127,7 +127,7 @@ ENERGY = (
     _number("E_0_J", "J", "Kinetic energy of the whole rod at first contact."),
     _fraction("E_r", "Kinetic energy of the rigid motion after the last separation (Eq 26)"),
     _fraction("E_vib", "Vibration energy after the last separation, by modal projection"),
-    _fraction("E_vib_check", "The same without modes, of all shapes that the mesh has"),
+    _fraction("E_vib_check", "Vibration energy without modes, of all shapes that the mesh has"),
     _fraction("E_vib_floor", "Numerical floor under which a vibration energy means nothing"),
     Key("E_vib_below_floor", "flag", "", "True when E_vib is below its floor.", nullable=True),
     _fraction("W_friction", "Work turned to heat by friction at the contact"),
