@@ -99,7 +99,7 @@ def _energies(result: SolidResult, values: Values) -> Values:
     a, E_0 = result.accounts, result.E_0
     V_n, V_t, Omega = (values[k] for k in ("V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"))
     kept = rigid.kinetic_energy(V_n, V_t, Omega, mass=values["mass_kg"], k2=values["k_squared_m2"])
-    vibration, floor = result.flight.energy, result.worst
+    vibration, floor, check = result.flight.energy, result.worst, result.vibration_check
     shares = {
         "E_r": float(kept),
         "E_vib": vibration,
@@ -108,7 +108,7 @@ def _energies(result: SolidResult, values: Values) -> Values:
         "W_skin": a["friction"] + result.skin_share * a["plastic_barrier"],
         "E_plastic_rod": a["plastic_rod"],
         "E_plastic_barrier": a["plastic_barrier"],
-        "E_locked_rod": a["strain_rod"] - result.flight.strain,
+        "E_locked_rod": a["strain_rod"] - (check[1] if check else result.flight.strain),
         "E_locked_barrier": a["strain_barrier"] + a["kinetic_barrier"],
         "W_radiated": a["radiated"],
         "W_closing": a["closing"],
@@ -120,8 +120,7 @@ def _energies(result: SolidResult, values: Values) -> Values:
         shares["E_locked_rod"] += a["kinetic_rod"] - result.motion.kinetic  # the nose rings a little
         del shares["E_vib"], shares["E_vib_floor"]
     found: Values = {f"{name}_over_E_0": float(value / E_0) for name, value in shares.items()}
-    check = result.vibration_check
-    found["E_vib_check_over_E_0"] = None if check is None else check / E_0
+    found["E_vib_check_over_E_0"] = None if check is None else sum(check) / E_0
     below = None if result.model.rod_stiffness is None else bool(vibration < floor)
     return found | {"E_0_J": E_0, "E_vib_below_floor": below}
 

@@ -70,17 +70,27 @@ class RodView:
         result[n] = cos(angle) * vector[n] - sin(angle) * vector[t]
         return result
 
+    def present(self, state: State, model: Model) -> Array:
+        """Return velocities (size,), m/s, at the time of the positions, half a step after the state's own.
+
+        Those of the state would change the vibration energy by up to .0014 of itself.
+        """
+        n = self.size
+        return np.asarray(state.v[:n] + 0.5 * state.dt * model.inverse_mass[:n] * state.force[:n])
+
     def flight(self, state: State, model: Model) -> Flight:
         """Return the vibration of the present motion; forces must be those of a free rod."""
-        angle = self.angle(state, model)
-        return flight(self.modes, self.turned_back(state.v, angle), self.turned_back(state.force, angle))
+        angle, v = self.angle(state, model), self.present(state, model)
+        return flight(self.modes, self.turned_back(v, angle), self.turned_back(state.force, angle))
 
-    def vibration(self, state: State, model: Model) -> float | None:
-        """Return the energy, J, of all vibration that the mesh has; forces must be those of a free rod.
+    def vibration(self, state: State, model: Model) -> tuple[float, float] | None:
+        """Return kinetic and strain energy, J, of all vibration; forces must be those of a free rod.
 
-        Kinetic energy beyond the rigid motion, and what the internal forces release: no mode has part in it,
-        so it checks the projection and tells what lies above its highest mode. None if that is not found.
+        Kinetic energy beyond the rigid motion, and what the internal forces release, of all shapes that the
+        mesh has: no mode has part in it, so it checks the projection and tells what lies above its highest
+        mode. None if that is not found.
         """
-        kinetic = float(self.mass @ (state.v[self.places] ** 2).sum(axis=1)) - self.rigid(state).kinetic
+        v = self.present(state, model)[self.places]
+        kinetic = float(self.mass @ (v**2).sum(axis=1)) - self.rigid(state).kinetic
         strain = self.modes.released(self.turned_back(state.force, self.angle(state, model)))
-        return None if strain is None else kinetic + strain
+        return None if strain is None else (kinetic, strain)

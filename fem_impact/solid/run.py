@@ -60,7 +60,7 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     skin_share : share of the barrier's plastic work that lies right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
-    vibration_check : energy of the vibration without modes, see `RodView.vibration`, J, or None
+    vibration_check : kinetic and strain energy of the vibration without modes, see `RodView`, J, or None
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own
     """
@@ -77,7 +77,7 @@ class SolidResult:
     flight: Flight
     skin_share: float
     peak_force: float
-    vibration_check: float | None
+    vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
     warnings: tuple[str, ...]
