@@ -99,7 +99,8 @@ def _energies(result: SolidResult, values: Values) -> Values:
     a, E_0 = result.accounts, result.E_0
     V_n, V_t, Omega = (values[k] for k in ("V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"))
     kept = rigid.kinetic_energy(V_n, V_t, Omega, mass=values["mass_kg"], k2=values["k_squared_m2"])
-    vibration, floor, check = result.flight.energy, result.worst, result.vibration_check
+    vibration, floor = result.flight.energy, result.worst
+    check = result.vibration_check
     shares = {
         "E_r": float(kept),
         "E_vib": vibration,
