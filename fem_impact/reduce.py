@@ -29,6 +29,7 @@ VIBRATING = (
     "E_vib_check_over_E_0",
 )
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
+RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 
 
 def reduce(scene: Scene, result: SolidResult) -> Outcome:
@@ -49,7 +50,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
         "solid",
         finished,
         open_ledger or result.reason,
-        warnings=[*result.warnings, *neglected(scene), *coarse_tip(scene)],
+        warnings=[*result.warnings, *_ringing(result), *neglected(scene), *coarse_tip(scene)],
     )
     values["effect_choices"] = [_told(choice, result.shares) for choice in choices(scene)]
     values |= _motion(scene, result)
@@ -72,6 +73,19 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     if "vibration" not in scene.active:
         reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
     return Outcome(values, {k: v for k, v in reasons.items() if values.get(k) is None})
+
+
+def _ringing(result: SolidResult) -> list[str]:
+    """Tell of vibration above the modes where it is not small beside theirs."""
+    vibration, E_0 = result.flight.energy, result.E_0
+    above = sum(result.vibration_check or (vibration,)) - vibration
+    if above <= max(RINGING * vibration, LEAST * E_0):
+        return []
+    return [
+        f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes, which "
+        "E_vib_check holds: cells of the tip ring at their own size after a jolt of the contact, or the blow "
+        "was too short for the modes. Compare another accuracy.tip_size or accuracy.grid_shift."
+    ]
 
 
 def _told(choice: Choice, shares: Mapping[str, float]) -> dict[str, Any]:

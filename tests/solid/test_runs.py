@@ -101,6 +101,14 @@ def test_modes_hold_all_but_little_of_the_vibration(which, most, request):
     assert -1e-6 * found["E_vib_over_E_0"] < above < most
 
 
+def test_vibration_above_the_modes_is_told_where_it_is_not_small(elastic):
+    assert not [words for words in _outcome(elastic)["warnings"] if "E_vib lacks" in words]
+    kinetic, strain = elastic.vibration_check
+    ringing = replace(elastic, vibration_check=(kinetic + 8e-3 * elastic.E_0, strain))
+    (words,) = (words for words in _outcome(ringing)["warnings"] if "E_vib lacks" in words)
+    assert "lacks 8.0e-03 of E_0 that vibrates above its 40 modes" in words
+
+
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
     assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
