@@ -9,6 +9,7 @@ from fem_impact.effects import specify
 from fem_impact.modes import flight, rigid_motion, rod_modes
 from fem_impact.scene import load
 from fem_impact.solid.build import build
+from fem_impact.solid.rodview import modes_of
 
 # bending and longitudinal, Hz: Rayleigh-Ritz of the sharp-edged cylinder (torsion is antisymmetric)
 REFERENCE = {0.24: [1526.3, 4092.1, 7728.6, 11000.3], 0.08: [12340.0, 28916.0, 32913.0]}
@@ -40,6 +41,20 @@ def long():
 
 def test_frequencies_of_the_long_rod(long):
     assert long[1].frequency[:4] == pytest.approx(REFERENCE[0.24], rel=5e-3)
+
+
+def test_runs_with_the_same_rod_find_its_modes_once():
+    scene = load("t5b").replace("accuracy.tip_size", "1.2 mm")
+    first, moved, longer = (
+        modes_of(build(s, specify(s)))
+        for s in (
+            scene,
+            scene.replace("accuracy.grid_shift", 0.5),
+            scene.replace("projectile.length", "81 mm"),
+        )
+    )
+    assert moved is first
+    assert longer.omega[0] < 0.99 * first.omega[0]
 
 
 def test_frequencies_of_the_short_rod():
