@@ -82,9 +82,9 @@ def _ringing(result: SolidResult) -> list[str]:
     if above <= max(RINGING * vibration, LEAST * E_0):
         return []
     return [
-        f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes, which "
-        "E_vib_check holds: cells of the tip ring at their own size after a jolt of the contact, or the blow "
-        "was too short for the modes. Compare another accuracy.tip_size or accuracy.grid_shift."
+        f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes and that "
+        "E_vib_check holds: cells of the tip ring at their own size, or the blow was too short for modes. "
+        "Compare another accuracy.tip_size or accuracy.grid_shift."
     ]
 
 
