@@ -12,7 +12,7 @@ from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.cost.settings import Setting
 from fem_impact.outcome import Outcome
 
-__all__ = ["Judged", "front", "judge", "worst"]
+__all__ = ["Judged", "front", "judge", "seconds", "worst"]
 
 
 @dataclass(frozen=True, slots=True)

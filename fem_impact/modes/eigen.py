@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, field
+import hashlib
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from functools import partial
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
@@ -25,10 +27,6 @@ CORRECTIONS = 2  # bring frequencies to 1e-11 and residual forces to 1e-6; one: 
 RELEASED, MOST = 1e-5, 300  # residual force, of the force that an energy is asked for; steps (20 are common)
 
 
-def _nothing(force: Array) -> float | None:
-    return 0.0
-
-
 @dataclass(frozen=True, slots=True)
 class RodModes:
     """Elastic modes that are symmetric about the plane b = 0.
@@ -46,7 +44,7 @@ class RodModes:
     omega: Array
     shape: Array
     mass: Array
-    released: Callable[[Array], float | None] = field(default=_nothing, compare=False)
+    released: Callable[[Array], float | None]
 
     @property
     def frequency(self) -> Array:
@@ -56,13 +54,18 @@ class RodModes:
 
 def no_modes(mass: Array) -> RodModes:
     """Return the modes of a body that cannot vibrate: none."""
-    return RodModes(np.zeros(0), np.zeros((len(mass), 0)), mass)
+    return RodModes(np.zeros(0), np.zeros((len(mass), 0)), mass, lambda force: 0.0)
+
+
+_LAST: dict[str, RodModes] = {}
+"""The modes that this process found last: material damping asks for them beside the run, and runs that differ
+in their barrier alone have them in common."""
 
 
 def rod_modes(
     stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
 ) -> RodModes:
-    """Return the lowest elastic modes.
+    """Return the lowest elastic modes, the same again to whoever asks for those found last.
 
     Parameters
     ----------
@@ -75,6 +78,24 @@ def rod_modes(
     ValueError
         If the body is not free: more or fewer than three rigid motions were found.
     """
+    matrices = (stiffness.spread, *stiffness.parts)
+    arrays = [array for A in matrices for array in (A.indptr, A.indices, A.data)]
+    mark = _mark([*arrays, mass, fixed], count)
+    if mark not in _LAST:
+        _LAST.clear()
+        _LAST[mark] = _found(stiffness, mass, fixed, count)
+    return _LAST[mark]
+
+
+def _mark(arrays: Iterable[NDArray[Any]], count: int) -> str:
+    digest = hashlib.sha256(str(count).encode())
+    for array in arrays:
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.hexdigest()
+
+
+def _found(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int) -> RodModes:
+    """Search for what `rod_modes` returns."""
     root = np.where(fixed, 0.0, 1 / np.sqrt(mass))
     roughly, shift = _rough_inverse(stiffness, root)
     scale = sp.diags(root)

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import cos, sin
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,29 +17,11 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-_LAST: dict[str, RodModes] = {}
-"""The modes that this process found last: runs that differ in their barrier alone have them in common."""
-
-
 def modes_of(model: Model, count: int = DEFAULT_COUNT) -> RodModes:
     """Return the modes of the undeformed rod, none of one that cannot vibrate."""
     n, K = model.layout.rod_size, model.rod_stiffness
-    mass, fixed = model.mass[:n], model.inverse_mass[:n] == 0
-    if K is None:
-        return no_modes(mass)
-    matrices = [array for A in (K.spread, *K.parts) for array in (A.indptr, A.indices, A.data)]
-    mark = _mark([*matrices, mass, fixed], count)
-    if mark not in _LAST:
-        _LAST.clear()
-        _LAST[mark] = rod_modes(K, mass, fixed, count)
-    return _LAST[mark]
-
-
-def _mark(arrays: Iterable[NDArray[Any]], count: int) -> str:
-    digest = hashlib.sha256(str(count).encode())
-    for array in arrays:
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
+    mass = model.mass[:n]
+    return no_modes(mass) if K is None else rod_modes(K, mass, model.inverse_mass[:n] == 0, count)
 
 
 @dataclass(frozen=True, slots=True)

@@ -40,12 +40,12 @@ class Cost:
     ``wall`` and ``cpu`` are s in its time loop, ``setup_wall`` and ``setup_cpu`` around it, compiling apart.
     """
 
-    wall: float = 0.0
-    cpu: float = 0.0
-    setup_wall: float = 0.0
-    setup_cpu: float = 0.0
-    memory_MB: float = 0.0
-    smallest_step: float = 0.0
+    wall: float
+    cpu: float
+    setup_wall: float
+    setup_cpu: float
+    memory_MB: float
+    smallest_step: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +80,8 @@ class SolidResult:
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
+    cost: Cost
     warnings: tuple[str, ...]
-    cost: Cost = Cost()
     heat: HeatWatch | None = None
     shares: dict[str, float] = field(default_factory=dict)
 
@@ -139,9 +139,11 @@ def solve(
             looking.flush()
         loop, here = clock.read(), marching.read()
     looking.watch.observe(state)
-    result = _result(scene, model, view, state, looking)
+    free = looking.stop.finished and model.rod_stiffness is not None
+    check = view.vibration(state, model) if free else None
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
-    result = replace(result, cost=Cost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest))
+    cost = Cost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
+    result = _result(scene, model, view, state, looking, check, cost)
     step_time = result.cost.cpu / max(result.steps, 1)
     return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
 
@@ -152,9 +154,16 @@ def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, wat
     return Meter(progress, watch, model, scene.accuracy.max_time, scene.id)
 
 
-def _result(scene: Scene, model: Model, view: RodView, state: State, looking: Watchers) -> SolidResult:
+def _result(
+    scene: Scene,
+    model: Model,
+    view: RodView,
+    state: State,
+    looking: Watchers,
+    check: tuple[float, float] | None,
+    cost: Cost,
+) -> SolidResult:
     ledger, stop = looking.watch.ledger, looking.stop
-    free = stop.finished and model.rod_stiffness is not None
     return SolidResult(
         scene=scene,
         model=model,
@@ -168,9 +177,10 @@ def _result(scene: Scene, model: Model, view: RodView, state: State, looking: Wa
         flight=view.flight(state, model),
         skin_share=skin_share(model),
         peak_force=looking.peak.largest,
-        vibration_check=view.vibration(state, model) if free else None,
+        vibration_check=check,
         finished=stop.finished,
         reason=looking.reason,
+        cost=cost,
         warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
         heat=looking.heat,
     )

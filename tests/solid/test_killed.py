@@ -8,16 +8,13 @@ import sys
 import time
 
 import pytest
+import solid_scenes as scenes
 
 from fem_impact.outcome import Outcome
 from fem_impact.output import read_fields, read_table
 from fem_impact.scene import load, replace_all
 from fem_impact.solid.checkpoint import CHECKPOINT
 
-OF_THE_CLOCK = {
-    *("created_utc", "wall_s", "cpu_s", "setup_wall_s", "setup_cpu_s"),
-    *("peak_memory_MB", "effect_choices"),
-}
 SCENE = replace_all(
     load("t5b"),
     {
@@ -58,7 +55,7 @@ def start(scene, out):
 
 
 def numbers(outcome):
-    return {k: v for k, v in outcome.items() if k not in OF_THE_CLOCK}
+    return {k: v for k, v in outcome.items() if k not in scenes.OF_THE_CLOCK}
 
 
 def check_readable(out):

@@ -26,10 +26,6 @@ SETS = (
     ("vibration", "friction", "barrier-elastic"),
     ("friction", "rod-plasticity", "barrier-rigid", "large-rotation"),
 )
-OF_THE_CLOCK = {
-    *("created_utc", "wall_s", "cpu_s", "setup_wall_s", "setup_cpu_s"),
-    *("peak_memory_MB", "effect_choices"),
-}
 
 
 def short(effects, **changes):
@@ -55,7 +51,7 @@ def interrupted(scene, out, step):
 
 
 def outcome_numbers(result):
-    return {k: v for k, v in reduce(result.scene, result).items() if k not in OF_THE_CLOCK}
+    return {k: v for k, v in reduce(result.scene, result).items() if k not in scenes.OF_THE_CLOCK}
 
 
 def test_these_sets_name_every_effect():
