@@ -31,13 +31,13 @@ def cost(options: Options) -> int:
     from fem_impact.paper import quantity
     from fem_impact.scene.units import parse_share
 
-    names = chosen(name.strip() for name in options.of.split(",") if name.strip())
+    asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = parse_share(options.target, "--target") if options.target else None
     budget = quantity(options.budget, "time", "--budget") if options.budget else None
     if options.scene == PAPER:
-        return _paper(options, names)
+        return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
-    family = _family(scene, options.finest)
+    names, family = chosen(asked, scene), _family(scene, options.finest)
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.cost import advice, pair_sentence, text_table, write_cost
 

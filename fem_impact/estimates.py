@@ -4,9 +4,9 @@ Local contact of principal radii R1 (meridian) and R2 (around the rod) under the
 
     1/m* = (1 + d_c (d_c - f d_d) / k^2) / m      (frictional impulse along one direction)
 
-either Hertzian, 8/15 E* sqrt(R) d^(5/2) = m* v_n^2 / 2, or fully plastic with the limiting pressure
-p = 2.8 sigma_y of the softer body, pi p R d^2 = m* v_n^2 / 2 (Thornton 1997, doi:10.1115/1.2787319;
-Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2).
+at the approach v_n of the contact point either Hertzian, 8/15 E* sqrt(R) d^(5/2) = m* v_n^2 / 2, or fully
+plastic with the limiting pressure p = 2.8 sigma_y of the softer body, pi p R d^2 = m* v_n^2 / 2 (Thornton
+1997, doi:10.1115/1.2787319; Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2).
 """
 
 from __future__ import annotations
@@ -47,8 +47,10 @@ def principal_radii(scene: Scene) -> tuple[float, float]:
     """Return (R1, R2), m, of the tip at its lowest point."""
     rod, alpha = scene.projectile, scene.impact.angle
     rho, _ = projectile(scene).contact_point(alpha)
-    R1 = rod.tip_radius if rod.tip_radius > 0 else rod.diameter / 200
-    at_pole = R1 if rod.tip == "A" else FLATTEST
+    nose = projectile(scene).nose
+    sharp = rod.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
+    R1 = rod.diameter / 200 if sharp else rod.tip_radius
+    at_pole = FLATTEST if nose.face > 0 else R1
     around = float(rho) / sin(alpha) if alpha > 0 else at_pole
     return R1, min(max(around, R1), FLATTEST)
 
@@ -65,6 +67,22 @@ def arms(scene: Scene) -> tuple[float, float]:
     """Return (d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
     d_c, d_d = projectile(scene).arms(scene.impact.angle)
     return float(d_c) if scene.impact.angle > 0 else 0.0, float(d_d)
+
+
+def touch_point(scene: Scene) -> tuple[float, float]:
+    """Return (rho, z), m, of the contact in the rod; that of a whole face is its centre."""
+    rho, z = projectile(scene).contact_point(scene.impact.angle)
+    return float(rho) if scene.impact.angle > 0 else 0.0, float(z)
+
+
+def approach(scene: Scene) -> float:
+    """Return the speed, m/s, at which the contact point comes towards the barrier, spin included."""
+    return -scene.impact.v_n - arms(scene)[0] * scene.impact.omega
+
+
+def sliding(scene: Scene) -> float:
+    """Return the velocity, m/s, of the contact point up the slope before the impact, spin included."""
+    return scene.impact.v_t - arms(scene)[1] * scene.impact.omega
 
 
 def shear_speed(scene: Scene) -> float:
@@ -84,11 +102,9 @@ def section_frequency(scene: Scene) -> float:
 def effective_mass(scene: Scene) -> float:
     """Return m*, kg, at least that of a frictionless contact."""
     rod, f = projectile(scene), scene.surface.friction if "friction" in scene.active else 0.0
-    d_c, d_d = rod.arms(scene.impact.angle)
-    frictionless = 1 + float(d_c) ** 2 / rod.k2
-    return float(
-        rod.mass / min(frictionless, max(1.0, 1 + float(d_c) * (float(d_c) - f * float(d_d)) / rod.k2))
-    )
+    d_c, d_d = arms(scene)
+    frictionless = 1 + d_c**2 / rod.k2
+    return float(rod.mass / min(frictionless, max(1.0, 1 + d_c * (d_c - f * d_d) / rod.k2)))
 
 
 def start_energy(scene: Scene) -> float:
@@ -98,8 +114,8 @@ def start_energy(scene: Scene) -> float:
 
 
 def normal_share(scene: Scene) -> float:
-    """Return the share of E_0 that the normal impact can take, m* v_n^2 / 2 over E_0."""
-    return 0.5 * effective_mass(scene) * scene.impact.v_n**2 / start_energy(scene)
+    """Return the share of E_0 that the normal impact can take, m* / 2 times the approach squared over E_0."""
+    return 0.5 * effective_mass(scene) * approach(scene) ** 2 / start_energy(scene)
 
 
 def contact_modulus(scene: Scene) -> float:
@@ -113,7 +129,7 @@ def contact_modulus(scene: Scene) -> float:
 def contact_estimate(scene: Scene) -> ContactEstimate:
     """Return the size of the first contact of a scene."""
     R1, R2 = principal_radii(scene)
-    R, v_n = sqrt(R1 * R2), max(abs(scene.impact.v_n), 1e-6)
+    R, v_n = sqrt(R1 * R2), max(approach(scene), 1e-6)
     energy, E_star = 0.5 * effective_mass(scene) * v_n**2, contact_modulus(scene)
     depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
     elastic = ContactEstimate(
@@ -171,12 +187,11 @@ def require_shallow(scene: Scene) -> None:
 
 def require_approach(scene: Scene) -> None:
     """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
-    d_c, _ = projectile(scene).arms(scene.impact.angle)
-    speed = scene.impact.v_n + scene.impact.omega * float(d_c)
-    if speed >= 0:
+    speed = approach(scene)
+    if speed <= 0:
         raise SceneError(
-            f"lifts the contact point off the barrier at {speed:.3g} m/s: another part would strike.",
+            f"lifts the contact point off the barrier at {-speed:.3g} m/s: another part would strike.",
             key="impact.omega",
             value=f"{scene.impact.omega:g} rad/s",
-            remedy=f"Keep it under {abs(scene.impact.v_n / float(d_c)):.4g} rad/s, or turn it round.",
+            remedy=f"Keep it under {abs(scene.impact.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
         )

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_impact.estimates import arms, contact_estimate
+from fem_impact.estimates import approach, contact_estimate, sliding
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -133,7 +133,7 @@ def halves(scene: Scene) -> tuple[Half, Half]:
 
 def sliding_speed(scene: Scene) -> float:
     """Return the tangential speed of the tip at first contact, m/s."""
-    return abs(scene.impact.v_t - scene.impact.omega * arms(scene)[1])
+    return abs(sliding(scene))
 
 
 def expected_rise(scene: Scene) -> float:
@@ -162,7 +162,7 @@ def flash_bound(scene: Scene) -> float:
     """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``."""
     size, f = contact_estimate(scene), scene.surface.friction
     softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.material))
-    speed = sliding_speed(scene) + abs(scene.impact.v_n)
+    speed = sliding_speed(scene) + approach(scene)
     q, t = f * HARDNESS * softer * speed, 3 * size.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves(scene))
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import rigid
 from fem_impact.contact_law import softer
-from fem_impact.estimates import projectile
+from fem_impact.estimates import arms, projectile
 from fem_impact.outcome import installed_versions, utc_now
 from fem_impact.scene import validity
 from rigid.experiments import measured_set
@@ -27,6 +27,9 @@ NO_TARGET = dict.fromkeys(
     "the scene gives a mesh, not the error it allows",
 )
 """Reasons of a run that no target chose."""
+
+ROUND_OFF = 1e-9  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
+UNDETERMINED = "the contact point does not approach, or no moment acts about the mass centre: 0 / 0"
 
 
 def provenance(
@@ -56,10 +59,10 @@ def provenance(
 
 def motion_keys(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> Values:
     """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2)."""
-    impact, rod = scene.impact, projectile(scene)
-    d_c, d_d = rod.arms(impact.angle)
+    impact, (d_c, d_d) = scene.impact, arms(scene)
+    body = {"d_c": d_c, "d_d": d_d, "k2": k2, "omega": impact.omega}
     e = float(rigid.restitution(impact.v_n, V_n, Omega, d_c, impact.omega))
-    mu_c = rigid.critical_ratio(impact.v_n, impact.v_t, e=e, d_c=d_c, d_d=d_d, k2=k2)
+    mu_c = rigid.critical_ratio(impact.v_n, impact.v_t, e=e, **body)
     return {
         "v_n_m_per_s": impact.v_n,
         "v_t_m_per_s": impact.v_t,
@@ -72,7 +75,7 @@ def motion_keys(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float,
         "alpha_rad": impact.angle,
         "mass_kg": mass,
         "k_squared_m2": k2,
-        "gamma_per_m0_3815": rod.gamma,
+        "gamma_per_m0_3815": projectile(scene).gamma,
     }
 
 
@@ -80,12 +83,13 @@ def coefficient_keys(scene: Scene, motion: Values) -> tuple[Values, dict[str, st
     """Return the coefficients with the three sets of arms, and why a set of arms is missing."""
     values: Values = {}
     reasons: dict[str, str] = {}
-    for name, arms in _arm_sets(scene, motion).items():
-        if arms is None:
+    for name, pair in _arm_sets(scene, motion).items():
+        if pair is None:
             missing = "the scene repeats no measured set, so no table gives its arms"
             reasons |= dict.fromkeys(_arm_keys(name), missing)
         else:
-            values |= _with_arms(name, arms, motion)
+            values |= _with_arms(name, pair, scene.impact.omega, motion)
+            reasons |= {key: UNDETERMINED for key in _arm_keys(name) if values[key] is None}
     return values, reasons
 
 
@@ -105,7 +109,7 @@ def _arm_sets(scene: Scene, motion: Values) -> dict[str, tuple[float, float] | N
     The centre of the impulse is the point at the height of the geometric contact where the moment
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
-    d_c, d_d = (float(d) for d in projectile(scene).arms(scene.impact.angle))
+    d_c, d_d = arms(scene)
     gained_n = motion["V_n_m_per_s"] - motion["v_n_m_per_s"]
     gained_t = motion["V_t_m_per_s"] - motion["v_t_m_per_s"]
     spin = motion["k_squared_m2"] * (motion["Omega_rad_per_s"] - scene.impact.omega)
@@ -122,12 +126,18 @@ def _arm_keys(name: str) -> list[str]:
     return [f"d_c_{name}_m", f"d_d_{name}_m", f"e_{name}", f"e_m_{name}", *shares]
 
 
-def _with_arms(name: str, arms: tuple[float, float], values: Values) -> Values:
-    velocities = [
+def _with_arms(name: str, pair: tuple[float, float], omega: float, values: Values) -> Values:
+    """Return the keys of one set of arms; what it leaves undetermined is None."""
+    v_n, v_t, V_n, V_t, Omega = (
         values[k] for k in ("v_n_m_per_s", "v_t_m_per_s", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s")
-    ]
-    body = {"d_c": arms[0], "d_d": arms[1], "k2": values["k_squared_m2"]}
-    found = rigid.coefficients(*velocities, **body)
-    lost = rigid.losses(*velocities, **body, mass=values["mass_kg"]).fractions()
-    numbers: list[Any] = [*arms, found.e, found.e_m, lost.E_ln, lost.E_lt]
-    return {key: float(number) for key, number in zip(_arm_keys(name), numbers, strict=True)}
+    )
+    (d_c, d_d), k2 = pair, values["k_squared_m2"]
+    body = {"d_c": d_c, "d_d": d_d, "k2": k2, "omega": omega}
+    lost = rigid.losses(v_n, v_t, V_n, V_t, Omega, **body, mass=values["mass_kg"]).fractions()
+    e = e_m = None
+    if v_n + d_c * omega < 0:
+        e, _, e_m = (float(c) for c in rigid.coefficients(v_n, v_t, V_n, V_t, Omega, **body))
+        moment = d_c * (V_n - v_n) - d_d * (V_t - v_t) + k2 * omega
+        e_m = e_m if abs(moment) > ROUND_OFF * d_d * (V_n - v_n) else None
+    numbers = [*pair, e, e_m, float(lost.E_ln), float(lost.E_lt)]
+    return dict(zip(_arm_keys(name), numbers, strict=True))

@@ -103,6 +103,7 @@ def critical_ratio(
     d_c: ArrayLike,
     d_d: ArrayLike,
     k2: ArrayLike,
+    omega: ArrayLike = 0.0,
 ) -> Floats:
     """Impulse ratio mu_c at which sliding ends exactly at separation (Eq 9, 11 and 12, then 17).
 
@@ -112,7 +113,9 @@ def critical_ratio(
     Parameters
     ----------
     v_n, v_t, e, e_m, d_c, d_d, k2 : array_like
-        As in `solve`; the rod does not spin before impact.
+        As in `solve`.
+    omega : array_like
+        Spin before impact, rad/s (the paper has none).
 
     Returns
     -------
@@ -121,18 +124,21 @@ def critical_ratio(
     Raises
     ------
     ImpactError
-        If v_n >= 0, or no finite ratio stops the contact point.
+        If the contact point does not approach, or no finite ratio stops it.
 
     Examples
     --------
     >>> f"{critical_ratio(-1.502, -1.482, e=0.327, d_c=0.0216, d_d=0.0338, k2=5.56e-4):.3f}"
     '0.665'
     """
-    v_n, v_t, e, e_m = floats(v_n, v_t, e, e_m)
+    v_n, v_t, e, e_m, omega = floats(v_n, v_t, e, e_m, omega)
     d_c, d_d, k2 = floats(d_c, d_d, k2)
-    refuse(~(v_n < 0), APPROACH, v_n)
-    normal, coupling = (1.0 + e) * v_n, e_m * d_c * d_d
-    above = v_t * (k2 - e_m * d_c**2) - normal * coupling
-    below = normal * (k2 - e_m * d_d**2) - v_t * coupling
+    approach = v_n + d_c * omega
+    refuse(~(approach < 0), APPROACH, approach)
+    # minus what the impulse has to change: the spin left over, -e_m omega, moves the contact point too
+    normal = v_n - e_m * d_c * omega + e * approach
+    tangential, coupling = v_t + e_m * d_d * omega, e_m * d_c * d_d
+    above = tangential * (k2 - e_m * d_c**2) - normal * coupling
+    below = normal * (k2 - e_m * d_d**2) - tangential * coupling
     refuse(below == 0, "no finite impulse ratio stops the contact point here (denominator {value})", below)
     return above / below

@@ -53,7 +53,7 @@ def text_table(cost: Cost, names: Sequence[str] = NAMES) -> str:
     setting follows, the bands of the pairs of meshes, and what leaving an effect out changes.
     """
     width = max(len(setting.name) for setting in cost.settings)
-    shown = [quantity for quantity in QUANTITIES if quantity.name in names]
+    shown = [q for q in QUANTITIES if q.name in names and q.name in cost.truth]
     truth = [cost.truth[quantity.name] for quantity in shown]
     head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
     above = {

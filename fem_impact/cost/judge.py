@@ -66,13 +66,13 @@ def judge(
     the effect.
     """
     if whole is not None:
-        truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES}
+        truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES if q.name in truth}
     every = [run for placed in runs for run in placed]
     own = truths(runs) if len(runs) == 2 else {}
-    value = {q.name: own[q.name].value if own else mean(q, runs[0]) for q in QUANTITIES}
+    value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
     if len(runs) == 1 and setting.meshes and whole is None:
-        scatter = {q.name: standard_error(q, runs[0]) for q in QUANTITIES}
+        scatter = {q.name: standard_error(q, runs[0]) for q in QUANTITIES if q.name in truth}
     return Judged(
         name=setting.name,
         kind=setting.kind,
@@ -80,7 +80,7 @@ def judge(
         meshes=[asdict(mesh) for mesh in setting.meshes],
         tip_size_m=every[0]["tip_size_m"],
         value=value,
-        error={name: _error(number, truth[name], own.get(name)) for name, number in value.items()},
+        error={name: _error(number, truth.get(name), own.get(name)) for name, number in value.items()},
         scatter={name: number / truth[name].scale for name, number in scatter.items()},
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
         wall_s=sum(seconds(run, "wall_s") for run in every),
@@ -100,9 +100,9 @@ def _on_mesh(quantity: Quantity, whole: Placed, truth: Truth) -> Truth:
     return replace(truth, value=known_mean(quantity, whole), uncertainty=0.0)
 
 
-def _error(value: float | None, truth: Truth, own: Truth | None) -> float | None:
+def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
     """Return what bounds the error: the limit of all meshes, or a pair's own band where that is closer."""
-    if value is None:
+    if value is None or truth is None:
         return None
     bound = abs(value - truth.value) + truth.uncertainty
     return (min(bound, own.uncertainty) if own else bound) / truth.scale

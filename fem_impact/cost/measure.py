@@ -37,7 +37,7 @@ class Cost:
     Attributes
     ----------
     scene : Scene
-    truth : limit of every quantity
+    truth : limit of every quantity that finite elements know here
     settings : judged, from cheap to dear
     failures : settings that gave nothing, with the reason
     """
@@ -50,7 +50,8 @@ class Cost:
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
         """Return unit, limit, order, uncertainty and scale of every quantity."""
-        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in QUANTITIES}
+        known = [q for q in QUANTITIES if q.name in self.truth]
+        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in known}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""

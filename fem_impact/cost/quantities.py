@@ -5,9 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import hypot, sqrt
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import SceneError
+
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
 
 __all__ = ["QUANTITIES", "TARGETED", "Quantity", "chosen"]
 
@@ -59,19 +62,27 @@ TARGETED = ("e", "E_vib")
 """What a target means unless other quantities are named."""
 
 
-def chosen(names: Iterable[str]) -> tuple[str, ...]:
+def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     """Return names of quantities after checking them, `TARGETED` if there are none.
 
     Raises
     ------
     SceneError
-        For an unknown name.
+        For an unknown name, or one that no run of the ``scene`` knows.
     """
     wanted = tuple(names)
+    rigid = scene is not None and "vibration" not in scene.active
+    if rigid and "E_vib" in wanted:
+        raise SceneError(
+            "is not known here: the vibration effect is off.",
+            key="--of",
+            value="E_vib",
+            remedy='Name others, or add "vibration" to the effects of the scene.',
+        )
     known = [quantity.name for quantity in QUANTITIES]
     for name in wanted:
         if name not in known:
             raise SceneError(
                 "is not a quantity of interest.", key="--of", value=name, remedy=f"Known: {', '.join(known)}."
             )
-    return wanted or TARGETED
+    return wanted or tuple(name for name in TARGETED if not (rigid and name == "E_vib"))

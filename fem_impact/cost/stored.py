@@ -7,34 +7,35 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from math import inf, log
+from math import hypot, inf, log, sqrt
 from typing import Any
 
-from fem_impact.contact_law import softer
 from fem_impact.cost.choose import cheapest
-from fem_impact.cost.judge import Judged, front, worst
+from fem_impact.cost.judge import Judged, worst
 from fem_impact.cost.measure import Cost
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh
 from fem_impact.cost.yardsticks import yardsticks
 from fem_impact.errors import SceneError
-from fem_impact.scene import Scene
+from fem_impact.estimates import approach, projectile, sliding
+from fem_impact.scene import Material, Scene
 
 __all__ = ["NEARNESS", "SUMMARY", "Plan", "nearest", "plan", "summarise", "summary"]
 
 SUMMARY = "fem-impact/cost-summary/2"
 
+STEEL = ("E", "rho", "yield", "ultimate over yield")
 # what a scene may differ by from one whose cost was measured; ratios as differences of logarithms
 NEARNESS = {
     "length over diameter": 0.1,
     "diameter": 0.3,
     "tip radius over diameter": 0.1,
     "angle (rad)": 0.05,
-    "normal speed": 0.25,
-    "slope of the approach": 0.1,
+    "approach of the contact point": 0.25,
+    "slope of that approach": 0.1,
+    "spin over speed": 0.05,
     "friction f": 0.05,
-    "softer yield stress": 0.1,
-    "Young's modulus": 0.1,
+    **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
 
 
@@ -82,18 +83,27 @@ def summary() -> dict[str, Any]:
 
 
 def _features(scene: Scene) -> dict[str, float]:
-    rod, impact, soft = scene.projectile, scene.impact, softer(scene)
+    rod, impact = scene.projectile, scene.impact
+    speed, radius = hypot(impact.v_n, impact.v_t), sqrt(projectile(scene).k2)
     return {
         "length over diameter": log(rod.length / rod.diameter),
         "diameter": log(rod.diameter),
         "tip radius over diameter": log(max(rod.tip_radius / rod.diameter, 1e-3)),
         "angle (rad)": impact.angle,
-        "normal speed": log(-impact.v_n),
-        "slope of the approach": impact.v_t / impact.v_n,
+        "approach of the contact point": log(approach(scene)),
+        "slope of that approach": sliding(scene) / approach(scene),
+        "spin over speed": impact.omega * radius / speed,
         "friction f": scene.surface.friction if "friction" in scene.active else 0.0,
-        "softer yield stress": log(soft.yield_stress) if soft else inf,
-        "Young's modulus": log(rod.material.E),
+        **_steel("rod", rod.material, "rod-plasticity" in scene.active),
+        **_steel("barrier", scene.barrier.material, "barrier-elastoplastic" in scene.active),
     }
+
+
+def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
+    """Return the features of a body's material; strengths do not count where it stays elastic."""
+    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if yields else (1.0, 1.0)
+    values = (steel.E, steel.rho, *strength)
+    return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
 
 
 def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
@@ -103,6 +113,8 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
         ("effects", scene.active, other.active),
         ("element", scene.accuracy.element, other.accuracy.element),
         ("step", scene.accuracy.step, other.accuracy.step),
+        ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
+        ("max_time", min(scene.accuracy.max_time, other.accuracy.max_time), other.accuracy.max_time),
     ):
         if mine != its:
             return inf, name
@@ -140,7 +152,7 @@ def plan(scene: Scene, fidelity: str | None = None, threads: int = 1) -> Plan:
     settings = [one for one in held if fidelity in (None, one.fidelity)]
     found = cheapest(settings, TARGETED, target)
     if found is None:
-        raise _not_met(scene, name, front(settings, TARGETED)[-1])
+        raise _not_met(scene, name, settings)
     machine = summary()["machine"]["csr_ns_per_element_step"]
     seconds = found.cpu_s if threads == 1 else found.two_cores_s
     pace = yardsticks()["csr_ns_per_element_step"] / machine
@@ -152,7 +164,8 @@ def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneErr
     allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
     return SceneError(
         f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
-        "element and step must be the same; allowed are differences (of logarithms where it is a ratio) of: "
+        "element, step and block_margin must be the same and max_time no shorter; allowed are differences "
+        "(of logarithms where it is a ratio) of: "
         f"{allowed}.",
         key="accuracy",
         value=_written(scene),
@@ -160,11 +173,16 @@ def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneErr
     )
 
 
-def _not_met(scene: Scene, name: str, best: Judged) -> SceneError:
+def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
+    of, whole = " and ".join(TARGETED), [one for one in settings if one.kind != "effect"]
+    best = min(whole, key=lambda one: worst(one, TARGETED))
     error = worst(best, TARGETED)
+    if error == inf:
+        problem = f"cannot be met: the {best.fidelity} fidelity does not know {of}."
+        return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
     return SceneError(
         f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
-        f"uncertain by {100 * error:.2g} % in {' and '.join(TARGETED)}.",
+        f"uncertain by {100 * error:.2g} % in {of}.",
         key="accuracy",
         value=_written(scene),
         remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.estimates import approach
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -13,7 +14,7 @@ if TYPE_CHECKING:
 def number(scene: Scene) -> float:
     """Return the share of the normal energy that an elastic strike sends into a half-space."""
     plate = scene.barrier.material
-    return float(1.127 * (abs(scene.impact.v_n) / (plate.E / plate.rho) ** 0.5) ** 0.6)
+    return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
 
 
 def harm(scene: Scene) -> Harm:

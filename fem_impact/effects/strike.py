@@ -15,18 +15,20 @@ and a shear stress takes from the pressure, p / sqrt(1 + 3 (F_t/F_n)^2) (von Mis
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache
 from math import cos, inf, pi, sin, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fem_impact.contact_law import ContactLaw, contact_law
 from fem_impact.effects import rate
 from fem_impact.effects.beam import Beam, beam
 from fem_impact.estimates import (
     LIMIT_PRESSURE,
+    approach,
     arms,
     contact_estimate,
     projectile,
@@ -38,9 +40,12 @@ from rigid import GRAVITY
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
+Array = NDArray[Any]
+
 __all__ = ["Strike", "Touch", "strike"]
 
-STEPS, MOST_STEPS = 150, 6000  # over the estimated contact; in all
+STEPS, MOST_STEPS = 150, 6000  # over the estimated contact; with contact, in all
+BLOCK = 2048  # steps of free flight that are looked at together
 LAYER = 3.0  # a shear stress counts three times squared beside a normal one (von Mises)
 DRAGGED = 1 / (1 + pi / 2)
 SLOWEST = 1e-6  # m/s
@@ -82,15 +87,23 @@ class Touch:
             limit = min(limit, force * abs(sliding) / (LAYER * approach))
         return min(limit, DRAGGED * self.most)
 
+    @property
+    def crater(self) -> float:
+        """Depth, m, that stays: there is no force above it."""
+        return self.peak - self._back()
+
     def _normal(self, depth: float) -> float:
         if depth >= self.peak:
             self.most, self.peak = self._first(depth), depth
             return self.most
-        back = self.peak  # what unloads
-        if self._yielded():
-            area = self.law.R * (2 * self.peak - self.law.yield_depth)  # over pi
-            back = 0.75 * self.most / (self.law.E_star * sqrt(area))
-        return float(self.most * (max(depth - self.peak + back, 0.0) / back) ** 1.5)
+        return float(self.most * (max(depth - self.crater, 0.0) / self._back()) ** 1.5)
+
+    def _back(self) -> float:
+        """Return what unloading gives back of the largest depth, m."""
+        if not self._yielded():
+            return self.peak
+        area = self.law.R * (2 * self.peak - self.law.yield_depth)  # over pi
+        return 0.75 * self.most / (self.law.E_star * sqrt(area))
 
     def _first(self, depth: float) -> float:
         law, ratio = self.law, self.side / self.most if self.most else 0.0
@@ -102,6 +115,64 @@ class Touch:
         return self.peak > self.law.yield_depth
 
 
+class Rigid(NamedTuple):
+    """Rigid motion: m/s, m/s, rad/s, and the height, m, of the contact point that it gives."""
+
+    V_n: float
+    V_t: float
+    spin: float
+    height: float
+
+
+@dataclass(slots=True)
+class Flight:
+    """The motion between kicks, exactly, in steps ``dt``, s; ``swing`` is omega q + i dq/dt of each mode.
+
+    Attributes
+    ----------
+    table : (modes, BLOCK) turn of each mode after 0, 1, ... steps; give : (modes,) its height over ``swing``
+    g : (2,) what gravity takes from V_n and V_t in a step, m/s
+    longest : 1.5 periods of the slowest mode, s: a free rod that has not come back by then is gone
+    """
+
+    modes: Beam
+    dt: float
+    d_c: float
+    g: tuple[float, float]
+    table: Array = field(init=False)
+    give: Array = field(init=False)
+    longest: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Tabulate."""
+        omega = self.modes.omega
+        self.table = np.exp(-1j * self.dt * np.outer(omega, np.arange(BLOCK + 1)))
+        self.give = self.modes.along_n / omega
+        self.longest = 3 * pi / float(omega.min(initial=inf)) + 2 * self.dt
+
+    def depth(self, now: Rigid, swing: Array) -> float:
+        """Return how deep the contact point is, m."""
+        return -now.height - float(self.give @ swing.real)
+
+    def free(self, now: Rigid, swing: Array, crater: float) -> int:
+        """Return the steps, one at least and `BLOCK` at most, until the contact point is in its crater."""
+        n = np.arange(1, BLOCK + 1)
+        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
+        below = now.height + rise + ((self.give * swing) @ self.table[:, 1:]).real < -crater
+        return int(n[np.argmax(below)]) if below.any() else BLOCK
+
+    def gone(self, now: Rigid, swing: Array, crater: float) -> bool:
+        """Return whether no vibration brings the contact point back: what falls back strikes anew."""
+        away = now.V_n + self.d_c * now.spin > 0
+        return away and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
+
+    def fly(self, now: Rigid, swing: Array, n: int) -> tuple[Rigid, Array]:
+        """Return the motion after ``n`` steps."""
+        V_n, V_t = now.V_n - n * self.g[0], now.V_t - n * self.g[1]
+        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
+        return Rigid(V_n, V_t, now.spin, now.height + rise), self.table[:, n] * swing
+
+
 @cache
 def strike(scene: Scene) -> Strike:
     """Return about what an impact comes to with the effects of a scene."""
@@ -109,29 +180,28 @@ def strike(scene: Scene) -> Strike:
 
 
 def _march(scene: Scene, modes: Beam, touch: Touch) -> Strike:
-    """Kick by the contact's force, fly exactly; the end is 1.5 periods after the last touch."""
+    """Kick by the contact's force, fly exactly, until the rod is gone."""
     rod, impact, (d_c, d_d) = projectile(scene), scene.impact, arms(scene)
     dt, inertia = contact_estimate(scene).duration / STEPS, rod.mass * rod.k2
-    swing = np.zeros(len(modes.omega), dtype=complex)  # omega q + i dq/dt
-    turn, give = np.exp(-1j * modes.omega * dt), modes.along_n / modes.omega
-    flight = 3 * pi / float(modes.omega.min(initial=inf)) + 2 * dt
     g = GRAVITY * dt if "gravity" in scene.active else 0.0
-    g_n, g_t = g * cos(impact.angle), g * sin(impact.angle)
-    V_n, V_t, spin, height, last = impact.v_n, impact.v_t, impact.omega, 0.0, 0
-    for step in range(MOST_STEPS):
-        if (step - last) * dt > flight:
+    flight = Flight(modes, dt, d_c, (g * cos(impact.angle), g * sin(impact.angle)))
+    now, swing = Rigid(impact.v_n, impact.v_t, impact.omega, 0.0), np.zeros(len(modes.omega), dtype=complex)
+    steps = last = 0
+    for _ in range(MOST_STEPS):
+        w_n = now.V_n + d_c * now.spin + float(modes.along_n @ swing.imag)
+        w_t = now.V_t - d_d * now.spin + float(modes.along_t @ swing.imag)
+        p_n, p_t = (dt * force for force in touch.press(flight.depth(now, swing), -w_n, w_t, dt))
+        turned = now.spin + (d_c * p_n - d_d * p_t) / inertia
+        now = Rigid(now.V_n + p_n / rod.mass, now.V_t + p_t / rod.mass, turned, now.height)
+        swing = swing + 1j * (p_n * modes.along_n + p_t * modes.along_t)
+        last = steps if p_n > 0 else last
+        if (steps - last) * dt > flight.longest or (p_n == 0 and flight.gone(now, swing, touch.crater)):
             break
-        w_n = V_n + d_c * spin + float(modes.along_n @ swing.imag)
-        w_t = V_t - d_d * spin + float(modes.along_t @ swing.imag)
-        p_n, p_t = (dt * force for force in touch.press(-height - float(give @ swing.real), -w_n, w_t, dt))
-        last = step if p_n > 0 else last
-        V_n, V_t = V_n + p_n / rod.mass - g_n, V_t + p_t / rod.mass - g_t
-        spin += (d_c * p_n - d_d * p_t) / inertia
-        swing = turn * (swing + 1j * (p_n * modes.along_n + p_t * modes.along_t))
-        height += dt * (V_n + d_c * spin)
-    left = V_n + g_n * step + d_c * spin
+        n = 1 if p_n > 0 else flight.free(now, swing, touch.crater)
+        (now, swing), steps = flight.fly(now, swing, n), steps + n
+    left = now.V_n + flight.g[0] * steps + d_c * now.spin
     E_vib = float(np.sum(np.abs(swing) ** 2)) / 2 / start_energy(scene)
-    return Strike(left / max(-impact.v_n - d_c * impact.omega, SLOWEST), E_vib, spin)
+    return Strike(left / max(approach(scene), SLOWEST), E_vib, now.spin)
 
 
 def _law(scene: Scene) -> ContactLaw:

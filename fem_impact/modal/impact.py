@@ -18,7 +18,7 @@ from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.progress import Progress, compiling
 from fem_impact.scene import Scene
 from fem_impact.solid.kernels import compiled_before
-from fem_impact.solid.separation import HORIZON
+from fem_impact.solid.separation import horizon
 
 __all__ = ["ModalResult", "plastic_work", "reach", "solve"]
 
@@ -77,7 +77,7 @@ def solve(scene: Scene, progress: Callable[[Progress], None] | None = None) -> M
     contacts = np.zeros((MOST_CONTACTS, 4))
     start = _start(scene, rod)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
-    bounds = Bounds(dt, HORIZON, scene.accuracy.max_time, reach(law, E_0))
+    bounds = Bounds(dt, horizon(scene), scene.accuracy.max_time, reach(law, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
     drop(start, law, rod.omega, rod.along_t, rod.along_n, bounds._replace(horizon=0.0), contacts)
     wall, cpu = time.perf_counter(), time.process_time()

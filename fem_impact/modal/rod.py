@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.effects import specify
-from fem_impact.estimates import principal_radii, projectile, section_frequency
+from fem_impact.estimates import arms, principal_radii, projectile, section_frequency, touch_point
 from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Scene, Surface
 from fem_impact.solid.build import build
 from fem_impact.solid.rodview import RodView
@@ -48,7 +48,7 @@ class ModalRod:
 def modal_rod(scene: Scene) -> ModalRod:
     """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
     body, alpha = projectile(scene), scene.impact.angle
-    d_c, d_d = (float(d) for d in body.arms(alpha))
+    d_c, d_d = arms(scene)
     radius = principal_radii(scene)[0]
     omega, x, z = _touch(scene) if "vibration" in scene.active else np.zeros((3, 0))
     along_t, along_n = cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
@@ -58,8 +58,8 @@ def modal_rod(scene: Scene) -> ModalRod:
 def _touch(scene: Scene) -> tuple[Array, Array, Array]:
     """Return omega and the displacements (x, z) of the contact point in the rod frame, kg^-1/2."""
     points, shape, omega = _modes(_elastic(scene.projectile), scene.accuracy.across)
-    rho, z = projectile(scene).contact_point(scene.impact.angle)
-    from_touch = points - np.array([float(rho), 0.0, float(z)])
+    rho, z = touch_point(scene)
+    from_touch = points - np.array([rho, 0.0, z])
     near = np.linalg.norm(from_touch, axis=1) < AROUND * scene.projectile.diameter
     affine = np.column_stack([np.ones(near.sum()), from_touch[near][:, [0, 2]]])
     at_touch = np.linalg.pinv(affine)[0]

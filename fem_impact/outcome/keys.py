@@ -103,7 +103,7 @@ MOTION = (
         "Omega_rad_per_s", "rad/s", "Rotation rate at the last separation, n turning towards t positive."
     ),
     _number("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17)."),
-    _number("mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 18)."),
+    _number("mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 11)."),
 )
 
 

@@ -35,9 +35,10 @@ def replace(scene: Scene, key: str, value: Any) -> Scene:
 def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
-    A changed friction makes the surface custom, a changed property renames its material, and a changed
-    rod, impact or surface state no longer repeats a measured set: a name never stands for other values.
-    Friction, materials, effects and accuracy are the model's side and leave ``measured`` as it is.
+    A changed friction makes the surface custom, a changed property renames its material, and a changed rod,
+    impact or surface state no longer repeats a measured set, which the title says: a name never stands for
+    other values. Friction, materials, effects and accuracy are the model's side and leave ``measured`` as it
+    is.
     """
     data = to_dict(scene)
     for key, value in changes.items():
@@ -53,8 +54,9 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     _rename(table, path, last)
     if path == ["accuracy"]:
         _keep_one(table, last)
-    if (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state":
-        data.pop("measured", None)
+    other = (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
+    if other and data.pop("measured", None):
+        data["title"] = f"{data['title']} (changed)"
 
 
 def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:

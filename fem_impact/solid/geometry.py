@@ -11,7 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 import meshes
-from fem_impact.estimates import ContactEstimate, barrier_conforms, contact_estimate, projectile
+from fem_impact.estimates import (
+    ContactEstimate,
+    approach,
+    barrier_conforms,
+    contact_estimate,
+    projectile,
+    sliding,
+)
 from meshes import HexMesh, RodMesh, Zone
 
 if TYPE_CHECKING:
@@ -143,9 +150,10 @@ def face_reach(scene: Scene, rho: float) -> float:
 
 def slide(scene: Scene, t: float) -> float:
     """Return how far the fine zone of a barrier goes on down the slope, m, ``t`` m its half-width there."""
-    if not scene.impact.v_t:
+    down = -sliding(scene)
+    if down <= 0:
         return 0.0
-    way = SLIDE * contact_estimate(scene).depth * abs(scene.impact.v_t) / max(abs(scene.impact.v_n), 1e-6)
+    way = SLIDE * contact_estimate(scene).depth * down / max(approach(scene), 1e-6)
     return max(way, DRAG * t)
 
 

@@ -3,22 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_impact.effects.beam import bending_period
 from fem_impact.modes import Flight, RigidMotion
 from fem_impact.solid.contact import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.state import State
 
+if TYPE_CHECKING:
+    from fem_impact.scene import Scene
+
 Array = NDArray[np.float64]
 
-HORIZON = 4e-3  # s, the camera's window: 40 frames at 10 kHz
-SAMPLES = 2000
+HORIZON, PERIODS = 4e-3, 1.5  # s, the camera's window: 40 frames at 10 kHz; of the rod's bending, if longer
+SAMPLE = 2e-6  # s
 QUIET = 20e-6  # s without touch before it is worth asking: waves cross the block a few times
+
+
+def horizon(scene: Scene) -> float:
+    """Return how far a free flight is looked ahead, s: a long rod's tip comes back with its bending."""
+    return max(HORIZON, PERIODS * bending_period(scene))
 
 
 @dataclass(slots=True)
@@ -26,7 +35,7 @@ class Separation:
     """Stops the run at the last separation.
 
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the
-    horizon. As long as its surface may be lower than the barrier's highest node, the flown tip is held
+    ``horizon``, s. As long as its surface may be lower than the barrier's highest node, the flown tip is held
     against the barrier's surface, crater and all, node by node.
     """
 
@@ -34,6 +43,7 @@ class Separation:
     model: Model
     view: RodView
     limit: float
+    horizon: float = HORIZON
     every: int = 100
     reason: str = ""
     finished: bool = False
@@ -42,7 +52,8 @@ class Separation:
         """Return True when the impact is over or the time is up."""
         if state.time >= self.limit:
             self.reason = (
-                f"Reached max_time = {self.limit * 1e3:g} ms before the last separation was certain."
+                f"Reached max_time = {self.limit * 1e3:g} ms before the last separation was certain: "
+                "give a longer accuracy.max_time."
             )
             return True
         book = self.model.book
@@ -51,12 +62,12 @@ class Separation:
         if not self._stays_away(state):
             return False
         self.finished = True
-        self.reason = f"The free flight of the next {HORIZON * 1e3:g} ms has no further contact."
+        self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no further contact."
         return True
 
     def _stays_away(self, state: State) -> bool:
         motion, ahead = self.view.rigid(state), self.view.flight(state, self.model)
-        contact, t = self.model.impulses[-1], np.linspace(0.0, HORIZON, SAMPLES)
+        contact, t = self.model.impulses[-1], np.arange(0.0, self.horizon, SAMPLE)
         lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > 0.0)

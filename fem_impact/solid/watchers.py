@@ -18,7 +18,7 @@ from fem_impact.solid.moving import Moving
 from fem_impact.solid.observers import Frames, History, Watch
 from fem_impact.solid.peak import PeakForce
 from fem_impact.solid.rodview import RodView
-from fem_impact.solid.separation import Separation
+from fem_impact.solid.separation import Separation, horizon
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 
@@ -98,7 +98,7 @@ class Watchers:
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(scene, model, view, out, go_on)]
-        stop = Separation(model, view, scene.accuracy.max_time)
+        stop = Separation(model, view, scene.accuracy.max_time, horizon(scene))
         skin, peak = SkinWatch(model), PeakForce(model.book)
         heat = _heat_watch(model) if spec.heat else None
         return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)

@@ -15,7 +15,8 @@ SHARES = (
     ("friction", "W_friction_over_E_0"),
     ("plastic rod", "E_plastic_rod_over_E_0"),
     ("plastic barrier", "E_plastic_barrier_over_E_0"),
-    ("locked in", "E_locked_rod_over_E_0"),
+    ("locked in rod", "E_locked_rod_over_E_0"),
+    ("locked in barrier", "E_locked_barrier_over_E_0"),
     ("radiated", "W_radiated_over_E_0"),
 )
 

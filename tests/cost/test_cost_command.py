@@ -37,6 +37,17 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert pair.startswith("Two meshes against 20 %, solid 0.594 and 0.297 mm extrapolated: e 0.3059 ± ")
 
 
+def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):
+    rigid_rod = ("t5b", "--set", 'effects=["auto", "-vibration"]', "--quiet", "--target", "20 %")
+    code, out, err = cli("cost", *rigid_rod)
+    assert (code, err) == (0, "")
+    assert "Cheapest within 20 % of e: rigid" in out
+    assert "E_vib" not in json.loads(Path("results/cost/t5b/cost.json").read_text())["quantities"]
+    code, _, err = cli("cost", *rigid_rod, "--of", "E_vib")
+    assert code == 3
+    assert "--of = E_vib: is not known here: the vibration effect is off" in err
+
+
 def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     sets = ("t3-machined", "t5b")
     monkeypatch.setattr(fem_impact.scene, "MEASURED_SETS", sets)

@@ -12,9 +12,16 @@ from fem_impact.effects.plasticity import DEEP
 from fem_impact.effects.radiation import number as radiated
 from fem_impact.effects.share import expected_shares
 from fem_impact.effects.strike import strike
-from fem_impact.estimates import contact_estimate, normal_share
-from fem_impact.heating import expected_rise
-from fem_impact.scene import BARRIERS, NAMES, load
+from fem_impact.estimates import (
+    FLATTEST,
+    arms,
+    contact_estimate,
+    normal_share,
+    principal_radii,
+    start_energy,
+)
+from fem_impact.heating import expected_rise, flash_bound
+from fem_impact.scene import BARRIERS, NAMES, load, replace_all
 from fem_impact.verify.reference.hertz import radiated_share
 
 
@@ -119,6 +126,32 @@ def test_damping_and_turning_change_their_share_of_the_vibration():
 def test_heating_is_weighed_by_the_rise_to_ignition():
     stated = load("t5b")
     assert number(stated, "contact-heating") == pytest.approx(expected_rise(everything(stated)) / 410.0)
+
+
+def test_the_contact_is_that_of_its_own_approach():
+    """A spin that brings the tip down as fast as a fall without it makes the same contact."""
+    stated = load("t5b")
+    d_c, d_d = arms(stated)
+    spun = replace_all(stated, {"impact.omega": "-30 rad/s"})
+    down, along = stated.impact.v_n - 30 * d_c, stated.impact.v_t + 30 * d_d
+    fallen = replace_all(stated, {"impact.v_n": f"{down} m/s", "impact.v_t": f"{along} m/s"})
+    assert contact_estimate(spun) == pytest.approx(contact_estimate(fallen))
+    assert flash_bound(spun) == pytest.approx(flash_bound(fallen))
+    assert contact_estimate(spun).depth > 1.3 * contact_estimate(stated).depth
+    energy = start_energy(fallen) / start_energy(spun)
+    assert normal_share(spun) == pytest.approx(normal_share(fallen) * energy)
+
+
+def test_tip_radii_where_the_shape_ends():
+    """A ball is round at its pole, a face is not; tip A's shoulder, beyond 60 degrees, is sharp."""
+    ball = replace_all(load("t5b"), {"projectile.tip_radius": "9.5 mm", "impact.v_t": "0 m/s"})
+    at = {angle: principal_radii(ball.replace("impact.angle", angle)) for angle in ("0 deg", "1 deg")}
+    assert at["0 deg"] == pytest.approx((9.5e-3, 9.5e-3))
+    assert at["1 deg"] == pytest.approx(at["0 deg"])
+    assert principal_radii(replace_all(load("t5b"), {"impact.angle": "0 deg"}))[1] == FLATTEST
+    round_tip = replace_all(load("t5b"), {"projectile.tip": "A", "projectile.tip_radius": "7 mm"})
+    assert principal_radii(round_tip.replace("impact.angle", "59 deg"))[0] == 7e-3
+    assert principal_radii(round_tip.replace("impact.angle", "61 deg"))[0] == pytest.approx(0.019 / 200)
 
 
 def test_expected_shares_of_the_run_time():

@@ -9,7 +9,7 @@ import pytest
 from fem_impact.contact_law import contact_law
 from fem_impact.effects import everything
 from fem_impact.effects.beam import beam
-from fem_impact.effects.strike import Touch, strike
+from fem_impact.effects.strike import Flight, Touch, strike
 from fem_impact.estimates import normal_share
 from fem_impact.modal import modal_rod
 from fem_impact.scene import load, replace_all
@@ -86,6 +86,19 @@ def test_a_surface_that_yields_bears_less_than_coulomb():
     half = next(d for d in np.linspace(20, 0, 2000) if touch._normal(d * law.yield_depth) < 0.5 * force)
     now, side = touch.press(half * law.yield_depth, -1.0, 3.0, 1.0)
     assert side / now == pytest.approx(-0.57)
+
+
+@pytest.mark.parametrize("length", ["240 mm", "1 m"])
+def test_flying_at_once_and_ending_early_change_nothing(length, monkeypatch):
+    """As step by step, for 1.5 periods after the last touch."""
+    scene = replace_all(
+        everything(load("t3-machined")), {"projectile.length": length, "impact.v_n": "-4 m/s"}
+    )
+    quick = strike(scene)
+    monkeypatch.setattr(Flight, "free", lambda *_: 1)
+    monkeypatch.setattr(Flight, "gone", lambda *_: False)
+    monkeypatch.setattr("fem_impact.effects.strike.MOST_STEPS", 200_000)
+    assert strike.__wrapped__(scene) == pytest.approx(quick, rel=1e-5)
 
 
 def test_vibration_of_the_measured_sets():

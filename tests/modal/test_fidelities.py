@@ -4,14 +4,19 @@ import json
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from fem_impact.compare import compare, text_table
 from fem_impact.errors import SceneError
 from fem_impact.estimates import effective_mass, projectile
+from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.outcome import KEYS, Outcome
-from fem_impact.scene import MEASURED_SETS, Scene, load
+from fem_impact.outcome_keys import coefficient_keys
+from fem_impact.scene import MEASURED_SETS, Scene, load, replace_all
 from fem_impact.simulate import simulate
+from fem_impact.solid.separation import HORIZON, horizon
+from rigid import solve
 
 REDUCED = ("rigid", "modal")
 
@@ -40,6 +45,56 @@ def test_the_shares_of_the_energy_add_up(fidelity, name):
     spin = outcome["mass_kg"] * outcome["k_squared_m2"] * outcome["Omega_rad_per_s"] ** 2 / 2
     closed = spin * (1 + 1 / outcome["e_m_edge"]) / outcome["E_0_J"]
     assert lost + outcome["E_r_over_E_0"] - 1 == pytest.approx(closed, abs=1e-9)
+
+
+@pytest.mark.parametrize("omega", [20.0, -30.0])
+def test_coefficients_and_losses_take_a_spin_before_the_impact(omega):
+    """A rigid rod's impulse acts at its contact point: e_m = -1, and the losses are all that is lost."""
+    outcome = simulate(replace_all(load("t5b"), {"impact.omega": f"{omega} rad/s"}), "rigid")
+    assert outcome["e_m_edge"] == pytest.approx(-1, abs=1e-9)
+    assert outcome["e_m_impulse"] == pytest.approx(-1, abs=1e-9)
+    assert outcome["d_c_impulse_m"] == pytest.approx(outcome["d_c_edge_m"])
+    kept = sum(outcome[f"{name}_over_E_0"] for name in ("E_ln_edge", "E_lt_edge", "E_r"))
+    assert kept == pytest.approx(1, abs=1e-9)
+    d_c, d_d = outcome["d_c_edge_m"], outcome["d_d_edge_m"]
+    left = outcome["V_n_m_per_s"] + d_c * outcome["Omega_rad_per_s"]
+    assert outcome["e_edge"] == pytest.approx(-left / (outcome["v_n_m_per_s"] + d_c * omega))
+    before = {"v_n": outcome["v_n_m_per_s"], "v_t": outcome["v_t_m_per_s"]}
+    body = {"e": outcome["e_edge"], "d_c": d_c, "d_d": d_d, "k2": outcome["k_squared_m2"]}
+    after = solve(**before, **body, mu=outcome["mu_c"], omega=omega)
+    assert after.V_t - d_d * after.Omega == pytest.approx(0, abs=1e-9)
+
+
+@pytest.mark.parametrize("fidelity", REDUCED)
+@pytest.mark.parametrize("tip", [("A", "7 mm"), ("B", "3 mm"), ("B", "9.5 mm")])
+def test_an_upright_rod_does_not_turn_and_has_no_moment(fidelity, tip):
+    upright = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
+    scene = replace_all(load("t5b"), {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], **upright})
+    outcome = simulate(scene, fidelity)
+    assert outcome["Omega_rad_per_s"] == pytest.approx(0, abs=1e-6)
+    assert outcome["e_m_edge"] is None
+    assert "no moment" in outcome["reasons"]["e_m_edge"]
+    assert 0 < outcome["e_edge"] < 1
+
+
+def test_arms_that_do_not_approach_have_no_restitution():
+    scene = replace_all(load("t5b"), {"impact.omega": "60 rad/s"})
+    motion = {"v_n_m_per_s": -1.502, "v_t_m_per_s": -1.482, "V_n_m_per_s": 0.4, "V_t_m_per_s": -0.5}
+    motion |= {"Omega_rad_per_s": 90.0, "k_squared_m2": 5.56e-4, "mass_kg": 0.17}
+    values, reasons = coefficient_keys(scene, motion)
+    assert values["d_c_impulse_m"] > 1.502 / 60
+    assert values["e_impulse"] is None
+    assert "approach" in reasons["e_impulse"]
+    assert values["e_edge"] is not None
+
+
+def test_a_long_rod_is_followed_until_its_bending_cannot_bring_it_back():
+    long = {"projectile.length": "1.5 m", "accuracy.max_time": "60 ms"}
+    result = modal_solve(replace_all(load("t3-machined"), long))
+    later = np.diff(result.contacts[:, 0])
+    assert result.finished
+    assert later.max() > HORIZON
+    assert horizon(load("t3-machined")) == HORIZON
 
 
 def test_compare_and_tables_take_what_is_not_known():

@@ -93,6 +93,20 @@ def test_contact_point_stands_still_at_the_critical_ratio(case):
         assert after.V_t - body["d_d"] * after.Omega == pytest.approx(0.0, abs=1e-9 * (abs(v_n) + abs(v_t)))
 
 
+@given(impacts(e_m=(-1.5, -0.1)), st.floats(-0.9, 0.9))
+def test_a_spin_before_the_impact_moves_the_critical_ratio(case, share):
+    """``share`` of the approach that the spin makes up for at the contact point."""
+    v_n, v_t, body, found = case
+    if abs(body["d_c"]) > 1e-3:
+        omega = -share * v_n / body["d_c"]
+        found["mu"] = critical_ratio(v_n, v_t, e=found["e"], e_m=found["e_m"], omega=omega, **body)
+        if regular(body, found):
+            after = solve(v_n, v_t, **found, omega=omega, **body)
+            slip = after.V_t - body["d_d"] * after.Omega
+            size = abs(v_n) + abs(v_t) + body["d_d"] * abs(omega)
+            assert slip == pytest.approx(0.0, abs=1e-7 * size)
+
+
 def test_equations_9_10_and_12_by_hand():
     """Central strike: no arm across the normal, so the impulse is -(1 + e) v_n whatever the friction."""
     after = solve(-2.0, -1.0, e=0.5, mu=0.2, d_c=0.0, d_d=0.04, k2=5e-4)

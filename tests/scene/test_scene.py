@@ -137,6 +137,13 @@ def test_another_rod_motion_or_surface_no_longer_repeats_a_set(key, value):
     assert load("t4").replace(key, value).measured is None
 
 
+def test_a_title_says_that_its_set_was_changed():
+    stated = load("t5b")
+    assert stated.replace("surface.friction", 0.3).title == stated.title
+    changed = stated.replace("impact.angle", "20 deg").replace("projectile.length", "100 mm")
+    assert changed.title == f"{stated.title} (changed)"
+
+
 def test_changes_are_checked_together():
     changes = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
     assert replace_all(load("t4"), changes).projectile.tip == "plain"
