@@ -21,6 +21,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
     # a run has no large dense algebra: idle threads of the linear-algebra library only burn time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # closed by the caller: `>&-`
     options = read_line(argv)
     if options.version:
         return _version()

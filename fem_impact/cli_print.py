@@ -32,6 +32,7 @@ _SHARES = (
     ("contact closing", "W_closing_over_E_0"),
     ("residual of the ledger", "residual_over_E_0"),
 )
+_IF_ON = (("material damping", "W_damping_over_E_0"), ("added by gravity", "W_gravity_over_E_0"))
 _SKIN = ("friction + plate's top 0.1 mm", "W_skin_over_E_0")
 
 
@@ -48,6 +49,7 @@ def print_outcome(record: Mapping[str, Any], out: Path) -> None:
     lines += [_motion(record, *row) for row in (restitution, *_MOTION)]
     lines += ["", f"of the initial energy, E_0 = {_value(record, 'E_0_J')} J:"]
     lines += [_share(record, words, key) for words, key in _SHARES]
+    lines += [_share(record, words, key) for words, key in _IF_ON if record[key] is not None]
     lines += ["", _share(record, *_SKIN)]
     lines += [_vibration_note(record)] if record["E_vib_below_floor"] else []
     lines += _accuracy(record)

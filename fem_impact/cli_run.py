@@ -28,9 +28,10 @@ def run(options: Options) -> int:
     threads = options.threads or (2 if idle_cores() >= ENOUGH else 1)
     _say_plan(scene, options, threads)
     out = checked_out(options.out or _default_out(scene, options))
+    from fem_impact.earlier import earlier
     from fem_impact.simulate import simulate
 
-    meter = chosen_meter(options)
+    meter, before = chosen_meter(options), earlier(out)
     try:
         outcome = simulate(
             scene,
@@ -42,9 +43,10 @@ def run(options: Options) -> int:
             threads=threads,
         )
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"Results: {out}; --resume goes on from the last checkpoint.") from None
+        raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
     finally:
         meter.close()
+        _say_kept(out, before, options)
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
@@ -61,6 +63,22 @@ def _say_plan(scene: Scene, options: Options, threads: int) -> None:
     sentence = plan(scene, options.fidelity or None, threads).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
+
+
+def _way_on(out: Path) -> str:
+    from fem_impact.solid.checkpoint import CHECKPOINT
+
+    if (out / CHECKPOINT).exists():
+        return "--resume goes on from the last checkpoint."
+    return "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
+
+
+def _say_kept(out: Path, before: list[Path], options: Options) -> None:
+    from fem_impact.earlier import earlier
+
+    for place in earlier(out):
+        if place not in before and not options.quiet:
+            sys.stderr.write(f"An older run that was in {out} is kept in {place}\n")
 
 
 def _default_out(scene: Scene, options: Options) -> Path:

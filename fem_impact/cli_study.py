@@ -22,9 +22,12 @@ if TYPE_CHECKING:
 
 __all__ = ["study"]
 
+ABOUT_SETS = ("sets", "scatter", "convergence", "effects")
+
 
 def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
+    _check_options(options)
     ids = _checked_ids(options.ids)
     out = checked_out(options.out or Path("results") / options.name)
     if options.name == "report":
@@ -107,6 +110,15 @@ def _workers(options: Options) -> Iterator[Executor]:
     lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
     with lent as executor:
         yield executor
+
+
+def _check_options(options: Options) -> None:
+    """Refuse what the named study would not look at."""
+    looked_at = (("ID", " ".join(options.ids), ABOUT_SETS), ("--fidelity", options.fidelity, ("scatter",)))
+    for key, given, studies in looked_at:
+        if given and options.name not in studies:
+            problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(studies)}."
+            raise SceneError(problem, key=key, value=given, remedy=f"Leave it out. {remedy}")
 
 
 def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:

@@ -39,8 +39,9 @@ def provenance(
     stopped_because: str,
     assumptions: Iterable[str] = (),
     warnings: Iterable[str] = (),
+    without: Iterable[str] = (),
 ) -> Values:
-    """Return where a record comes from and how far to trust it."""
+    """Return where a record comes from and how far to trust it; ``without`` are effects it does not know."""
     return {
         "fidelity": fidelity,
         "scene_id": scene.id,
@@ -50,7 +51,7 @@ def provenance(
         "versions": installed_versions(),
         "finished": finished,
         "stopped_because": stopped_because,
-        "effects": list(scene.active),
+        "effects": [name for name in scene.active if name not in without],
         "assumptions": list(assumptions),
         "validity": list(validity(scene)),
         "warnings": list(warnings),

@@ -59,6 +59,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     values |= _heat(result, values)
     reasons |= NO_TARGET | {
         "W_damping_over_E_0": "the material-damping effect is off",
+        "W_gravity_over_E_0": "the gravity effect is off",
         "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
         "bands": "one mesh alone has no band: run the study, or a second tip size",
     }
@@ -131,6 +132,8 @@ def _energies(result: SolidResult, values: Values) -> Values:
     }
     if "material-damping" in result.scene.active:
         shares["W_damping"] = a["damping"]
+    if "gravity" in result.scene.active:
+        shares["W_gravity"] = float(kept) - result.motion.kinetic - a["gravity"]
     if result.model.rod_stiffness is None:
         shares["E_locked_rod"] += a["kinetic_rod"] - result.motion.kinetic  # the nose rings a little
         del shares["E_vib"], shares["E_vib_floor"]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["rigid_outcome"]
 
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
+WITHOUT = ("vibration", "rate-hardening", "radiation", "gravity", "large-rotation", "material-damping")
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
     "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no tangential give.",
@@ -46,7 +47,8 @@ def rigid_outcome(scene: Scene) -> Outcome:
     wall, cpu = time.perf_counter(), time.process_time()
     path = impulse()
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    values = provenance(scene, "rigid", True, "A rigid impact is over at once.", (source, *ASSUMPTIONS))
+    over = "A rigid impact is over at once."
+    values = provenance(scene, "rigid", True, over, (source, *ASSUMPTIONS), without=WITHOUT)
     V_n, V_t, Omega = path.motion
     values |= motion_keys(scene, float(V_n), float(V_t), float(Omega), rod.mass, rod.k2)
     coefficients, reasons = coefficient_keys(scene, values)

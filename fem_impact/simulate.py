@@ -40,7 +40,8 @@ def simulate(
         finite-element model, seconds to minutes; without one it is ``solid``, or what the measured
         costs choose for a scene that states the error it allows
     out : directory for outcome.json and scene.toml, contacts.csv where contacts have a duration, and
-        history.csv and fields.vtkhdf of the solid fidelity; none of them is written without it
+        history.csv and fields.vtkhdf of the solid fidelity; none of them is written without it. What an
+        older run left there is moved to a directory ``earlier-...`` within
     progress : called every few hundred steps of the solid fidelity
     resume : go on from the checkpoint in ``out`` (solid); without one there, start at the beginning
     checkpoint_s : wall time between checkpoints of the solid fidelity
@@ -77,7 +78,7 @@ def _run(
 ) -> Outcome:
     """Compute one impact on the mesh that the scene gives, and write its files."""
     require_runnable(scene, fidelity)
-    goes_on = resume and out is not None and (out / CHECKPOINT).exists()
+    goes_on = fidelity == "solid" and resume and out is not None and (out / CHECKPOINT).exists()
     if out is not None and not goes_on:
         _begin(scene, out)
     outcome = _compute(scene, fidelity, out, progress, goes_on, checkpoint_s, threads)
@@ -87,12 +88,12 @@ def _run(
 
 
 def _begin(scene: Scene, out: Path) -> None:
-    """Clear an older run away, so that nothing of it is taken for this one, and name the scene."""
+    """Set an older run aside, so that nothing of it is taken for this one, and name the scene."""
+    from fem_impact.earlier import set_aside
     from fem_impact.output import make_directory, write_text
 
     make_directory(out)
-    for name in (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf"):
-        (out / name).unlink(missing_ok=True)
+    set_aside(out)
     write_text(out / "scene.toml", scene.to_toml())
 
 

@@ -37,6 +37,7 @@ class ModalResult:
     ----------
     V_n, V_t, Omega : after the last separation, gravity removed, m/s, rad/s
     E_0, kinetic, friction, plastic, residual : J, of the whole rod; kinetic is the rigid motion's
+    fallen : what gravity added to these and to the vibration, J
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
@@ -53,6 +54,7 @@ class ModalResult:
     friction: float
     plastic: float
     residual: float
+    fallen: float
     contacts: Array
     force: float
     finished: bool
@@ -89,18 +91,19 @@ def solve(scene: Scene, progress: Callable[[Progress], None] | None = None) -> M
     plastic, friction = plastic_work(law, peak), -works[1]
     spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic
     V_n, V_t = motion[0] - start.g_n * end, motion[1] - start.g_t * end
-    residual = E_0 + works[2] - spent
+    residual, kinetic = E_0 + works[2] - spent, _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(
         rod=rod,
         V_n=V_n,
         V_t=V_t,
         Omega=motion[2],
         E_0=E_0,
-        kinetic=_kinetic(rod, V_n, V_t, motion[2]),
+        kinetic=kinetic,
         energies=energies,
         friction=friction,
         plastic=plastic,
         residual=residual,
+        fallen=works[2] + kinetic - _kinetic(rod, *motion),
         contacts=contacts[:count],
         force=force,
         finished=over,

@@ -155,7 +155,7 @@ def drop(
     cosine, sine = np.cos(omega * dt), np.sin(omega * dt)
     q, rate = np.zeros(k), np.zeros(k)
     V_n, V_t, spin, turn = start.v_n, start.v_t, start.omega, 0.0
-    height = start.radius - start.centre_n
+    height, along, before = start.radius - start.centre_n, 0.0, start.centre_t
     peak, hardest, W_n, W_t, W_g = 0.0, 0.0, 0.0, 0.0, 0.0
     # even steps of area: slip begins at the rim, where the springs then lie closer together
     edge = bounds.reach * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
@@ -165,14 +165,14 @@ def drop(
         c, s = np.cos(turn), np.sin(turn)
         bent_t, bent_n = start.centre_t + along_t @ q, start.centre_n + along_n @ q
         arm_t, arm_n = c * bent_t + s * bent_n, c * bent_n - s * bent_t - start.radius
-        depth = -(height + arm_n)
+        depth, place_t = -(height + arm_n), along + arm_t - start.radius * turn
         F, a = press(depth, peak, law)
         if F > 0.0:
             if time > bounds.latest:
                 break
             on_n, on_t = c * along_n - s * along_t, c * along_t + s * along_n
             w_n, w_t = V_n - spin * arm_t + on_n @ rate, V_t + spin * arm_n + on_t @ rate
-            p_n, p_t = dt * F, -dt * grip(shift, place, width, dt * w_t, F, a, law)
+            p_n, p_t = dt * F, -dt * grip(shift, place, width, place_t - before, F, a, law)
             V_n += p_n / start.mass
             V_t += p_t / start.mass
             spin += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
@@ -183,11 +183,13 @@ def drop(
             count = book(contacts, count, time, p_n, p_t, dt * hardest)
         else:
             shift[:] = 0.0
+        before = place_t
         lift = start.g_n * (V_n + 0.5 * dt * start.g_n) + start.g_t * (V_t + 0.5 * dt * start.g_t)
         W_g += start.mass * dt * lift
         V_n += dt * start.g_n
         V_t += dt * start.g_t
         height += dt * V_n
+        along += dt * V_t
         turn += dt * spin
         q, rate = cosine * q + sine * rate / omega, cosine * rate - sine * omega * q
         time += dt

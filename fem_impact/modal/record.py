@@ -12,6 +12,7 @@ from fem_impact.scene import Scene
 
 __all__ = ["reduce"]
 
+WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
 NOT_MESHED = "the reduced model has no elements"
 REASONS = {
     "E_vib_check_over_E_0": "the free flight is exact in modes, so there is nothing to check it against",
@@ -21,6 +22,7 @@ REASONS = {
     "W_skin_over_E_0": "a local contact law does not say how deep it flows",
     "W_closing_over_E_0": "no contact nodes close",
     "effect_choices": "effects are weighed for the finite elements; `fem-impact check` lists them",
+    "W_gravity_over_E_0": "the gravity effect is off",
     "W_damping_over_E_0": "the reduced model has no material damping",
     "E_hourglass_over_E_0": NOT_MESHED,
     **dict.fromkeys(
@@ -40,8 +42,8 @@ REASONS = {
 def reduce(scene: Scene, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact; what it cannot know is null with its reason."""
     warnings = [] if result.finished else ["The impact was not over at max_time."]
-    told = (*ASSUMPTIONS, *beside_solid(scene))
-    values = provenance(scene, "modal", result.finished, _end(result), told, warnings)
+    assumed = (*ASSUMPTIONS, *beside_solid(scene))
+    values = provenance(scene, "modal", result.finished, _end(result), assumed, warnings, WITHOUT)
     rod = result.rod
     values |= motion_keys(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
     coefficients, reasons = coefficient_keys(scene, values)
@@ -52,7 +54,8 @@ def reduce(scene: Scene, result: ModalResult) -> Outcome:
         "cpu_s": result.cpu,
         "min_step_s": result.step,
     }
-    return Outcome(values, NO_TARGET | REASONS | reasons)
+    told = NO_TARGET | REASONS | reasons
+    return Outcome(values, {key: why for key, why in told.items() if values.get(key) is None})
 
 
 def _end(result: ModalResult) -> str:
@@ -73,6 +76,7 @@ def _energies(scene: Scene, result: ModalResult) -> Values:
         "E_vib_below_floor": vibration < floor,
         "W_friction_over_E_0": result.friction / result.E_0,
         "residual_over_E_0": result.residual / result.E_0,
+        "W_gravity_over_E_0": result.fallen / result.E_0 if "gravity" in scene.active else None,
         **plastic_keys(scene, result.plastic / result.E_0),
     }
 

@@ -19,6 +19,7 @@ __all__ = ["ModalRod", "modal_rod"]
 
 Array = NDArray[np.float64]
 
+COARSEST = 1e-2  # m, a scene's largest tip
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
 
 
@@ -85,7 +86,7 @@ def _modes(rod: Projectile, across: int) -> tuple[Array, Array, Array]:
         surface=Surface("custom", 0.0, 0.0, 0.0, "no friction"),
         impact=Impact(0.0, -1.0, 0.0),
         effects=("vibration", "barrier-rigid"),
-        accuracy=Accuracy(tip_size=rod.diameter / 4, across=across),
+        accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across),
     )
     model = build(scene, specify(scene))
     view, mesh = RodView.of(model), model.geometry.rod.mesh

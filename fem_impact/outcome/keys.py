@@ -139,6 +139,7 @@ ENERGY = (
     _fraction("W_radiated", "Energy radiated through the barrier's outer boundary"),
     _fraction("W_closing", "Loss at the closing of lumped contact nodes (vanishes with the mesh)"),
     _fraction("W_damping", "Work of material damping"),
+    _fraction("W_gravity", "What gravity added to the other shares, the speed of the fall itself taken out"),
     _fraction("E_hourglass", "Hourglass energy"),
     _fraction("residual", "What the ledger fails to close by"),
 )

@@ -76,6 +76,9 @@ def read_camera(path: str | Path) -> Camera:
     return Camera(motion, _labels(rows, names), ignored)
 
 
+LARGEST = 1e6  # m/s or rad/s
+
+
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
     """Yield line number and cells of what is neither blank nor a remark."""
     reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
@@ -137,7 +140,12 @@ def _number(row: Line, names: Sequence[str], at: int, unit: Unit, path: str | Pa
         number = math.nan
     if not math.isfinite(number):
         raise ResultError(f"{path}: line {line}, column {names[at]}: {text[:40]!r} is not a finite number.")
-    return unit.to_si(text)
+    value = unit.to_si(text)
+    if abs(value) > LARGEST:
+        raise ResultError(
+            f"{path}: line {line}, column {names[at]}: {text[:40]} is no speed of a dropped rod."
+        )
+    return value
 
 
 def _check_motion(

@@ -40,7 +40,7 @@ ENERGY = (
     "E_0_J", "E_r_over_E_0", "E_vib_over_E_0", "E_vib_check_over_E_0", "E_vib_floor_over_E_0",
     "W_friction_over_E_0", "W_skin_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0",
     "E_locked_rod_over_E_0", "E_locked_barrier_over_E_0", "W_radiated_over_E_0", "W_closing_over_E_0",
-    "W_damping_over_E_0", "E_hourglass_over_E_0", "residual_over_E_0",
+    "W_damping_over_E_0", "W_gravity_over_E_0", "E_hourglass_over_E_0", "residual_over_E_0",
 )  # fmt: skip
 COST = (
     "steps", "element_steps", "elements_rod", "elements_barrier", "elements_yielding",

@@ -105,9 +105,6 @@ def _run(job: Job) -> str:
     from fem_impact import simulate as simulated
 
     simulate: Callable[..., Outcome] = simulated.simulate
-    if job.out is not None:
-        # a run killed half way must not stand beside the outcome of an earlier one
-        (job.out / "outcome.json").unlink(missing_ok=True)
     try:
         return simulate(job.scene, fidelity=job.fidelity, out=job.out, resume=True).to_json()
     except ResultError:  # a checkpoint of another scene or program

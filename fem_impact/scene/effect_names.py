@@ -50,7 +50,7 @@ def check_effects(effects: object) -> tuple[str, ...]:
     plain = [name.removeprefix("-") for name in names]
     if len(set(plain)) < len(plain):
         raise SceneError("names an effect twice.", key="effects", value=list(names))
-    _check_barrier([name for name in names if name in BARRIERS], AUTO in names)
+    _check_barrier(names, AUTO in names)
     _check_needs(names)
     order = (AUTO, *NAMES, *(f"-{name}" for name in NAMES))
     return tuple(name for name in order if name in names)
@@ -70,17 +70,20 @@ def _check_known(name: object, auto: bool) -> None:
         return
     near = get_close_matches(str(name), known, 1)
     hint = f'Did you mean "{near[0]}"?' if near else _REMEDY
+    if not auto and str(name).removeprefix("-") in NAMES:
+        hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
     if str(name).removeprefix("-") in BARRIERS:
         hint = "There is always a barrier: name the one wanted."
     raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
 
 
-def _check_barrier(barriers: list[str], auto: bool) -> None:
+def _check_barrier(names: Sequence[str], auto: bool) -> None:
+    barriers = [name for name in names if name in BARRIERS]
     if len(barriers) > 1 or not (barriers or auto):
         raise SceneError(
             f"names {len(barriers)} barriers and needs exactly one.",
             key="effects",
-            value=barriers,
+            value=list(names),
             remedy=f"Choose one of {', '.join(BARRIERS)}.",
         )
 

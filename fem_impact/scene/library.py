@@ -43,6 +43,11 @@ def load(id_or_path: str | Path) -> Scene:
     return Scene.from_toml(name)
 
 
+def stated(name: str) -> dict[str, Any]:
+    """Return the tables of a shipped scene as its file states them."""
+    return _table(f"scenes/{name}.toml")
+
+
 def materials() -> dict[str, Material]:
     """Return the shipped materials by name, SI units."""
     return {name: _material(name, table) for name, table in _table("materials.toml").items()}
@@ -99,7 +104,7 @@ def _looks_like_a_file(name: str) -> bool:
 def _shipped(name: str) -> Scene:
     from fem_impact.scene.read import read_dict
 
-    return read_dict(_table(f"scenes/{name}.toml"), f"shipped scene {name}")
+    return read_dict(stated(name), f"shipped scene {name}")
 
 
 def _material(name: str, table: dict[str, Any]) -> Material:

@@ -36,9 +36,12 @@ def _load(path: Path) -> str:
     try:
         with path.open("rb") as file:
             raw = file.read(_LARGEST_FILE + 1)
-        text = raw.decode("utf-8")
+        text = raw.decode("utf-8-sig")
     except FileNotFoundError:
         raise SceneError("there is no such file.", source=str(path), remedy=library.proposal(path)) from None
+    except IsADirectoryError:
+        remedy = f"Name the file, such as {path / 'scene.toml'}."
+        raise SceneError("is a directory, not a scene file.", source=str(path), remedy=remedy) from None
     except UnicodeDecodeError:
         raise SceneError("is not UTF-8 text.", source=str(path), remedy=_TOML) from None
     except (OSError, ValueError) as error:

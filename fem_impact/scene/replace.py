@@ -63,6 +63,9 @@ def _table(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     table = data
     for name in path:
         inner = table.get(name)
+        if name == "accuracy" and isinstance(inner, str):
+            remedy = "Give the error that is allowed, or a mesh, not both."
+            raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy, source="--set")
         if not isinstance(inner, dict):
             sections = [k for k, v in table.items() if isinstance(v, Mapping)]
             hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")

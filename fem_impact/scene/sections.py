@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from math import isclose
 from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
@@ -24,6 +25,7 @@ from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
 __all__ = ["read_scene"]
 
+ROD = ("length", "diameter", "tip_radius")
 T = TypeVar("T")
 Table = Mapping[str, Any]
 _TOP = (
@@ -48,7 +50,7 @@ def read_scene(data: Table) -> Scene:
         raise SceneError("a scene must be a table of tables.", value=data)
     _check_keys(data, _TOP)
     effects = check_effects(data.get("effects", AUTO))
-    return Scene(
+    scene = Scene(
         id=_needed(data, "id"),
         title=data.get("title", data["id"]),
         projectile=_within(data, "projectile", _projectile),
@@ -62,6 +64,28 @@ def read_scene(data: Table) -> Scene:
         measured=data.get("measured"),
         restitution=_restitution(data),
     )
+    _check_measured(scene)
+    return scene
+
+
+def _check_measured(scene: Scene) -> None:
+    """Refuse the name of a measured set beside another rod or angle: its arms and results are not theirs."""
+    if scene.measured is None:
+        return
+    stated, rod = library.stated(scene.measured), scene.projectile
+    its = _projectile(stated["projectile"])
+    pairs = {f"projectile.{key}": (getattr(rod, key), getattr(its, key)) for key in ROD}
+    angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
+    pairs["impact.angle"] = (scene.impact.angle, angle)
+    other = [key for key, (a, b) in pairs.items() if not isclose(a, b, rel_tol=1e-3)]
+    other += ["projectile.tip"] if rod.tip != its.tip else []
+    if other:
+        raise SceneError(
+            f"names a set that was measured with another {' and '.join(other)}.",
+            key="measured",
+            value=scene.measured,
+            remedy='Leave out "measured".',
+        )
 
 
 def _restitution(data: Table) -> float | None:

@@ -1,6 +1,8 @@
 """``run`` and ``study``: what is passed on, printed and returned."""
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -107,6 +109,28 @@ def test_study_passes_what_is_asked(cli, stand):
     assert names == ["sets", "convergence"]
     assert asked[0] == Request(Path("results/sets"), ("t4", "t5a"))
     assert asked[1] == Request(Path("here"), (), quick=True)
+
+
+@pytest.mark.parametrize("words", [("gamma", "t5b"), ("gamma", "--fidelity", "solid")])
+def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
+    code, _, err = cli("study", *words)
+    assert code == 3
+    assert f'= "{words[-1]}": is nothing to study gamma' in err
+    assert not stand.calls
+
+
+def test_an_interrupted_run_says_whether_it_can_go_on(cli, stand):
+    stand.error = KeyboardInterrupt()
+    assert "no checkpoint was due yet" in cli("run", "t5b", "--out", "here")[2]
+    for name in ("scene.toml", "run.checkpoint"):
+        Path("here", name).write_text("of this run")
+    assert "--resume goes on from the last checkpoint" in cli("run", "t5b", "--out", "here")[2]
+
+
+def test_a_closed_output_is_no_traceback():
+    command = [sys.executable, "-m", "fem_impact", "scenes"]
+    done = subprocess.run(["sh", "-c", '"$@" >&-', "sh", *command], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):

@@ -77,6 +77,33 @@ def test_an_upright_rod_does_not_turn_and_has_no_moment(fidelity, tip):
     assert 0 < outcome["e_edge"] < 1
 
 
+def test_what_gravity_adds_is_told_and_closes_the_sum():
+    slow = {"impact.v_n": "-0.1 m/s", "impact.v_t": "-0.1 m/s"}
+    outcome = simulate(replace_all(load("quick"), slow), "modal")
+    parts = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "residual")
+    assert outcome["W_gravity_over_E_0"] > 0.01
+    total = sum(outcome[f"{part}_over_E_0"] for part in parts)
+    assert total == pytest.approx(1 + outcome["W_gravity_over_E_0"], abs=1e-9)
+    assert simulate(load("quick"), "modal")["W_gravity_over_E_0"] is None
+
+
+def test_only_effects_of_the_model_are_named():
+    every = replace(
+        load("t5b"), effects=("auto", "radiation", "gravity", "material-damping", "large-rotation")
+    )
+    assert simulate(every, "rigid")["effects"] == [
+        *("friction", "rod-plasticity", "barrier-elastoplastic", "contact-heating")
+    ]
+    assert simulate(every, "modal")["effects"] == [
+        *("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "gravity", "large-rotation")
+    ]
+
+
+def test_a_thick_rod_has_modes_too():
+    thick = {"projectile.length": "300 mm", "projectile.diameter": "60 mm"}
+    assert simulate(replace_all(load("t5b"), thick), "modal")["E_vib_over_E_0"] > 0
+
+
 def test_arms_that_do_not_approach_have_no_restitution():
     scene = replace_all(load("t5b"), {"impact.omega": "60 rad/s"})
     motion = {"v_n_m_per_s": -1.502, "v_t_m_per_s": -1.482, "V_n_m_per_s": 0.4, "V_t_m_per_s": -0.5}

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import fem_impact.modal.impact as impact
 from fem_impact.estimates import contact_modulus, projectile
 from fem_impact.modal import ModalRod, modal_rod, record, solve
-from fem_impact.scene import load
+from fem_impact.scene import load, replace_all
 from fem_impact.verify.reference.oblique import oblique_drop, oblique_rod
 from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
 
@@ -97,6 +97,18 @@ def test_axial_strike_of_a_round_tip(length, speed, force, duration, e, vibratio
     assert abs(found.Omega) + abs(found.V_t) < 1e-8
     if vibration is not None:
         assert found.vibration / found.E_0 == pytest.approx(vibration, abs=5e-4)
+
+
+def test_friction_takes_energy_whatever_the_step(monkeypatch):
+    """A sticking contact on a vibrating rod: its springs follow the contact point, not its last speed."""
+    steep = {"impact.angle": "17 deg", "impact.v_n": "-2.125 m/s", "impact.v_t": "-0.65 m/s"}
+    scene = replace_all(load("t3-machined"), steep)
+    plain = solve(scene)
+    monkeypatch.setattr(impact, "FASTEST", impact.FASTEST / 4)
+    fine = solve(scene)
+    assert plain.friction / plain.E_0 == pytest.approx(0.00416, abs=1e-4)
+    assert fine.friction == pytest.approx(plain.friction, rel=0.01)
+    assert fine.vibration == pytest.approx(plain.vibration, rel=0.01)
 
 
 def test_modes_at_the_contact_are_those_of_a_beam():

@@ -94,6 +94,7 @@ def test_a_spreadsheets_file_is_read(cli, camera_file):
         ((*GOOD, "4,-1.5,-1.5,0.3,abc,5"), HEADER, ["line 5, column V_t_m_per_s", "'abc'"]),
         ((*GOOD, "4,-1.5,-1.5,0.3,,5"), HEADER, ["line 5, column V_t_m_per_s", "''"]),
         ((*GOOD, "4,-1.5,-1.5,0.3,nan,5"), HEADER, ["line 5, column V_t_m_per_s", "finite"]),
+        ((*GOOD, "4,-1.5,-1.5,0.3,-0.4,1e150"), HEADER, ["line 5, column Omega_rad_per_s", "no speed"]),
         ((GOOD[0], "", "4,1.5,-1.5,0.3,-0.4,5"), HEADER, ["line 4, column v_n_m_per_s: 1.5 must be"]),
         ((*GOOD, "4,-1.5,-1.5,-1.6,-0.4,5"), HEADER, ["line 5, column V_n_m_per_s: -1.6 must exceed v_n"]),
         ((*GOOD, "4,-1.5,-1.5"), HEADER, ["line 5 has 3 cells, the header 6"]),

@@ -58,19 +58,6 @@ def test_a_run_with_files_is_computed_again_when_they_are_not_its_own(tmp_path):
     assert run(store, wanted)[1] == ["a"]
 
 
-def test_a_run_that_begins_takes_the_old_outcome_away(tmp_path, monkeypatch):
-    wanted = job("a", out=tmp_path / "a")
-    run(tmp_path / "store.sqlite", wanted)
-
-    def killed(*_, **__):
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(fem_impact.simulate, "simulate", killed)
-    with pytest.raises(KeyboardInterrupt):
-        run(tmp_path / "other.sqlite", wanted)
-    assert not (tmp_path / "a" / "outcome.json").exists()
-
-
 def test_failures_of_the_run_last_and_faults_are_tried_again(tmp_path):
     store = tmp_path / "store.sqlite"
     found, _ = run(store, job("a", "fail"), job("b"), job("c", "break"))

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.scene import Impact, Material, Projectile, Scene, SceneError, load, materials
+from fem_impact.scene import Impact, Material, Projectile, Scene, SceneError, load, materials, replace_all
 
 NAN, INF = float("nan"), float("inf")
 MISTAKES = [
@@ -59,6 +59,8 @@ MISTAKES = [
     ("effects", ["auto", "radiation", "barrier-rigid"], ["means nothing without", "barrier-elastic"]),
     ("effects", ["vibration", "barrier-rigid", "rate-hardening"], ["means nothing", "rod-plasticity"]),
     ("effects", ["vibration", "barrier-rigid", "-gravity"], ["-gravity", "is not an effect"]),
+    ("effects", ["-friction"], ["-friction", 'write ["auto", "-friction"]']),
+    ("effects", ["gravity"], ["names 0 barriers", "gravity"]),
     ("effects", "vibration", ["list of names"]),
     ("effects", ["vibration", "frictoin", "barrier-rigid"], ["frictoin", 'Did you mean "friction"']),
     ("effects", ["vibration", "vibration", "barrier-rigid"], ["twice"]),
@@ -109,12 +111,43 @@ def test_a_missing_file_says_so(tmp_path):
 
 
 def test_a_directory_is_no_scene(tmp_path):
-    assert "cannot be read" in refusal(tmp_path)
+    told = refusal(tmp_path)
+    assert "is a directory" in told
+    assert "scene.toml" in told
 
 
 @pytest.mark.parametrize("text", ["length = = 3", 'id = "a"\nid = "b"', "[" * 3000, "x = " + "1" * 9999])
 def test_unreadable_toml_says_where(tmp_path, text):
     assert "TOML" in refusal(write(tmp_path, text))
+
+
+def test_a_byte_order_mark_is_no_mistake(tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + load("t5b").to_toml().encode())
+    assert load(path) == load("t5b")
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"length": "160 mm"}, "projectile.length"),
+        ({"tip": "A", "tip_radius": "7 mm"}, "projectile.tip_radius and projectile.tip"),
+        ({}, "impact.angle"),
+    ],
+)
+def test_a_set_that_was_measured_with_another_rod_is_not_named(changes, named):
+    data = load("t5b").to_dict()
+    data["projectile"] |= changes
+    data["impact"] |= {} if changes else {"angle": "20 deg"}
+    with pytest.raises(SceneError, match=f'measured = "t5b": .*another {named}.*Leave out'):
+        Scene.from_dict(data)
+    del data["measured"]
+    assert Scene.from_dict(data).measured is None
+
+
+def test_a_target_and_a_mesh_together_are_refused_by_name():
+    with pytest.raises(SceneError, match=r"accuracy.tip_size: stands beside accuracy = '5 %'.*not both"):
+        replace_all(load("t5b"), {"accuracy": "5 %", "accuracy.tip_size": "0.5 mm"})
 
 
 def test_bytes_that_are_no_text(tmp_path):

@@ -35,6 +35,21 @@ def test_the_run_says_that_it_was_cut_off(run):
     assert told[-1].contact.endswith("nodes touch") and abs(told[-1].energy_drift) < 1e-5
 
 
+def test_what_gravity_adds_closes_the_sum():
+    slow = {
+        "impact.v_n": "-0.1 m/s",
+        "impact.v_t": "-0.1 m/s",
+        "accuracy.tip_size": "0.8 mm",
+        "save.frames": 0,
+    }
+    outcome = simulate(replace_all(load("quick"), slow))
+    parts = ("E_r", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "E_locked_rod")
+    parts += ("E_locked_barrier", "W_closing", "residual")
+    total = sum(outcome[f"{part}_over_E_0"] for part in parts)
+    assert outcome["W_gravity_over_E_0"] > 0.01
+    assert total == pytest.approx(1 + outcome["W_gravity_over_E_0"], abs=1e-5)
+
+
 def test_the_outcome_reads_back(run):
     out, outcome, _ = run
     assert Outcome.read(out / "outcome.json") == outcome
