@@ -26,7 +26,7 @@ from fem_impact.report.html import (
     with_band,
 )
 from fem_impact.report.page import page, sources
-from fem_impact.report.sections import film_section, has_film, history_figures, notices
+from fem_impact.report.sections import film_section, has_film, history_figures, notices, strangers
 from fem_impact.report.tables import all_keys, card, contacts_table, key_table, unknown
 
 __all__ = ["run_page"]
@@ -59,7 +59,7 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     body = (
         _cards(outcome),
-        notices([outcome]),
+        notices([outcome], strangers(outcome, folder)),
         section("Where the energy went", _partition(outcome, folder), key_table(outcome, ENERGY)),
         effects_section(outcome),
         history_figures(outcome, folder),

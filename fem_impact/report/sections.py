@@ -2,24 +2,52 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
-from fem_impact.errors import ResultError
+from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures import force_figure, ledger_figure
 from fem_impact.outcome import Outcome
 from fem_impact.output import make_directory, read_table
 from fem_impact.report.embed import FILMS, film, picture
 from fem_impact.report.html import Markup, bullets, join, paragraph, section
 from fem_impact.report.tables import sentences
+from fem_impact.scene import Scene
 
-__all__ = ["film_section", "has_film", "history_figures", "notices"]
+__all__ = ["film_section", "has_film", "history_figures", "notices", "strangers"]
 
 
-def notices(rows: list[Outcome]) -> Markup:
+def strangers(outcome: Outcome, folder: Path) -> list[str]:
+    """Return what says that files of the folder are not, or not wholly, those of the outcome."""
+    return [*_other_scene(outcome, folder), *_short_history(outcome, folder)]
+
+
+def _other_scene(outcome: Outcome, folder: Path) -> list[str]:
+    path = folder / "scene.toml"
+    try:
+        other = path.is_file() and Scene.from_toml(path).digest() != outcome["scene_digest"]
+    except SceneError as error:
+        return [str(error)]
+    return ["scene.toml was changed after the run: it is not the scene of outcome.json."] if other else []
+
+
+def _short_history(outcome: Outcome, folder: Path) -> list[str]:
+    if outcome["fidelity"] != "solid" or not outcome["contacts"]:
+        return []
+    try:
+        last = read_table(folder / "history.csv").numbers("time_s")[-1]
+    except (ResultError, IndexError):
+        return []  # that it is missing or damaged is told where its curves would stand
+    end = outcome["contacts"][-1]["end_s"]
+    told = f"history.csv ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
+    return [f"{told}: it is not whole."] if last < end else []
+
+
+def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
     """Return the warnings where they cannot be missed."""
     warned = sentences(rows, "warnings")
     cut = [f"{row['scene_id']} was cut off: {row['stopped_because']}" for row in rows if not row["finished"]]
-    listed = bullets([*cut, *warned]).text
+    listed = bullets([*more, *cut, *warned]).text
     return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
 
 

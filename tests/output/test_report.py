@@ -11,6 +11,7 @@ from fem_impact.output import write_bytes
 from fem_impact.report import draw_study, read_study, write_report
 from fem_impact.report.effects import effects_section
 from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
+from fem_impact.scene import load
 
 VOID = {"meta", "link", "img", "source", "br"}
 
@@ -120,6 +121,19 @@ def test_missing_history_is_said_and_not_fatal(run):
     words = read(write_report(run))[1]
     assert "No curves over time" in words
     assert "Coefficients and losses" in words
+
+
+def test_files_that_are_not_of_the_run_are_told(run):
+    scene = load("t5b")
+    result_maker.write_result(run, scene_digest=scene.digest())
+    (run / "scene.toml").write_text(scene.to_toml())
+    assert "To keep in mind scene.toml" not in read(write_report(run))[1]
+    (run / "scene.toml").write_text(scene.replace("impact.angle", "30 deg").to_toml())
+    assert "scene.toml was changed after the run" in read(write_report(run))[1]
+    rows = (run / "history.csv").read_text().splitlines()
+    assert "it is not whole" not in read(write_report(run))[1]
+    (run / "history.csv").write_text("\n".join(rows[: len(rows) // 4]) + "\n")
+    assert "before the last contact does" in read(write_report(run))[1]
 
 
 def test_vibration_below_its_floor_is_not_given_a_number(run):
