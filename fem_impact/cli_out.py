@@ -11,7 +11,7 @@ __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
 _OF_STUDIES = ("store.sqlite", "ledger.csv")
-_OF_RUNS = ("scene.toml", "history.csv", "contacts.csv", "fields.vtkhdf", "row.json")
+_OF_RUNS = ("scene.toml", "run.checkpoint", "history.csv", "contacts.csv", "fields.vtkhdf", "row.json")
 _OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *_OF_RUNS)
 
 
@@ -62,6 +62,9 @@ def checked_result(result: Path) -> Path:
     if not result.is_dir():
         raise ResultError(f"{result}: is a file. Name the directory of the results, such as {result.parent}.")
     if not any((result / name).is_file() for name in RESULT_FILES):
+        if (result / "history.csv").is_file():
+            way = f"Go on with `fem-impact run {result / 'scene.toml'} --resume --out {result}`."
+            raise ResultError(f"{result}: the run here did not come to its end. {way}")
         names = " or ".join(RESULT_FILES)
         raise ResultError(f"{result}: holds no {names}. Name a directory that `fem-impact run` wrote.")
     return result

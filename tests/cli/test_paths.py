@@ -51,7 +51,15 @@ def test_an_output_with_a_name_too_long(cli, stand):
     assert "cannot be written" in err
 
 
-def test_results_are_replaced_by_a_second_run(cli, stand):
+def test_a_run_that_was_not_finished_says_how_to_go_on(cli):
+    Path("half").mkdir()
+    Path("half/history.csv").write_text("time_s")
+    code, _, err = cli("report", "half")
+    assert code == 5
+    assert "did not come to its end. Go on with `fem-impact run half/scene.toml --resume --out half`" in err
+
+
+def test_a_second_run_may_take_the_place_of_results(cli, stand):
     Path("here").mkdir()
     Path("here/outcome.json").write_text("{}")
     assert cli("run", "t5b", "--out", "here", "--quiet")[0] == 0
