@@ -15,17 +15,17 @@ and a shear stress takes from the pressure, p / sqrt(1 + 3 (F_t/F_n)^2) (von Mis
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from math import cos, inf, pi, sin, sqrt
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_impact.contact_law import ContactLaw, contact_law
 from fem_impact.effects import rate
 from fem_impact.effects.beam import Beam, beam
+from fem_impact.effects.flight import Flight, Rigid
 from fem_impact.estimates import (
     LIMIT_PRESSURE,
     approach,
@@ -40,12 +40,9 @@ from rigid import GRAVITY
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
-Array = NDArray[Any]
-
 __all__ = ["Strike", "Touch", "strike"]
 
 STEPS, MOST_STEPS = 150, 6000  # over the estimated contact; with contact, in all
-BLOCK = 2048  # steps of free flight that are looked at together
 LAYER = 3.0  # a shear stress counts three times squared beside a normal one (von Mises)
 DRAGGED = 1 / (1 + pi / 2)
 SLOWEST = 1e-6  # m/s
@@ -113,64 +110,6 @@ class Touch:
 
     def _yielded(self) -> bool:
         return self.peak > self.law.yield_depth
-
-
-class Rigid(NamedTuple):
-    """Rigid motion: m/s, m/s, rad/s, and the height, m, of the contact point that it gives."""
-
-    V_n: float
-    V_t: float
-    spin: float
-    height: float
-
-
-@dataclass(slots=True)
-class Flight:
-    """The motion between kicks, exactly, in steps ``dt``, s; ``swing`` is omega q + i dq/dt of each mode.
-
-    Attributes
-    ----------
-    table : (modes, BLOCK) turn of each mode after 0, 1, ... steps; give : (modes,) its height over ``swing``
-    g : (2,) what gravity takes from V_n and V_t in a step, m/s
-    longest : 1.5 periods of the slowest mode, s: a free rod that has not come back by then is gone
-    """
-
-    modes: Beam
-    dt: float
-    d_c: float
-    g: tuple[float, float]
-    table: Array = field(init=False)
-    give: Array = field(init=False)
-    longest: float = field(init=False)
-
-    def __post_init__(self) -> None:
-        """Tabulate."""
-        omega = self.modes.omega
-        self.table = np.exp(-1j * self.dt * np.outer(omega, np.arange(BLOCK + 1)))
-        self.give = self.modes.along_n / omega
-        self.longest = 3 * pi / float(omega.min(initial=inf)) + 2 * self.dt
-
-    def depth(self, now: Rigid, swing: Array) -> float:
-        """Return how deep the contact point is, m."""
-        return -now.height - float(self.give @ swing.real)
-
-    def free(self, now: Rigid, swing: Array, crater: float) -> int:
-        """Return the steps, one at least and `BLOCK` at most, until the contact point is in its crater."""
-        n = np.arange(1, BLOCK + 1)
-        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
-        below = now.height + rise + ((self.give * swing) @ self.table[:, 1:]).real < -crater
-        return int(n[np.argmax(below)]) if below.any() else BLOCK
-
-    def gone(self, now: Rigid, swing: Array, crater: float) -> bool:
-        """Return whether no vibration brings the contact point back: what falls back strikes anew."""
-        away = now.V_n + self.d_c * now.spin > 0
-        return away and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
-
-    def fly(self, now: Rigid, swing: Array, n: int) -> tuple[Rigid, Array]:
-        """Return the motion after ``n`` steps."""
-        V_n, V_t = now.V_n - n * self.g[0], now.V_t - n * self.g[1]
-        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
-        return Rigid(V_n, V_t, now.spin, now.height + rise), self.table[:, n] * swing
 
 
 @cache

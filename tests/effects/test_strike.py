@@ -9,7 +9,8 @@ import pytest
 from fem_impact.contact_law import contact_law
 from fem_impact.effects import everything
 from fem_impact.effects.beam import beam
-from fem_impact.effects.strike import Flight, Touch, strike
+from fem_impact.effects.flight import Flight
+from fem_impact.effects.strike import Touch, strike
 from fem_impact.estimates import normal_share
 from fem_impact.modal import modal_rod
 from fem_impact.scene import load, replace_all
