@@ -83,6 +83,20 @@ MUTANTS = (
         "tests/modes/test_modes.py::test_rigid_sums",
     ),
     Mutant(
+        "a spin before the impact left out of coefficients and losses",
+        "fem_impact/outcome_keys.py",
+        '"k2": k2, "omega": omega}',
+        '"k2": k2, "omega": 0.0}',
+        "tests/modal/test_fidelities.py::test_coefficients_and_losses_take_a_spin_before_the_impact",
+    ),
+    Mutant(
+        "friction of the reduced model moved by the last speed of its contact, not by its place",
+        "fem_impact/modal/march.py",
+        "place_t - before, F, a, law)",
+        "dt * w_t, F, a, law)",
+        "tests/modal/test_modal.py::test_friction_takes_energy_whatever_the_step",
+    ),
+    Mutant(
         "energies of the half model not doubled",
         "fem_impact/solid/ledger.py",
         "HALVES = 2.0",
