@@ -34,6 +34,9 @@ def cost(options: Options) -> int:
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = parse_share(options.target, "--target") if options.target else None
     budget = quantity(options.budget, "time", "--budget") if options.budget else None
+    if options.scene == PAPER and (target or budget):
+        remedy = "Leave them out, or name one scene."
+        raise SceneError("are about one scene.", key="--target, --budget", remedy=remedy)
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)

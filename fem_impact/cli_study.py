@@ -114,6 +114,9 @@ def _workers(options: Options) -> Iterator[Executor]:
 
 def _check_options(options: Options) -> None:
     """Refuse what the named study would not look at."""
+    if options.name == "report" and (options.quick or options.estimate or options.scheduler):
+        remedy = "Leave out --quick, --estimate and --scheduler."
+        raise SceneError("reads what others have computed.", key="study report", remedy=remedy)
     looked_at = (("ID", " ".join(options.ids), ABOUT_SETS), ("--fidelity", options.fidelity, ("scatter",)))
     for key, given, studies in looked_at:
         if given and options.name not in studies:

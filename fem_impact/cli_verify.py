@@ -15,6 +15,8 @@ __all__ = ["verify"]
 
 def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""
+    if options.parameters and (options.changes or options.readme):
+        raise SceneError("only lists.", key="--parameters", remedy="Leave out --set and --readme, or itself.")
     if options.parameters:
         return _show_parameters(options)
     if options.readme:

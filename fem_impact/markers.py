@@ -56,9 +56,10 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Marked:
     shake = _mean_shake(result, np.stack([_nearest(centre, result), _nearest(centre + arm, result)]))
     upper = np.array([V_t, 0.0, V_n]) + shake[0]
     lower = np.array([V_t, 0.0, V_n]) + shake[1] + (_turned(arm, turn) - arm) / WINDOW
-    # the marker line turns by the angle whose sine is its sideways gain over its length
-    gain = float((upper - lower) @ across) * WINDOW / float(np.linalg.norm(arm))
-    return Marked(upper[2], upper[0], float(np.arcsin(np.clip(gain, -1, 1))) / WINDOW, lower[2], lower[0])
+    line = (upper - lower) * WINDOW - arm
+    angle = float(np.arctan2(line @ across, line @ axis))
+    angle += 2 * np.pi * round((turn - angle) / (2 * np.pi))  # a film shows how often it has turned
+    return Marked(upper[2], upper[0], angle / WINDOW, lower[2], lower[0])
 
 
 def _turned(arm: Array, angle: float) -> Array:

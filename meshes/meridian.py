@@ -90,7 +90,7 @@ class Meridian:
         Half-way, where the line has turned by 45 degrees, and for pointed tips not nearer to the axis than
         0.6 of the radius, which keeps the face cells wide. With `near`, (rho, z) in m, it moves so that the
         place closest to that is the middle of a `cell` (m): next to the turn if that can lie there, otherwise
-        some whole cells away; nothing moves where the line is too flat, too steep or too sharp for it.
+        some whole cells away; nothing moves on an edge, or where the line is too flat, steep or sharp.
         """
         middle = max(
             self._turned(np.pi / 4.0), float(np.interp(0.6 * self.radius, self.line[:, 0], self.arc))
@@ -98,6 +98,8 @@ class Meridian:
         if near is None:
             return middle
         wanted = self.arc_at(near)
+        if np.any(np.abs(self.extended(self.height + cell).corners() - wanted) < 0.5 * cell):
+            return middle  # a row of nodes lies on an edge anyway
         beside = wanted + 0.5 * cell * (1.0 if wanted < middle + 0.25 * cell else -1.0)
         if self.at(np.array(beside))[0] < OFF_AXIS * self.radius:
             beside = wanted + cell * (np.ceil((middle - wanted) / cell - 0.5) + 0.5)

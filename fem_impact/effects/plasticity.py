@@ -7,6 +7,7 @@ from math import sqrt
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.spec import Effect, ModelSpec
+from fem_impact.errors import SceneError
 from fem_impact.estimates import LIMIT_PRESSURE, contact_estimate
 
 if TYPE_CHECKING:
@@ -36,10 +37,14 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
 
 def hardening_of(material: Material) -> Hardening:
-    """Return the hardening law of a material."""
+    """Return the hardening law of a material; SceneError if no power law reaches its ultimate stress."""
     from fem_impact.solid.hardening import power_hardening
 
-    return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
+    try:
+        return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
+    except ValueError as error:
+        value = f"{material.ultimate_stress / 1e6:g} MPa"
+        raise SceneError(str(error), key=f"ultimate_stress of {material.name}", value=value) from None
 
 
 def number(scene: Scene) -> float:

@@ -91,7 +91,8 @@ def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, fl
     )
     tests = values[max(weights, key=lambda name: weights[name])].size
     half = float(stdtrit(tests - 1, 0.975)) * variance**0.5
-    low, high = (float(np.clip(mean + sign * half, 0.0, 1.0)) for sign in (-1, 1))
+    ends = min(0.0, mean), max(1.0, mean)
+    low, high = (float(np.clip(mean + sign * half, *ends)) for sign in (-1, 1))
     together = np.concatenate(list(values.values()))
     extremes = {"all_low": float(together.min()), "all_high": float(together.max())}
     return {"mean": mean, "low": low, "high": high, **extremes}

@@ -11,6 +11,7 @@ from fem_impact.wrap import wrapped
 __all__ = ["assess_text"]
 
 Document = Mapping[str, Any]
+SPANS = (("e", 1.0, 2), ("d_c_m", 1e3, 1))  # of the range that is searched: key, scale, digits
 WORDS = {
     "total": "total loss",
     "E_lt": "tangential E_lt",
@@ -67,9 +68,9 @@ def _losses(d: Document) -> Iterator[str]:
 def _worst(d: Document) -> Iterator[str]:
     w, r = d["worst_case"], d["range"]
     yield ""
-    yield (
-        f"Worst case for any impulse ratio up to the critical one, e from {r['e'][0]:.2f} to {r['e'][1]:.2f}"
-    )
+    e, d_c = (f"{scale * r[key][0]:.{n}f} to {scale * r[key][1]:.{n}f}" for key, scale, n in SPANS)
+    yield f"Worst case for any impulse ratio up to the critical one, e from {e},"
+    yield f"  arm d_c of the impulse from {d_c} mm"
     if not r["measured"]:
         yield "  (every restitution, because the case lies outside what was measured)"
     if w["reason"]:

@@ -18,6 +18,8 @@ __all__ = ["Case", "outside_of", "sets_of", "warnings_of", "weights_of"]
 Surface = Literal["machined", "contaminated", "cleaned"]
 NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
 """What counts as one step away: twice the length, 20 degrees, twice the speed."""
+FAST, STEEP = math.log(1.5), math.radians(10.0)
+"""As near a set must be in speed for its angle to count as measured, and in angle for its speed."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,16 +143,20 @@ def _narrow(surface: str, sets: tuple[MeasuredSet, ...]) -> str:
 
 
 def _motion_warnings(case: Case, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
-    """Compare angle and speed with the sets of the nearest measured length."""
+    """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
     length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
     same = [s for s in sets if s.length == length]
-    angles = sorted(math.degrees(s.alpha) for s in same)
-    speeds = sorted(_speed(s) for s in same)
+    as_fast = [s for s in same if abs(math.log(case.speed / _speed(s))) <= FAST] or same
+    as_steep = [s for s in same if abs(case.alpha - s.alpha) <= STEEP] or same
+    angles = sorted(math.degrees(s.alpha) for s in as_fast)
+    speeds = sorted(_speed(s) for s in as_steep)
     rod, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
+    near = "" if as_fast == same else " at about this speed"
     if not angles[0] - 0.05 <= degrees <= angles[-1] + 0.05:
-        yield f"angle {degrees:g} degrees: {rod} at {_span(angles, 'degrees', '.0f')}"
+        yield f"angle {degrees:g} degrees: {rod} at {_span(angles, 'degrees', '.0f')}{near}"
+    near = "" if as_steep == same else " at about this angle"
     if not 0.95 * speeds[0] <= case.speed <= 1.05 * speeds[-1]:
-        yield f"speed {case.speed:.2f} m/s: {rod} at {_span(speeds, 'm/s', '.2f')}"
+        yield f"speed {case.speed:.2f} m/s: {rod} at {_span(speeds, 'm/s', '.2f')}{near}"
 
 
 def _span(values: list[float], unit: str, form: str) -> str:

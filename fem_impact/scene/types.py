@@ -147,6 +147,8 @@ class Accuracy:
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)
         check_choice(self.element, get_args(fields.Element), "element")
+        if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
+            raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)
 
 
 @dataclass(frozen=True, slots=True)

@@ -129,8 +129,9 @@ def parse_share(value: Any, key: str) -> float:
     >>> parse_share("2 %", "accuracy")
     0.02
     """
-    found = _QUANTITY.fullmatch(value[:_LONGEST]) if isinstance(value, str) else None
-    share = float(Decimal(found[1]).scaleb(-2)) if found and (found[2] or "").strip() == "%" else 0.0
+    found = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
+    per_cent = found is not None and (found[2] or "").strip() == "%" and 0 < float(found[1]) <= 100
+    share = float(Decimal(found[1]).scaleb(-2)) if found and per_cent else 0.0
     if not 0.0 < share <= 1.0:
         raise SceneError(
             "must be a share in per cent, above 0 and at most 100 %.",

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import meshes
+from fem_impact.errors import SceneError
 from fem_impact.estimates import (
     ContactEstimate,
     approach,
@@ -30,6 +31,7 @@ Bools = NDArray[np.bool_]
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
 # geometric mean), and how many cells it has at least
 ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
+MOST_CELLS = 3e5  # of a block before it is refined: about a gigabyte
 # in the corners of that box cells stay elastic: those may yield that an ellipsoid reaches, so many times as
 # large as the one in the box. In the 13 sets on 0.59 mm, and four on 0.30 mm, strains above 1e-3 ended at .93
 # of the latter, above 1e-5 at 1.13
@@ -78,6 +80,14 @@ def to_barrier_frame(alpha: float) -> Array:
     return np.array([[cos(alpha), 0, sin(alpha)], [0, 1, 0], [-sin(alpha), 0, cos(alpha)]])
 
 
+def tail_corners(scene: Scene) -> Array:
+    """Return the highest and lowest point (2, 3) of the rod's tail at the start, m, the gap apart."""
+    body, alpha = projectile(scene), scene.impact.angle
+    rho, z = body.contact_point(alpha)
+    corners = np.array([[x * body.diameter / 2, 0.0, body.length] for x in (-1, 1)])
+    return np.asarray((corners - [float(rho), 0.0, float(z)]) @ to_barrier_frame(alpha).T)
+
+
 def levels_of(scene: Scene) -> int:
     """Return how often base cells are split to come nearest to the wanted tip size."""
     base = scene.projectile.diameter / scene.accuracy.across
@@ -101,12 +111,13 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     h = base / 2**levels
     t, b, n, reach = _fine_zone(scene, h, float(rho))
     zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
-    rod = meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+    rod = _rod(scene, zone, levels)
     if not vibrating:
         from fem_impact.solid.rigid_rest import rest_points
 
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
+    _require_tip_first(points, base)
     points[:, 2] += gap if conforming else gap - points[:, 2].min()
     sticks = conforming and "friction" in scene.active and scene.surface.friction > 0
     rows = skin_rows(scene, h) if sticks else 0
@@ -116,6 +127,28 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
         barrier = _block(scene, base, levels, (t, b, n), along, rows)
         may_yield["barrier"] = _round(barrier, barrier.points, along, (t, b, n))
     return Geometry(rod, points, barrier, h, conforming, rows, may_yield)
+
+
+def _rod(scene: Scene, zone: Zone, levels: int) -> RodMesh:
+    """Return the mesh of the rod; SceneError where it has no room for its cells."""
+    body = projectile(scene)
+    try:
+        return meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+    except meshes.MeshError as error:
+        remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
+        raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy) from None
+
+
+def _require_tip_first(points: Array, base: float) -> None:
+    """Refuse a rod that lies so flat that its side, a polygon, comes down before its tip at the origin."""
+    tip = np.hypot(points[:, 0], points[:, 1]) < 1.5 * base
+    ahead = float(points[tip, 2].min() - points[:, 2].min())
+    if ahead > 1e-6 * base:
+        raise SceneError(
+            f"lets the meshed rod's side, a polygon, strike {ahead * 1e6:.2g} um before its tip.",
+            key="impact.angle",
+            remedy="Give a smaller angle or a larger accuracy.across.",
+        )
 
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
@@ -167,5 +200,13 @@ def _block(
     margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
     low = np.array([-t - along - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
+    count = float(np.prod((high - low) / base))
+    if count > MOST_CELLS:
+        raise SceneError(
+            f"makes a block of {count:.1g} cells, since they are {base * 1e6:.3g} um wide.",
+            key="accuracy.block_margin",
+            value=f"{margin * 1e3:g} mm",
+            remedy="Give less: a third of the diameter does.",
+        )
     block = meshes.with_thin_skin(meshes.block(low, high, base, zone=box, levels=levels), h, rows)
     return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
@@ -34,9 +34,10 @@ def horizon(scene: Scene) -> float:
 class Separation:
     """Stops the run at the last separation.
 
-    The free flight, rigid drift plus all modes, must keep the rod above the barrier for the
-    ``horizon``, s. As long as its surface may be lower than the barrier's highest node, the flown tip is held
-    against the barrier's surface, crater and all, node by node.
+    The free flight, rigid drift plus all modes, must keep the rod above the barrier for the ``horizon``, s.
+    As long as its surface may be lower than the barrier's highest node, the flown tip is held against the
+    barrier's surface, crater and all, node by node. Where only the tip can touch in the model, ``tail``
+    (k, 3), m, holds the corners of the other end at the start: if they strike first, the run ends there.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -44,6 +45,7 @@ class Separation:
     view: RodView
     limit: float
     horizon: float = HORIZON
+    tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
     every: int = 100
     reason: str = ""
     finished: bool = False
@@ -59,15 +61,34 @@ class Separation:
         book = self.model.book
         if not book.intervals or book.touching or state.time - book.last_touch < QUIET:
             return False
-        if not self._stays_away(state):
+        motion = self.view.rigid(state)
+        ahead = min(self.horizon, self._tail_strikes(state, motion))
+        if not self._stays_away(state, motion, max(ahead, SAMPLE)):
             return False
+        if ahead < self.horizon:
+            self.reason = (
+                f"The rod's tail strikes {ahead * 1e6:.3g} us later, and only its tip can touch in this "
+                "model: this is the motion before."
+            )
+            return True
         self.finished = True
         self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no further contact."
         return True
 
-    def _stays_away(self, state: State) -> bool:
-        motion, ahead = self.view.rigid(state), self.view.flight(state, self.model)
-        contact, t = self.model.impulses[-1], np.arange(0.0, self.horizon, SAMPLE)
+    def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
+        """Return when the tail comes down to the barrier, s from now, infinite if it does not."""
+        if not len(self.tail):
+            return np.inf
+        start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
+        arm = self.tail - self.view.mass @ start / self.view.mass.sum()
+        turned = self.view.angle(state, self.model) + motion.Omega * t
+        rise = np.outer(arm[:, 2], np.cos(turned)) - np.outer(arm[:, 0], np.sin(turned))
+        down = (motion.centre[2] + motion.V_n * t + rise).min(axis=0) < 0.0
+        return float(t[np.argmax(down)]) if down.any() else np.inf
+
+    def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
+        ahead, contact = self.view.flight(state, self.model), self.model.impulses[-1]
+        t = np.arange(0.0, until, SAMPLE)
         lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > 0.0)

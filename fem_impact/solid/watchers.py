@@ -7,10 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from fem_impact.estimates import contact_estimate
 from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.fields import Fields
+from fem_impact.solid.geometry import tail_corners
 from fem_impact.solid.kernels import compile_seconds
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
@@ -26,6 +30,8 @@ if TYPE_CHECKING:
     from fem_impact.effects import ModelSpec
     from fem_impact.scene import Scene
     from fem_impact.solid.heatwatch import HeatWatch
+
+Array = NDArray[np.float64]
 
 FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 
@@ -98,7 +104,7 @@ class Watchers:
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(scene, model, view, out, go_on)]
-        stop = Separation(model, view, scene.accuracy.max_time, horizon(scene))
+        stop = Separation(model, view, scene.accuracy.max_time, horizon(scene), _untouchable(scene, model))
         skin, peak = SkinWatch(model), PeakForce(model.book)
         heat = _heat_watch(model) if spec.heat else None
         return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
@@ -124,6 +130,12 @@ class Watchers:
         """Return everything that moves, by a name that the scene alone decides."""
         parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
+
+
+def _untouchable(scene: Scene, model: Model) -> Array:
+    """Return the corners (k, 3) of the rod's tail, m, where the model lets only its tip touch, else none."""
+    whole = model.geometry.barrier is None and model.rod_stiffness is not None
+    return np.zeros((0, 3)) if whole else tail_corners(scene)
 
 
 def _heat_watch(model: Model) -> HeatWatch:

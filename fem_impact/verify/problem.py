@@ -125,7 +125,7 @@ class Check:
             "error": self.error,
             "tolerance": None if self.kind == "shown" else self.tolerance,
             "kind": self.kind,
-            "passed": self.passed,
+            "passed": None if self.kind == "shown" else self.passed,
             "note": self.note,
         }
 

@@ -81,6 +81,8 @@ def _restitution(p: Values, v: float, cells: float) -> tuple[float, float, int, 
 
 def judged_slope(p: Values, slope: float) -> Check:
     """Judge the slope where the contact is fully plastic and small at all speeds, else show it."""
+    if p["hardening"] > 0:
+        return Check.shown(NAME, "1", slope, SLOPE, "the law is that of a material that does not harden")
     E_star = contact_modulus(p["E"], p["nu"])
     low, high = plastic_speeds(p["yield_stress"], E_star, p["radius"], ball_mass(p))
     if low <= p["slowest"] and p["fastest"] <= high:

@@ -111,6 +111,13 @@ def test_study_passes_what_is_asked(cli, stand):
     assert asked[1] == Request(Path("here"), (), quick=True)
 
 
+def test_options_that_nothing_would_look_at_are_refused(cli, stand):
+    assert "reads what others have computed" in cli("study", "report", "--quick")[2]
+    assert "are about one scene" in cli("cost", "paper", "--target", "5 %")[2]
+    assert "only lists" in cli("verify", "bar", "--parameters", "--set", "length=1")[2]
+    assert not stand.calls
+
+
 @pytest.mark.parametrize("words", [("gamma", "t5b"), ("gamma", "--fidelity", "solid")])
 def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
     code, _, err = cli("study", *words)

@@ -9,7 +9,7 @@ from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.settings import placed
 from fem_impact.errors import SceneError
 from fem_impact.progress import NullMeter
-from fem_impact.scene import MEASURED_SETS, Scene, load
+from fem_impact.scene import MEASURED_SETS, Accuracy, Scene, load
 
 
 @pytest.fixture
@@ -45,11 +45,19 @@ def test_a_mesh_replaces_a_target_and_the_other_way_round():
     assert asking(0.02).replace("accuracy.max_time", "1 ms").accuracy.target == 0.02
 
 
-@pytest.mark.parametrize("text", ["2", "0 %", "-1 %", "101 %", "2 mm", "", "%", 0.02, 2])
+@pytest.mark.parametrize(
+    "text", ["2", "0 %", "-1 %", "101 %", "2 mm", "", "%", 0.02, 2, "1e9999 %", "2 %" + 70 * " "]
+)
 def test_what_is_no_share_is_refused(text):
     data = load("t5b").to_dict()
     with pytest.raises(SceneError, match="accuracy"):
         Scene.from_dict(data | {"accuracy": text})
+
+
+@pytest.mark.parametrize("target", [-3.0, 50.0, 0.0, "2 %"])
+def test_a_target_made_in_python_is_checked_too(target):
+    with pytest.raises(SceneError, match="share above 0 and at most 1"):
+        Accuracy(target=target)
 
 
 def test_a_mesh_beside_a_target_is_refused():

@@ -25,6 +25,15 @@ def test_shoulder_of_a_pointed_tip_keeps_off_the_axis():
     assert meridian.at(np.array(meridian.shoulder()))[0] == pytest.approx(0.6 * RADIUS)
 
 
+def test_an_edge_that_touches_keeps_its_row_of_nodes():
+    """Near a smooth place the grid moves by half a cell; on the edge of cone and side it does not."""
+    cone = Meridian(sphere_and_cone())
+    edge = cone.at(cone.arc[-1])
+    assert cone.shoulder(edge, 0.5e-3) == cone.shoulder()
+    smooth = Meridian(edge_radius(rounding=3e-3))
+    assert smooth.shoulder(smooth.at(0.8 * smooth.arc[-1]), 0.5e-3) != smooth.shoulder()
+
+
 def test_corners_are_the_sharp_edges_only():
     cone = Meridian(sphere_and_cone()).extended(0.03)
     assert cone.at(cone.corners())[0] == pytest.approx(sphere_and_cone()[-1])

@@ -124,7 +124,9 @@ def test_outside_what_was_measured_every_restitution_is_searched():
     assert inside["warnings"] == []
     assert outside["range"]["e"] == [0.0, 1.0]
     assert inside["range"]["e"][1] < 0.85
-    assert outside["warnings"] == ["angle 70 degrees: the 80 mm rod was measured at 17 to 60 degrees"]
+    assert outside["warnings"] == [
+        "angle 70 degrees: the 80 mm rod was measured at 17 to 60 degrees at about this speed"
+    ]
 
 
 @pytest.mark.parametrize(
@@ -132,6 +134,8 @@ def test_outside_what_was_measured_every_restitution_is_searched():
     [
         ({"length": 0.1}, "length 100 mm"),
         ({"height": 4.0}, "speed 8.86 m/s: the 80 mm rod was measured at 1.31 to 6.09 m/s"),
+        ({"degrees": 60.0, "height": 0.9}, "measured at 2.33 m/s only at about this angle"),
+        ({"degrees": 40.0, "height": 1.4}, "measured at 45 degrees only at about this speed"),
         ({"tip": "A", "radius": 0.007}, "tip A with a radius of 7 mm"),
         ({"tip": "plain", "radius": 0.0}, "tip plain"),
         ({"length": 0.24, "degrees": 30.0}, "the 240 mm rod was measured at 45 degrees only"),

@@ -1,5 +1,6 @@
 """The end of a run: free flight, stop rule, step guard, the camera replayed, and the reduction."""
 
+import re
 from dataclasses import replace
 from math import cos, pi, sin
 from types import SimpleNamespace
@@ -13,6 +14,8 @@ from fem_impact.errors import RunError
 from fem_impact.markers import WINDOW, lever_of, replay
 from fem_impact.modes import RigidMotion
 from fem_impact.reduce import reduce
+from fem_impact.scene import load, replace_all
+from fem_impact.simulate import simulate
 from fem_impact.solid.build import START_GAP
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve
@@ -227,15 +230,28 @@ def test_flown_nodes_are_at_the_heights_of_the_flight():
     assert np.array_equal(moved[others], x[others])
 
 
+@pytest.mark.parametrize("effects", [("vibration", "friction", "barrier-elastic"), ("barrier-rigid",)])
+def test_a_tail_that_strikes_first_ends_the_run(effects):
+    """At 85 degrees the other end comes down a millisecond later, and no contact of the model holds it."""
+    flat = {"impact.angle": "85 deg", "impact.v_n": "-4 m/s", "accuracy.tip_size": "0.8 mm", "save.frames": 0}
+    outcome = simulate(replace_all(load("quick"), {**flat, "effects": list(effects)}))
+    assert not outcome["finished"]
+    later = float(re.match(r"The rod's tail strikes (\d+) us later", outcome["stopped_because"])[1]) * 1e-6
+    alpha, rod = outcome["alpha_rad"], load("quick").projectile
+    high = (rod.length - 0.019 * 0.5 * (1 - sin(alpha))) * cos(alpha)  # of the tail above the tip, about
+    speed = outcome["V_n_m_per_s"] - outcome["Omega_rad_per_s"] * rod.length / 2 * sin(alpha)
+    assert later == pytest.approx(high / -speed, rel=0.3)
+
+
 # ---------------------------------------------------------------- markers
 
 
 def test_camera_reads_a_rigid_flight_exactly(result):
     alpha, arm = result.scene.impact.angle, lever_of(0.08)
-    for V_n, V_t, Omega in ((0.4, -1.2, 0.0), (0.4, -1.2, 12.0), (0.4, -1.2, -30.0)):
+    # the last two turn the rod by more than a quarter, and by more than a whole turn, in the window
+    for V_n, V_t, Omega in ((0.4, -1.2, s) for s in (0.0, 12.0, -30.0, 500.0, -1700.0)):
         seen = replay(_moving(result, V_n, V_t, Omega), V_n, V_t)
         assert (seen.V_n, seen.V_t) == pytest.approx((V_n, V_t))
-        # the sine of the turned angle, read back by its arc sine
         assert seen.Omega == pytest.approx(Omega, rel=1e-9, abs=1e-12)
         turned = Omega * WINDOW
         down = -arm * (cos(alpha + turned) - cos(alpha)) / WINDOW

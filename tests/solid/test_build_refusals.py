@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.effects import specify
 from fem_impact.errors import SceneError
-from fem_impact.scene import load
+from fem_impact.scene import load, replace_all
 from fem_impact.solid.build import build
 
 
@@ -12,6 +12,34 @@ from fem_impact.solid.build import build
 def test_a_tip_too_coarse_to_yield_is_refused(name):
     scene = load(name).replace("accuracy.tip_size", "2.4 mm")
     with pytest.raises(SceneError, match=r"accuracy\.tip_size.*Give at most 1\.7 mm"):
+        build(scene, specify(scene))
+
+
+def test_a_side_that_comes_down_before_the_tip_is_refused():
+    scene = replace_all(load("t5b"), {"impact.angle": "89.7 deg", "effects": ["vibration", "barrier-rigid"]})
+    with pytest.raises(SceneError, match=r"impact\.angle: .*before its tip.*larger accuracy\.across"):
+        build(scene, specify(scene))
+    steeper = scene.replace("impact.angle", "88.9 deg")
+    assert build(steeper, specify(steeper))
+
+
+def test_steel_that_no_power_law_fits_is_refused():
+    scene = load("t5b").replace("projectile.material.ultimate_stress", "20 GPa")
+    with pytest.raises(SceneError, match=r"ultimate_stress of rod-steel.*must lie between the yield stress"):
+        specify(scene)
+
+
+def test_a_block_of_a_million_cells_is_refused():
+    thin = {"projectile.diameter": "1 mm", "projectile.length": "10 mm", "projectile.tip_radius": "0.2 mm"}
+    scene = replace_all(load("t5b"), {**thin, "accuracy.tip_size": "0.05 mm", "accuracy.across": 12})
+    with pytest.raises(SceneError, match=r"accuracy\.block_margin = "6 mm": makes a block of .* cells"):
+        build(scene, specify(scene))
+
+
+def test_a_rod_without_room_for_its_cells_is_refused():
+    stub = {"projectile.tip": "A", "projectile.tip_radius": "0.5 mm", "projectile.length": "19 mm"}
+    scene = replace_all(load("t5b"), stub)
+    with pytest.raises(SceneError, match=r"projectile: cannot be meshed: .*Give a longer rod"):
         build(scene, specify(scene))
 
 

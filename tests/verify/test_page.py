@@ -20,12 +20,14 @@ def found(name, *checks):
 EASY = Check("length", "m", 1.001, 1.0, 0.1)
 CLOSE = Check("force", "N", 109.0, 100.0, 0.1)
 WRONG = Check("touches", "1", 2, 1, 0.0, "absolute")
+SHOWN = Check.shown("law", "1", 1e9, 1.0, "it does not hold here")
 
 
 def test_a_row_shows_the_check_nearest_to_its_limit():
-    text = page([found("a", EASY, CLOSE), found("b", EASY, CLOSE, WRONG)], "2026-01-02")
+    text = page([found("a", EASY, CLOSE), found("b", EASY, CLOSE, WRONG, SHOWN)], "2026-01-02")
     first, _, *rows = text.splitlines()
-    assert first == "2026-01-02, all parameters at their defaults: 4 of 5 checks passed, 1.0 minutes."
+    told = "4 of 5 checks passed, 1 more are only shown, 1.0 minutes."
+    assert first == f"2026-01-02, all parameters at their defaults: {told}"
     assert rows[2] == "| `a` | 2 of 2 | force | 109 N | 100 N | +9.0e-02 | 0.1 relative | 25 |"
     assert rows[3] == "| `b` | 2 of 3 | touches | 2 | 1 | +1.0e+00 | 0 absolute | 25 |"
 
@@ -51,7 +53,8 @@ def test_the_readme_has_a_row_for_every_problem_in_the_form_of_the_command():
     body = text.partition(MARKS[0] + "\n")[2].partition(MARKS[1])[0]
     line, empty, head, rule, *rows = body.rstrip("\n").split("\n")
     assert re.fullmatch(
-        r"20\d\d-\d\d-\d\d, all parameters at their defaults: (\d+) of \1 checks passed, [\d.]+ minutes\.",
+        r"20\d\d-\d\d-\d\d, all parameters at their defaults: (\d+) of \1 checks passed, "
+        r"\d+ more are only shown, [\d.]+ minutes\.",
         line,
     )
     assert empty == "" and rule.count("---") == len(HEAD)

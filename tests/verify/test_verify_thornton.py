@@ -20,6 +20,7 @@ def test_restitution_falls_with_speed():
         ({"slowest": 0.25, "fastest": 2.0}, "only from 2.25 to 10.8 m/s"),
         ({"fastest": 20.0}, "only from 2.25 to 10.8 m/s"),
         ({"E": 5e9}, "never fully plastic"),
+        ({"hardening": 2e10}, "does not harden"),
     ],
 )
 def test_a_slope_outside_the_plastic_range_is_not_judged(changes, words):
