@@ -32,7 +32,7 @@ def test_steel_that_no_power_law_fits_is_refused():
 def test_a_block_of_a_million_cells_is_refused():
     thin = {"projectile.diameter": "1 mm", "projectile.length": "10 mm", "projectile.tip_radius": "0.2 mm"}
     scene = replace_all(load("t5b"), {**thin, "accuracy.tip_size": "0.05 mm", "accuracy.across": 12})
-    with pytest.raises(SceneError, match=r"accuracy\.block_margin = "6 mm": makes a block of .* cells"):
+    with pytest.raises(SceneError, match=r'accuracy\.block_margin = "6 mm": makes a block of .* cells'):
         build(scene, specify(scene))
 
 
