@@ -33,7 +33,8 @@ class Flight:
 
     Attributes
     ----------
-    table : (modes, BLOCK + 1) turn of each mode after 0, 1, ... steps; give : (modes,) its height over ``swing``
+    table : (modes, BLOCK + 1) turn of each mode after 0, 1, ... steps
+    give : (modes,) its height over ``swing``
     g : (2,) what gravity takes from V_n and V_t in a step, m/s
     longest : 1.5 periods of the slowest mode, s: a free rod that has not come back by then is gone
     """
