@@ -12,7 +12,7 @@ from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
 from fem_impact.cores import idle_cores
-from fem_impact.errors import RunError
+from fem_impact.errors import RunError, SceneError
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -25,6 +25,9 @@ ENOUGH = 1.5  # idle cores for a second thread: two that share one core take twi
 def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
+    if options.resume and options.fidelity in ("rigid", "modal"):
+        problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
+        raise SceneError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     threads = options.threads or (2 if idle_cores() >= ENOUGH else 1)
     _say_plan(scene, options, threads)
     out = checked_out(options.out or _default_out(scene, options))

@@ -28,6 +28,7 @@ from math import inf, pi, sin, sqrt
 import numpy as np
 
 import rigid
+from fem_impact.errors import SceneError
 from fem_impact.estimates import projectile
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
@@ -43,6 +44,7 @@ __all__ = ["PROBLEM"]
 
 E_TOLERANCE, BENDING_RELATIVE, BENDING_ABSOLUTE = 0.04, 0.15, 1e-3
 CORNER = "a plain cylinder that touches with its corner, as the printed ones do"
+SLENDER = (2.5, 100.0)  # length over diameter: a stubbier rod is no beam
 FAINT = 1e-3  # of the impulse: a touch below it is no contact
 
 
@@ -92,11 +94,21 @@ def _checks(result: SolidResult, exact: ObliqueRebound, corner: ObliqueRebound) 
 
 
 def solve(p: Values) -> Solved:
-    """Run the scene and the modal reference with the same barrier."""
+    """Run the scene and the modal reference with the same barrier.
+
+    Raises
+    ------
+    SceneError
+        If the rod is too short for the beams of the reference, or ``max_time`` ends within a contact.
+    """
+    steel.slender(p, "diameter", *SLENDER)
     barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
     effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
     result = run_solid(scene)
+    if result.model.book.touching:
+        remedy = "Give a longer time."
+        raise SceneError("ends in mid contact.", key="max_time", value=f"{p['max_time']:g} s", remedy=remedy)
     geometry = result.model.geometry
     elements = len(geometry.rod.mesh.cells) + (len(geometry.barrier.cells) if geometry.barrier else 0)
     edge = projectile(scene)

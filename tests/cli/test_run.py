@@ -112,6 +112,7 @@ def test_study_passes_what_is_asked(cli, stand):
 
 
 def test_options_that_nothing_would_look_at_are_refused(cli, stand):
+    assert "is of finite elements" in cli("run", "t5b", "--fidelity", "modal", "--resume")[2]
     assert "reads what others have computed" in cli("study", "report", "--quick")[2]
     assert "are about one scene" in cli("cost", "paper", "--target", "5 %")[2]
     assert "only lists" in cli("verify", "bar", "--parameters", "--set", "length=1")[2]

@@ -2,6 +2,7 @@
 
 import pytest
 
+from fem_impact.errors import SceneError
 from fem_impact.verify import verify
 
 
@@ -78,3 +79,15 @@ def test_a_graze_between_two_contacts_with_a_rigid_plane():
     found = verify("oblique-rod", {"f": 0.0, "elastic_barrier": 0})
     assert found.passed
     assert checks(found)["contacts"].computed == 3
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"length": "25 mm"}, "2.5 to 100 times the diameter"),
+        ({"max_time": 2e-5, "f": 0.0, "elastic_barrier": 0, "tip_size": "1 mm"}, "ends in mid contact"),
+    ],
+)
+def test_what_the_reference_is_not_for_is_refused(changes, words):
+    with pytest.raises(SceneError, match=words):
+        verify("oblique-rod", changes)
