@@ -120,7 +120,7 @@ MUTANTS = (
     Mutant(
         "stopping at the first separation",
         "fem_impact/solid/separation.py",
-        "        if not self._stays_away(state):\n            return False\n",
+        "        if not self._stays_away(state, motion, max(ahead, SAMPLE)):\n            return False\n",
         "",
         f"{RUNS}::test_elastic_frictionless_long_rod_touches_twice_and_grazes_between",
     ),

@@ -65,11 +65,13 @@ def _angles() -> list[Case]:
 
     upright: Changes = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
     sharp: Changes = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm"}
-    flank: Changes = {**at(89), "effects": PLANE}
+    flank: Changes = {**at(89), "accuracy.across": 8}
     return [
-        *(Case(f"angle-{a}", f"angle {a} degrees", at(a)) for a in (1, 17, 60, 80, 85)),
-        Case("angle-89", "89 degrees: the rod's side lands on the plane", flank),
-        Case("angle-89-block", "89 degrees: it lands beside the meshed contact", at(89), "detected"),
+        *(Case(f"angle-{a}", f"angle {a} degrees", at(a)) for a in (1, 17, 60, 80)),
+        Case("angle-85", "85 degrees: its tail strikes later, beside the plate", at(85), "detected"),
+        Case("angle-89", "89 degrees: the rod's tail strikes the plane", {**flank, "effects": PLANE}),
+        Case("angle-89-block", "89 degrees: its tail strikes soon, beside the plate", flank, "detected"),
+        Case("angle-89-coarse", "89 degrees: the polygon of the side would land first", at(89), "refused"),
         Case("upright-edge", "angle 0, rounded edge, meshed block", upright),
         Case("upright-round", "angle 0, round nose", {**upright, "projectile.tip": "A"}),
         Case("flat-on-plane", "flat face on the rigid plane", {**upright, **sharp, "effects": PLANE}),

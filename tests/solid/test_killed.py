@@ -96,7 +96,9 @@ def differences(alone, out):
         for name in ("history.csv", "contacts.csv", "scene.toml")
     }
     left_over = {path.name for path in out.iterdir()} - {path.name for path in whole.iterdir()}
-    return {name for name in same if not same[name]} | {n for n in left_over if not n.startswith(".")}
+    # a run killed when it had just ended starts anew, and what it finds is set aside
+    left_over = {name for name in left_over if not name.startswith((".", "earlier-"))}
+    return {name for name in same if not same[name]} | left_over
 
 
 def kill_once_begun(scene, out):

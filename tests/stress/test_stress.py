@@ -78,11 +78,13 @@ def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     assert face_reach(tilted, 6.5e-3) == 0.0
 
 
-def test_a_rod_that_lands_beside_the_meshed_contact_is_detected(tmp_path):
+def test_a_rod_that_comes_down_nearly_flat_is_detected(tmp_path):
     row = run_case("angle-89-block", tmp_path)
     assert row.passed and row.verdict == "detected"
-    assert "came down on the barrier outside the meshed contact at " in row.reason
-    assert "Use the barrier-rigid effect, or another angle." in row.reason
+    assert "The rod's tail strikes " in row.reason
+    coarse = run_case("angle-89-coarse", tmp_path)
+    assert coarse.passed and coarse.verdict == "refused"
+    assert "before its tip" in coarse.reason
 
 
 @pytest.mark.parametrize("angle", [0.0, 0.5, 1.5, 1.57, -0.9, 3.0])

@@ -35,7 +35,16 @@ COMPARISON = [
     row("E_r/E_0", "inside"),
     row("V_n", "inside"),
 ]
-SHARES = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "E_locked_rod", "W_radiated")
+SHARES = (
+    "E_r",
+    "E_vib",
+    "W_friction",
+    "E_plastic_rod",
+    "E_plastic_barrier",
+    "E_locked_rod",
+    "E_locked_barrier",
+    "W_radiated",
+)
 OUTCOME = {f"{name}_over_E_0": 0.1234 for name in SHARES} | {
     "scene_id": "t5b",
     "E_vib_over_E_0": 0.00354,
@@ -74,7 +83,7 @@ def test_shares_are_percent_with_their_bands():
         "t5b",
         "12.3",
         "0.35 ± 0.12",
-        *["12.3"] * 5,
+        *["12.3"] * 6,
         "-2e-05",
         "9100",
         "7",

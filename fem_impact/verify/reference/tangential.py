@@ -34,7 +34,7 @@ def sliding_ratio(f: float, nu: float, G: float, pressure: float) -> float:
     Examples
     --------
     >>> round(sliding_ratio(0.5, 0.29, 85e9, 8e9), 4), sliding_ratio(0.5, 0.5, 85e9, 8e9)
-    (0.4958, 0.5)
+    (0.4959, 0.5)
     """
     lean = MEAN_PRESSURE * (1 - 2 * nu) * f * pressure / (4 * G)
     return (f - lean) / (1 + f * lean)
