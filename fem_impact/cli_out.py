@@ -6,13 +6,13 @@ import tempfile
 from pathlib import Path
 
 from fem_impact.errors import OutputPathError, ResultError
+from fem_impact.run_files import COMPUTED
 
 __all__ = ["checked_file", "checked_out", "checked_result"]
 
 RESULT_FILES = ("outcome.json", "study.json")
 _OF_STUDIES = ("store.sqlite", "ledger.csv")
-_OF_RUNS = ("scene.toml", "run.checkpoint", "history.csv", "contacts.csv", "fields.vtkhdf", "row.json")
-_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *_OF_RUNS)
+_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *COMPUTED, "scene.toml", "row.json")
 
 
 def checked_out(out: Path) -> Path:

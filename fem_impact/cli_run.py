@@ -13,6 +13,7 @@ from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
 from fem_impact.cores import idle_cores
 from fem_impact.errors import RunError, SceneError
+from fem_impact.run_files import CHECKPOINT
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -69,8 +70,6 @@ def _say_plan(scene: Scene, options: Options, threads: int) -> None:
 
 
 def _way_on(out: Path) -> str:
-    from fem_impact.solid.checkpoint import CHECKPOINT
-
     if (out / CHECKPOINT).exists():
         return "--resume goes on from the last checkpoint."
     return "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."

@@ -100,8 +100,8 @@ def _text(found: Verification) -> str:
     cost = f"{found.cost.cpu_s:.1f} s of CPU, {found.cost.steps} steps, {found.cost.elements} elements"
     lines = [f"{found.name}: {verdict} ({cost})"]
     for c in found.checks:
-        mark = "FAIL" if not c.passed else "    " if c.kind == "shown" else "ok  "
-        allowed = f"not judged: {c.note}" if c.kind == "shown" else f"allowed {c.tolerance:g} {c.kind}"
+        mark = "FAIL" if not c.passed else "ok  " if c.judged else "    "
+        allowed = f"allowed {c.tolerance:g} {c.kind}" if c.judged else f"not judged: {c.note}"
         unit = "" if c.unit == "1" else f" {c.unit}"
         values = f"{c.computed:.6g}{unit}, reference {c.reference:.6g}"
         lines += wrapped(f"{mark} {c.name}: {values},", "  ", " " * 5)

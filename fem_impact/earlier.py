@@ -6,11 +6,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from fem_impact.output import make_directory
-from fem_impact.solid.checkpoint import CHECKPOINT
+from fem_impact.run_files import COMPUTED
 
 __all__ = ["earlier", "set_aside"]
 
-COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
 MADE_OF_IT = ("scene.toml", "row.json", "report.html", "figures", "film*")
 
 

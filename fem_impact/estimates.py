@@ -45,9 +45,8 @@ def yielding_materials(scene: Scene) -> list[Material]:
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
     """Return (R1, R2), m, of the tip at its lowest point."""
-    rod, alpha = scene.projectile, scene.impact.angle
-    rho, _ = projectile(scene).contact_point(alpha)
-    nose = projectile(scene).nose
+    rod, alpha = projectile(scene), scene.impact.angle
+    (rho, _), nose = rod.contact_point(alpha), rod.nose
     sharp = rod.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
     R1 = rod.diameter / 200 if sharp else rod.tip_radius
     at_pole = FLATTEST if nose.face > 0 else R1

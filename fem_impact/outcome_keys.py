@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import rigid
 from fem_impact.contact_law import softer
 from fem_impact.estimates import arms, projectile
-from fem_impact.outcome import installed_versions, utc_now
+from fem_impact.outcome import Outcome, installed_versions, utc_now
 from fem_impact.scene import validity
 from rigid.experiments import measured_set
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
-__all__ = ["NO_TARGET", "Values", "coefficient_keys", "motion_keys", "plastic_keys", "provenance"]
+__all__ = [
+    "NO_TARGET",
+    "Values",
+    "coefficient_keys",
+    "explained",
+    "motion_keys",
+    "plastic_keys",
+    "provenance",
+]
 
 Values = dict[str, Any]
 
@@ -56,6 +64,11 @@ def provenance(
         "validity": list(validity(scene)),
         "warnings": list(warnings),
     }
+
+
+def explained(values: Values, reasons: Mapping[str, str]) -> Outcome:
+    """Return the record; of the reasons those of what is not known."""
+    return Outcome(values, {key: why for key, why in reasons.items() if values.get(key) is None})
 
 
 def motion_keys(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> Values:

@@ -15,7 +15,7 @@ from fem_impact.heating import flash, halves, heat_keys
 from fem_impact.markers import replay
 from fem_impact.outcome import Outcome
 from fem_impact.outcome.keys import HEATING
-from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, provenance
+from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, explained, motion_keys, provenance
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -73,7 +73,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
         reasons |= dict.fromkeys((k.name for k in HEATING), "the contact-heating effect is off")
     if "vibration" not in scene.active:
         reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
-    return Outcome(values, {k: v for k, v in reasons.items() if values.get(k) is None})
+    return explained(values, reasons)
 
 
 def _ringing(result: SolidResult) -> list[str]:

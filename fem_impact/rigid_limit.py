@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.contact_law import contact_law, restitution
-from fem_impact.estimates import arms, effective_mass, projectile
+from fem_impact.estimates import approach, arms, effective_mass, projectile
 from fem_impact.heating import closed_form
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
@@ -31,7 +31,7 @@ def rigid_outcome(scene: Scene) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what it cannot know is null with a reason."""
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = arms(scene)
-    e, source = _restitution(scene, abs(impact.v_n + d_c * impact.omega))
+    e, source = _restitution(scene, approach(scene))
     f = scene.surface.friction if "friction" in scene.active else 0.0
     impulse = partial(
         rigid.sliding_path,

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL
+from fem_impact.run_files import CHECKPOINT
+from fem_impact.solid.checkpoint import INTERVAL
 
 if TYPE_CHECKING:
     from fem_impact.outcome import Outcome

@@ -61,17 +61,22 @@ class Flight:
     def free(self, now: Rigid, swing: Array, crater: float) -> int:
         """Return the steps, one at least and `BLOCK` at most, until the contact point is in its crater."""
         n = np.arange(1, BLOCK + 1)
-        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
-        below = now.height + rise + ((self.give * swing) @ self.table[:, 1:]).real < -crater
+        below = self._height(now, n) + ((self.give * swing) @ self.table[:, 1:]).real < -crater
         return int(n[np.argmax(below)]) if below.any() else BLOCK
 
     def gone(self, now: Rigid, swing: Array, crater: float) -> bool:
         """Return whether no vibration brings the contact point back: what falls back strikes anew."""
-        away = now.V_n + self.d_c * now.spin > 0
-        return away and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
+        return self._away(now) > 0 and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
 
     def fly(self, now: Rigid, swing: Array, n: int) -> tuple[Rigid, Array]:
         """Return the motion after ``n`` steps."""
         V_n, V_t = now.V_n - n * self.g[0], now.V_t - n * self.g[1]
-        rise = self.dt * n * (now.V_n + self.d_c * now.spin - 0.5 * self.g[0] * (n + 1))
-        return Rigid(V_n, V_t, now.spin, now.height + rise), self.table[:, n] * swing
+        return Rigid(V_n, V_t, now.spin, float(self._height(now, n))), self.table[:, n] * swing
+
+    def _height(self, now: Rigid, n: int | Array) -> Any:
+        """Return the height, m, that rigid motion gives the contact point after ``n`` steps, of any shape."""
+        return now.height + self.dt * n * (self._away(now) - 0.5 * self.g[0] * (n + 1))
+
+    def _away(self, now: Rigid) -> float:
+        """Return the speed, m/s, of the contact point off the barrier by rigid motion."""
+        return now.V_n + self.d_c * now.spin

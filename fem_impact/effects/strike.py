@@ -93,7 +93,8 @@ class Touch:
         if depth >= self.peak:
             self.most, self.peak = self._first(depth), depth
             return self.most
-        return float(self.most * (max(depth - self.crater, 0.0) / self._back()) ** 1.5)
+        back = self._back()
+        return float(self.most * (max(depth - self.peak + back, 0.0) / back) ** 1.5)
 
     def _back(self) -> float:
         """Return what unloading gives back of the largest depth, m."""

@@ -7,7 +7,15 @@ from fem_impact.modal.beside import beside_solid
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome import KEYS, Outcome
 from fem_impact.outcome.keys import HEATING
-from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
+from fem_impact.outcome_keys import (
+    NO_TARGET,
+    Values,
+    coefficient_keys,
+    explained,
+    motion_keys,
+    plastic_keys,
+    provenance,
+)
 from fem_impact.scene import Scene
 
 __all__ = ["reduce"]
@@ -54,8 +62,7 @@ def reduce(scene: Scene, result: ModalResult) -> Outcome:
         "cpu_s": result.cpu,
         "min_step_s": result.step,
     }
-    told = NO_TARGET | REASONS | reasons
-    return Outcome(values, {key: why for key, why in told.items() if values.get(key) is None})
+    return explained(values, NO_TARGET | REASONS | reasons)
 
 
 def _end(result: ModalResult) -> str:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from fem_impact.effects import specify
 from fem_impact.estimates import arms, principal_radii, projectile, section_frequency, touch_point
 from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Scene, Surface
+from fem_impact.scene.fields import ACCURACY
 from fem_impact.solid.build import build
 from fem_impact.solid.rodview import RodView
 
@@ -19,7 +20,7 @@ __all__ = ["ModalRod", "modal_rod"]
 
 Array = NDArray[np.float64]
 
-COARSEST = 1e-2  # m, a scene's largest tip
+COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
 
 

@@ -21,6 +21,7 @@ __all__ = ["Camera", "read_camera"]
 
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
+LARGEST = 1e6  # m/s or rad/s
 _NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega)(?:_(\w+)|\s*[\[(](.+)[\])])?")
 Line = tuple[int, list[str]]
 
@@ -74,9 +75,6 @@ def read_camera(path: str | Path) -> Camera:
     used = {at for at, _ in places.values()}
     ignored = tuple(n for i, n in enumerate(names) if i not in used and n != "test")
     return Camera(motion, _labels(rows, names), ignored)
-
-
-LARGEST = 1e6  # m/s or rad/s
 
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:

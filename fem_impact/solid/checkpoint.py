@@ -23,9 +23,8 @@ from fem_impact.output import write_bytes
 from fem_impact.solid.moving import Moving, put_back, take_out
 from fem_impact.solid.state import State
 
-__all__ = ["CHECKPOINT", "INTERVAL", "Checkpoint"]
+__all__ = ["INTERVAL", "Checkpoint"]
 
-CHECKPOINT = "run.checkpoint"
 INTERVAL = 30.0  # s of wall time between checkpoints
 _MARK = b"fem-ckp1"
 _START = len(_MARK) + hashlib.sha256().digest_size

@@ -82,10 +82,15 @@ def to_barrier_frame(alpha: float) -> Array:
 
 def tail_corners(scene: Scene) -> Array:
     """Return the highest and lowest point (2, 3) of the rod's tail at the start, m, the gap apart."""
-    body, alpha = projectile(scene), scene.impact.angle
-    rho, z = body.contact_point(alpha)
+    body = projectile(scene)
     corners = np.array([[x * body.diameter / 2, 0.0, body.length] for x in (-1, 1)])
-    return np.asarray((corners - [float(rho), 0.0, float(z)]) @ to_barrier_frame(alpha).T)
+    return np.asarray((corners - _lowest(scene)) @ to_barrier_frame(scene.impact.angle).T)
+
+
+def _lowest(scene: Scene) -> Array:
+    """Return the rod's lowest point (3,) in its own frame, m."""
+    rho, z = projectile(scene).contact_point(scene.impact.angle)
+    return np.array([float(rho), 0.0, float(z)])
 
 
 def levels_of(scene: Scene) -> int:
@@ -105,11 +110,9 @@ def build_geometry(scene: Scene, gap: float, meshed_barrier: bool, vibrating: bo
     body, alpha = projectile(scene), scene.impact.angle
     base, levels = body.diameter / scene.accuracy.across, levels_of(scene)
     conforming = meshed_barrier and barrier_conforms(scene)
-    rho, z = body.contact_point(alpha)
-    turn = to_barrier_frame(alpha)
-    lowest = np.array([float(rho), 0.0, float(z)])
+    turn, lowest = to_barrier_frame(alpha), _lowest(scene)
     h = base / 2**levels
-    t, b, n, reach = _fine_zone(scene, h, float(rho))
+    t, b, n, reach = _fine_zone(scene, h, float(lowest[0]))
     zone = Zone(lowest, turn, np.array([-t - reach, 0.0, -h]), np.array([t, b, n]))
     rod = _rod(scene, zone, levels)
     if not vibrating:

@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 from fem_impact.effects import specify
 from fem_impact.modes import Flight, RigidMotion
 from fem_impact.progress import Progress, compiling
+from fem_impact.run_files import CHECKPOINT
 from fem_impact.solid.build import build
-from fem_impact.solid.checkpoint import CHECKPOINT, INTERVAL, Checkpoint
+from fem_impact.solid.checkpoint import INTERVAL, Checkpoint
 from fem_impact.solid.doubts import doubts
 from fem_impact.solid.helper import Helper
 from fem_impact.solid.kernels import compiled_before

@@ -81,9 +81,8 @@ class Separation:
             return np.inf
         start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
         arm = self.tail - self.view.mass @ start / self.view.mass.sum()
-        turned = self.view.angle(state, self.model) + motion.Omega * t
-        rise = np.outer(arm[:, 2], np.cos(turned)) - np.outer(arm[:, 0], np.sin(turned))
-        down = (motion.centre[2] + motion.V_n * t + rise).min(axis=0) < 0.0
+        heights = _rigid_heights(arm, motion, t, self.view.angle(state, self.model))
+        down = heights.min(axis=0) < 0.0
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
@@ -115,7 +114,12 @@ def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: Fligh
 
 def flight_heights(x: Array, rows: NDArray[np.int64], motion: RigidMotion, ahead: Flight, t: Array) -> Array:
     """Return heights n (k, times), m, of nodes at x (k, 3) in free flight after times t, s."""
-    arm = x - motion.centre
-    turned = np.outer(arm[:, 2], np.cos(motion.Omega * t)) - np.outer(arm[:, 0], np.sin(motion.Omega * t))
     shake = ahead.displacement(rows, t) - ahead.displacement(rows, np.zeros(1))
-    return np.asarray(motion.centre[2] + motion.V_n * t + turned + shake)
+    return _rigid_heights(x - motion.centre, motion, t) + shake
+
+
+def _rigid_heights(arm: Array, motion: RigidMotion, t: Array, angle: float = 0.0) -> Array:
+    """Return heights n (k, times), m, of points that stand at ``arm`` (k, 3) turned by ``angle``, rad."""
+    turned = angle + motion.Omega * t
+    rise = np.outer(arm[:, 2], np.cos(turned)) - np.outer(arm[:, 0], np.sin(turned))
+    return np.asarray(motion.centre[2] + motion.V_n * t + rise)

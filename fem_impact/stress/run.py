@@ -94,7 +94,7 @@ def _scene(case: Case, out: Path) -> Row:
 
 
 def _solved(case: Case, scene: Scene, out: Path) -> SolidResult:
-    from fem_impact.solid.checkpoint import CHECKPOINT
+    from fem_impact.run_files import CHECKPOINT
     from fem_impact.solid.run import solve
 
     if (out / CHECKPOINT).exists():
@@ -120,7 +120,7 @@ def _model(case: Case, scene: Scene) -> Model:
 
 def _judged(case: Case, result: SolidResult, out: Path) -> Row:
     from fem_impact.reduce import reduce
-    from fem_impact.solid.checkpoint import CHECKPOINT
+    from fem_impact.run_files import CHECKPOINT
     from fem_impact.stress.judge import balance
 
     outcome = reduce(result.scene, result)  # which holds no NaN

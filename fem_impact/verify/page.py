@@ -22,7 +22,7 @@ def _use(check: Check) -> float:
 
 
 def _row(found: Verification) -> list[str]:
-    judged = [check for check in found.checks if check.kind != "shown"]
+    judged = [check for check in found.checks if check.judged]
     nearest = max(judged, key=_use)
     unit = "" if nearest.unit == "1" else f" {nearest.unit}"
     return [
@@ -40,7 +40,7 @@ def _row(found: Verification) -> list[str]:
 def page(done: Sequence[Verification], date: str) -> str:
     """Return the page: date and cost, and a row for every problem."""
     every = [check for found in done for check in found.checks]
-    checks = [check for check in every if check.kind != "shown"]
+    checks = [check for check in every if check.judged]
     wall = sum(found.cost.wall_s for found in done)
     line = (
         f"{date}, all parameters at their defaults: {sum(check.passed for check in checks)} of {len(checks)} "

@@ -103,6 +103,11 @@ class Check:
         return cls(name, unit, computed, reference, inf, "shown", note)
 
     @property
+    def judged(self) -> bool:
+        """Return whether the comparison bears a verdict."""
+        return self.kind != "shown"
+
+    @property
     def error(self) -> float:
         """Return the signed error in the sense of ``kind``."""
         difference = self.computed - self.reference
@@ -123,9 +128,9 @@ class Check:
             "computed": self.computed,
             "reference": self.reference,
             "error": self.error,
-            "tolerance": None if self.kind == "shown" else self.tolerance,
+            "tolerance": self.tolerance if self.judged else None,
             "kind": self.kind,
-            "passed": None if self.kind == "shown" else self.passed,
+            "passed": self.passed if self.judged else None,
             "note": self.note,
         }
 

@@ -12,8 +12,8 @@ import solid_scenes as scenes
 
 from fem_impact.outcome import Outcome
 from fem_impact.output import read_fields, read_table
+from fem_impact.run_files import CHECKPOINT
 from fem_impact.scene import load, replace_all
-from fem_impact.solid.checkpoint import CHECKPOINT
 
 SCENE = replace_all(
     load("t5b"),

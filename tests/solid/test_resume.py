@@ -10,9 +10,9 @@ from fem_impact.effects import specify
 from fem_impact.errors import ResultError
 from fem_impact.output import read_fields
 from fem_impact.reduce import reduce
+from fem_impact.run_files import CHECKPOINT
 from fem_impact.scene import NAMES
 from fem_impact.solid.build import build
-from fem_impact.solid.checkpoint import CHECKPOINT
 from fem_impact.solid.march import march
 from fem_impact.solid.moving import put_back, take_out
 from fem_impact.solid.rodview import RodView
