@@ -12,6 +12,8 @@ from fem_impact.output import write_table
 
 __all__ = ["partition_figure"]
 
+UNSEEN = 1e-5  # of E_0
+
 
 def partition_figure(outcome: Mapping[str, Any], path: str | Path, shape: Shape = "wide") -> Path:
     """Draw the known shares of E_0 after the last separation.
@@ -29,7 +31,8 @@ def partition_figure(outcome: Mapping[str, Any], path: str | Path, shape: Shape 
     write_table(path.with_suffix(".csv"), ("account", "fraction_of_E_0"), _rows(known, outcome))
     with figure(path, shape, 0.9 + 0.27 * max(len(known), 1)) as drawn:
         axes = drawn.add_subplot()
-        values = [100.0 * outcome[account.key] for account in known]
+        # a bar too thin to be seen is none: one below 0 would have its number on its name
+        values = [100.0 * share if abs(share := outcome[account.key]) > UNSEEN else 0.0 for account in known]
         bars = axes.barh([account.label for account in known], values, height=0.68)
         for bar, account in zip(bars, known, strict=True):
             bar.set_color(account.colour)
