@@ -48,7 +48,6 @@ class Options(argparse.Namespace):
     readme: str = ""
     quick: bool = False
     workers: int | None = None
-    threads: int | None = None
     scheduler: str = ""
     target: str = ""
     budget: str = ""
@@ -133,13 +132,6 @@ def _add_run(commands: Commands) -> None:
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
-    parser.add_argument(
-        "--threads",
-        type=int,
-        choices=[1, 2],
-        help="2: the second shares the forces, or with a target runs the second mesh (default: 2 where two "
-        "cores are idle)",
-    )
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(
         "--checkpoint",

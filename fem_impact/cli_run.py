@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,16 +13,15 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
-from fem_impact.cores import idle_cores
+from fem_impact.cores import cores
 from fem_impact.errors import RunError, SceneError
 from fem_impact.run_files import CHECKPOINT
 
 if TYPE_CHECKING:
+    from fem_impact.outcome import Outcome
     from fem_impact.scene import Scene
 
 __all__ = ["run"]
-
-ENOUGH = 1.5  # idle cores for a second thread: two that share one core take twice as long as one alone
 
 
 def run(options: Options) -> int:
@@ -29,22 +30,19 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
         raise SceneError(problem, key="--resume", value=options.fidelity, remedy=remedy)
-    threads = options.threads or (2 if idle_cores() >= ENOUGH else 1)
-    _say_plan(scene, options, threads)
+    _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.earlier import earlier
-    from fem_impact.simulate import simulate
 
     meter, before = chosen_meter(options), earlier(out)
     try:
-        outcome = simulate(
+        outcome = _simulation(scene)(
             scene,
             fidelity=options.fidelity or None,
             out=out,
             progress=meter,
             resume=options.resume,
             checkpoint_s=options.checkpoint,
-            threads=threads,
         )
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
@@ -58,13 +56,24 @@ def run(options: Options) -> int:
     return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
 
 
-def _say_plan(scene: Scene, options: Options, threads: int) -> None:
+def _simulation(scene: Scene) -> Callable[..., Outcome]:
+    """Return what computes the scene: a scene with a target runs two meshes side by side on two cores."""
+    if scene.accuracy.target is None:
+        from fem_impact.simulate import simulate
+
+        return simulate
+    from fem_impact.cost import simulate_to_target
+
+    return partial(simulate_to_target, workers=cores())
+
+
+def _say_plan(scene: Scene, options: Options) -> None:
     """Before the work: what the measured costs chose for the error that the scene allows."""
     if scene.accuracy.target is None:
         return
     from fem_impact.cost import plan
 
-    sentence = plan(scene, options.fidelity or None, threads).sentence
+    sentence = plan(scene, options.fidelity or None, cores()).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

@@ -29,7 +29,6 @@ def simulate(
     progress: Report | None = None,
     resume: bool = False,
     checkpoint_s: float = INTERVAL,
-    threads: int = 1,
 ) -> Outcome:
     """Compute an impact.
 
@@ -46,7 +45,6 @@ def simulate(
     progress : called every few hundred steps of the solid fidelity
     resume : go on from the checkpoint in ``out`` (solid); without one there, start at the beginning
     checkpoint_s : wall time between checkpoints of the solid fidelity
-    threads : 2 lets a second thread do part of every step of the solid fidelity; not a bit changes
 
     Raises
     ------
@@ -64,8 +62,8 @@ def simulate(
     if scene.accuracy.target is not None:
         from fem_impact.cost import simulate_to_target
 
-        return simulate_to_target(scene, fidelity, out, progress, resume, checkpoint_s, threads)
-    return _run(scene, fidelity or "solid", out, progress, resume, checkpoint_s, threads)
+        return simulate_to_target(scene, fidelity, out, progress, resume, checkpoint_s)
+    return _run(scene, fidelity or "solid", out, progress, resume, checkpoint_s)
 
 
 def _run(
@@ -75,14 +73,13 @@ def _run(
     progress: Report | None,
     resume: bool,
     checkpoint_s: float,
-    threads: int,
 ) -> Outcome:
     """Compute one impact on the mesh that the scene gives, and write its files."""
     require_runnable(scene, fidelity)
     goes_on = fidelity == "solid" and resume and out is not None and (out / CHECKPOINT).exists()
     if out is not None and not goes_on:
         _begin(scene, out)
-    outcome = _compute(scene, fidelity, out, progress, goes_on, checkpoint_s, threads)
+    outcome = _compute(scene, fidelity, out, progress, goes_on, checkpoint_s)
     if out is not None:
         _write(outcome, out)
     return outcome
@@ -119,7 +116,6 @@ def _compute(
     progress: Report | None,
     goes_on: bool,
     checkpoint_s: float,
-    threads: int,
 ) -> Outcome:
     """Import and run one model."""
     if fidelity == "rigid":
@@ -133,7 +129,7 @@ def _compute(
     from fem_impact.reduce import reduce
     from fem_impact.solid.run import solve
 
-    return reduce(scene, solve(scene, out, progress, goes_on, checkpoint_s, threads=threads))
+    return reduce(scene, solve(scene, out, progress, goes_on, checkpoint_s))
 
 
 def _write(outcome: Outcome, out: Path) -> None:

@@ -39,26 +39,26 @@ def simulate_to_target(
     progress: Report | None = None,
     resume: bool = False,
     checkpoint_s: float = INTERVAL,
-    threads: int = 1,
+    workers: int = 1,
 ) -> Outcome:
     """Run the setting that the measured costs choose.
 
     Every mesh is run at its places of the barrier's grid. What comes back is the finer mesh's outcome at the
     first, with the limits of two meshes, or the means of one, under ``extrapolated``. The other runs are
-    kept below ``out``; with two threads or more a process beside takes every other run.
+    kept below ``out``; with two ``workers`` or more a process beside takes every other run.
 
     Raises
     ------
     SceneError
         As `plan`.
     """
-    chosen = plan(scene, fidelity, threads)
+    chosen = plan(scene, fidelity, workers)
     if not chosen.meshes:
-        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s, threads)
+        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
         return _kept(_stated(alone, chosen, seconds(alone, "wall_s")), out)
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
     work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
-    lanes = [work[0::2], work[1::2]] if threads > 1 else [work]
+    lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
     done = _side_by_side(lanes)
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
     meshes = [list(islice(runs, len(scenes))) for scenes in jobs]

@@ -134,8 +134,10 @@ def nearest(scene: Scene) -> tuple[str, float, str]:
     return name, distance, differs
 
 
-def plan(scene: Scene, fidelity: str | None = None, threads: int = 1) -> Plan:
+def plan(scene: Scene, fidelity: str | None = None, workers: int = 1) -> Plan:
     """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
+
+    Its expected time is that of one or two ``workers``, runs at a time.
 
     Raises
     ------
@@ -154,7 +156,7 @@ def plan(scene: Scene, fidelity: str | None = None, threads: int = 1) -> Plan:
     if found is None:
         raise _not_met(scene, name, settings)
     machine = summary()["machine"]["csr_ns_per_element_step"]
-    seconds = found.cpu_s if threads == 1 else found.two_cores_s
+    seconds = found.cpu_s if workers == 1 else found.two_cores_s
     pace = yardsticks()["csr_ns_per_element_step"] / machine
     return Plan(target, found, name, worst(found, TARGETED), seconds * pace)
 

@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.calls import Call
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.items import Accounts
 from fem_impact.solid.layout import Layout
@@ -19,7 +18,6 @@ from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(slots=True)
@@ -36,8 +34,8 @@ class ElasticRod:
     d: Array
     y: Array
 
-    def find(self, state: State) -> None:
-        """Multiply with the stiffness."""
+    def add(self, state: State) -> None:
+        """Add the elastic forces."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
@@ -48,10 +46,7 @@ class ElasticRod:
         self.nose.add_to(self.y)
         self.drawn.draw_in(d)
         self.drawn.gather(y)
-
-    def collect(self, state: State) -> None:
-        """Add the elastic forces."""
-        self.frame.add_force(self.d, self.y, state.force[: len(self.d)])
+        self.frame.add_force(self.d, self.y, state.force[:n])
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""
@@ -67,22 +62,10 @@ class ElasticBlock:
     stiffness: NodeProduct
     place: slice
 
-    def find(self, state: State) -> None:
-        """Multiply with the stiffness."""
-        self.stiffness.multiply(state.x[self.place])
-
-    def finding(self, state: State, times: Array, touched: Bools) -> tuple[list[Call], list[Call]]:
-        """Return the call that `find` makes."""
-        call = self.stiffness.multiplication(state.x[self.place])
-        return ([], [call]) if touched[self.place][self.stiffness.places].any() else ([call], [])
-
-    def collect(self, state: State) -> None:
+    def add(self, state: State) -> None:
         """Add the elastic forces of block and boundary springs."""
+        self.stiffness.multiply(state.x[self.place])
         self.stiffness.add_to(state.force[self.place], -1.0)
-
-    def collecting(self, state: State) -> Call:
-        """Return the call that `collect` makes."""
-        return self.stiffness.addition(state.force[self.place], -1.0)
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""
@@ -126,10 +109,7 @@ class Weight:
     weight: Array
     reference: Array
 
-    def find(self, state: State) -> None:
-        """Do nothing: the weight is known."""
-
-    def collect(self, state: State) -> None:
+    def add(self, state: State) -> None:
         """Add the weight."""
         state.force[: len(self.weight)] += self.weight
 

@@ -18,7 +18,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 # Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
 # vector width of the machine. NaN stays visible, because a diverging run must be seen.
 FAST = {"contract", "arcp", "nsz"}
-KEPT = {"cache": True, "nogil": True}
+KEPT = {"cache": True}
 COUNTLESS = {"_nrt": False}
 
 
@@ -73,10 +73,10 @@ def compile_seconds() -> float:
 
 
 def kernel(function: F) -> F:
-    """Compile a hot loop, cached on disk across runs; it lets other threads run beside it.
+    """Compile a hot loop, cached on disk across runs.
 
     It makes no arrays. So it needs no counts of references to them, which in short loops over views cost as
-    much as the arithmetic, and which threads would take from each other.
+    much as the arithmetic.
     """
     return _compiled(function, **KEPT, **COUNTLESS)
 

@@ -5,12 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-import numpy as np
-
-from fem_impact.solid.helper import Helper
+from fem_impact.solid.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from fem_impact.solid.work import clear, drift, kick
 
 
 class Observer(Protocol):
@@ -23,58 +20,49 @@ class Observer(Protocol):
         ...
 
 
-def evaluate(model: Model, state: State, helper: Helper | None = None) -> None:
-    """Set the forces of the present positions.
-
-    A ``helper`` shares the work. No number is a sum of what two threads found, so results are the same to the
-    last bit whoever did it.
-    """
-    work = helper.left if helper else model.work
-    if helper:
-        helper.find(state)
-    for force in work.finds:
-        force.find(state)
-    if helper:
-        helper.finish()
-        helper.collect()
-    clear(state.force, work.cleared)
-    for force in work.collects:
-        force.collect(state)
-    work.gathered.collect(state.force)
-    if helper:
-        helper.finish()
+def evaluate(model: Model, state: State) -> None:
+    """Set the forces of the present positions."""
+    state.force[:] = 0.0
+    for force in model.forces:
+        force.add(state)
+    model.hanging.collect(state.force)
 
 
-def advance(model: Model, state: State, helper: Helper | None = None) -> None:
-    """Kick, resolve impulses, drift; forces must be up to date.
-
-    A ``helper`` moves what the last impulse cannot touch, and goes on to the forces there.
-    """
-    work = helper.left if helper else model.work
+def advance(model: Model, state: State) -> None:
+    """Kick, resolve impulses, drift; forces must be up to date."""
     state.kick = 0.5 * (state.dt + state.dt_next)
-    times = np.array([state.dt_next, state.kick])
-    kick(state.v, times, model.inverse_mass, state.force, work.kicked)
-    for item in model.impulses[:-1]:
+    kick(state.v, state.kick, model.inverse_mass, state.force)
+    for item in model.impulses:
         item.resolve(state)
-    if helper:
-        helper.move(times)
-    for item in model.impulses[-1:]:
-        item.resolve(state)
-    work.expanded.expand(state.v)
-    drift(state.x, times, state.v, work.drifted)
+    model.hanging.expand(state.v)
+    drift(state.x, state.dt_next, state.v)
     state.dt = state.dt_next
     state.time += state.dt
     state.step += 1
 
 
-def march(model: Model, state: State, observers: Sequence[Observer], helper: Helper | None = None) -> None:
+def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
     """Step until an observer says stop.
 
     Velocities stand half a step behind positions, so the first kick from the given start velocity is
     a half one (no step has led to the start).
     """
     while True:
-        evaluate(model, state, helper)
+        evaluate(model, state)
         if any([o.observe(state) for o in observers if state.step % o.every == 0]):
             return
-        advance(model, state, helper)
+        advance(model, state)
+
+
+@kernel
+def kick(v, span, inverse_mass, force):  # type: ignore[no-untyped-def]
+    """Add to velocities (m/s) what forces (N) change of them in ``span`` (s), in one pass."""
+    for i in range(len(v)):
+        v[i] += span * inverse_mass[i] * force[i]
+
+
+@kernel
+def drift(x, step, v):  # type: ignore[no-untyped-def]
+    """Add to positions (m) what velocities (m/s) do in ``step`` (s), in one pass."""
+    for i in range(len(x)):
+        x[i] += step * v[i]

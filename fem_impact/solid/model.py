@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,7 +18,6 @@ from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.sparse import Hanging
 from fem_impact.solid.state import State
-from fem_impact.solid.work import Work, whole
 
 if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
@@ -44,7 +43,6 @@ class Model:
         vibrate
     steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
-    work : all of a step, as one thread does it
     """
 
     geometry: Geometry
@@ -60,10 +58,6 @@ class Model:
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
-    work: Work = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "work", whole(self.forces, self.hanging, len(self.mass)))
 
     @property
     def step(self) -> float:

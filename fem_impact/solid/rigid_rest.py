@@ -51,17 +51,14 @@ class ElasticNose:
     d: Array
     y: Array
 
-    def find(self, state: State) -> None:
-        """Multiply with the stiffness."""
+    def add(self, state: State) -> None:
+        """Add the elastic forces."""
         n = len(self.d)
         self.frame.localise(state.x[:n], self.d)
         self.y[:] = 0.0
         self.nose.multiply(self.d)
         self.nose.add_to(self.y)
-
-    def collect(self, state: State) -> None:
-        """Add the elastic forces."""
-        self.frame.add_force(self.d, self.y, state.force[: len(self.d)])
+        self.frame.add_force(self.d, self.y, state.force[:n])
 
     def accounts(self, state: State) -> Accounts:
         """Return the strain energy at the last force evaluation."""

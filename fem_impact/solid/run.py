@@ -5,7 +5,6 @@ from __future__ import annotations
 import resource
 import sys
 from collections.abc import Callable
-from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +16,6 @@ from fem_impact.run_files import CHECKPOINT
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import INTERVAL, Checkpoint
 from fem_impact.solid.doubts import doubts
-from fem_impact.solid.helper import Helper
 from fem_impact.solid.kernels import compiled_before
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -94,7 +92,6 @@ def solve(
     resume: bool = False,
     interval: float = INTERVAL,
     model: Model | None = None,
-    threads: int = 1,
 ) -> SolidResult:
     """Run a scene; histories, fields and checkpoints go to ``out`` while it runs.
 
@@ -103,7 +100,6 @@ def solve(
     resume : go on from the checkpoint in ``out``, bit for bit as if the run had never stopped
     interval : s of wall time between checkpoints
     model : a prepared model of the scene instead of a built one
-    threads : 2 lets a second thread do part of every step; not a bit changes
 
     Raises
     ------
@@ -122,23 +118,20 @@ def solve(
     if progress is not None:
         observers.append(_meter(progress, scene, model, looking.watch))
     _warm_up(model)
-    with _helper(model, state, threads) as helper:
-        clock = Stopwatch()
-        if out is not None:
-            holders = looking.holders(model, state, clock)
-            saved = Checkpoint(
-                out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason)
-            )
-            observers.append(saved)
-            if resume:
-                saved.restore()
-                advance(model, state)  # the forces of the checkpoint's step are known
-        marching = Stopwatch()
-        try:
-            march(model, state, observers, helper)
-        finally:
-            looking.flush()
-        loop, here = clock.read(), marching.read()
+    clock = Stopwatch()
+    if out is not None:
+        holders = looking.holders(model, state, clock)
+        saved = Checkpoint(out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason))
+        observers.append(saved)
+        if resume:
+            saved.restore()
+            advance(model, state)  # the forces of the checkpoint's step are known
+    marching = Stopwatch()
+    try:
+        march(model, state, observers)
+    finally:
+        looking.flush()
+    loop, here = clock.read(), marching.read()
     looking.watch.observe(state)
     free = looking.stop.finished and model.rod_stiffness is not None
     check = view.vibration(state, model) if free else None
@@ -185,12 +178,6 @@ def _result(
         warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
         heat=looking.heat,
     )
-
-
-def _helper(model: Model, state: State, threads: int) -> AbstractContextManager[Helper | None]:
-    """Return a second thread's context where it is asked for and has work."""
-    shared = bool(model.zones) or model.geometry.barrier is not None
-    return Helper(model, state) if threads > 1 and shared else nullcontext()
 
 
 def _warm_up(model: Model) -> None:

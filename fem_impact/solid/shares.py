@@ -11,7 +11,7 @@ import numpy as np
 
 from fem_impact.scene import BARRIERS
 from fem_impact.solid.frame import TurningFrame
-from fem_impact.solid.items import Account, add_force
+from fem_impact.solid.items import Account
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
@@ -46,9 +46,7 @@ def run_time_shares(
     still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
     shares: dict[str, float] = {}
     barrier = next(name for name in scene.active if name in BARRIERS)
-    acts: list[tuple[Account, Callable[[State], None]]] = [
-        (item, partial(add_force, item)) for item in model.forces
-    ]
+    acts: list[tuple[Account, Callable[[State], None]]] = [(item, item.add) for item in model.forces]
     acts += [(item, item.resolve) for item in model.impulses[:-1]]
     for item, act in acts:
         name = _effect(item, model, barrier)

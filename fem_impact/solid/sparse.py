@@ -8,7 +8,6 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from fem_impact.solid.calls import Call, call_of
 from fem_impact.solid.elements import Kind, element_stiffness
 from fem_impact.solid.fours import add_product, load, spread, store, three
 from fem_impact.solid.kernels import inlined, kernel
@@ -110,20 +109,12 @@ class NodeProduct:
 
     def multiply(self, x: Array) -> None:
         """Set ``product`` to the product with ``x`` less the origin."""
-        multiply_nodes(*self.multiplication(x))
-
-    def multiplication(self, x: Array) -> Call:
-        """Return the call that `multiply` makes."""
         rows = self.start, self.columns, self.kinds, self.blocks
-        return Multiplication(self.places, self.origin, x, *rows, self.moved, self.product)
+        multiply_nodes(self.places, self.origin, x, *rows, self.moved, self.product)
 
     def add_to(self, y: Array, share: float = 1.0) -> None:
         """Add a share of the product to ``y``."""
-        add_nodes(*self.addition(y, share))
-
-    def addition(self, y: Array, share: float) -> Call:
-        """Return the call that `add_to` makes."""
-        return Addition(self.places, share, self.product, y)
+        add_nodes(self.places, share, self.product, y)
 
     @property
     def energy(self) -> float:
@@ -175,10 +166,6 @@ def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
             y[places[i, c]] += share * f[i, c]
 
 
-Multiplication = call_of(multiply_nodes, "Multiplication")
-Addition = call_of(add_nodes, "Addition")
-
-
 @dataclass(frozen=True, slots=True)
 class Hanging:
     """Values of hanging nodes from their masters, and their forces back to them.
@@ -210,33 +197,13 @@ class Hanging:
         start = np.concatenate([[0], np.cumsum(np.concatenate(counts))]).astype(np.int64)
         return cls(np.concatenate(slaves), start, np.concatenate(masters), np.concatenate(weights))
 
-    def rows(self, some: NDArray[np.bool_]) -> Hanging:
-        """Return the ties of some of the hanging nodes, (k,)."""
-        counts = np.diff(self.start)
-        entries = np.repeat(some, counts)
-        start = np.concatenate([[0], np.cumsum(counts[some])]).astype(np.int64)
-        return Hanging(self.slaves[some], start, self.masters[entries], self.weights[entries])
-
-    def follow(self, moved: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Return (k,) which nodes hang on any of the ``moved`` unknowns (size,)."""
-        node = np.repeat(np.arange(len(self.slaves)), np.diff(self.start))
-        return np.bincount(node, moved[self.masters[:, 0]], minlength=len(self.slaves)) > 0
-
     def expand(self, x: Array) -> None:
         """Set the hanging values of ``x``."""
-        expand_ties(*self.expansion(x))
-
-    def expansion(self, x: Array) -> Call:
-        """Return the call that `expand` makes."""
-        return Expansion(self.slaves, self.start, self.masters, self.weights, x)
+        expand_ties(self.slaves, self.start, self.masters, self.weights, x)
 
     def collect(self, force: Array) -> None:
         """Hand the hanging forces to the masters and clear them."""
-        gather_ties(*self.gathering(force))
-
-    def gathering(self, force: Array) -> Call:
-        """Return the call that `collect` makes."""
-        return Gathering(self.slaves, self.start, self.masters, self.weights, force)
+        gather_ties(self.slaves, self.start, self.masters, self.weights, force)
 
 
 @kernel
@@ -261,7 +228,3 @@ def gather_ties(slaves, start, masters, weights, force):  # type: ignore[no-unty
             force[masters[p, 1]] += weights[p] * b
             force[masters[p, 2]] += weights[p] * n
         force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]] = 0.0, 0.0, 0.0
-
-
-Expansion = call_of(expand_ties, "Expansion")
-Gathering = call_of(gather_ties, "Gathering")

@@ -8,18 +8,14 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.calls import Call
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
 from fem_impact.solid.items import Accounts
-from fem_impact.solid.signals import Signal, make_signals
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import (
     ROWS,
     Blocks,
-    Subtraction,
-    Update,
     elastic_energy,
     subtract_nodal,
     update,
@@ -28,7 +24,6 @@ from fem_impact.solid.yielding_kernel import (
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Counts = NDArray[np.uint32]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(slots=True)
@@ -41,8 +36,7 @@ class YieldingZone:
     count : number of true elements
     blocks : their places and state
     around : nodes (k, 3), starts and entries for `subtract_nodal`
-    order : of the blocks, for the first thread; taken : number of blocks that a thread has taken
-    room : (2, ROWS * LANES) for each thread to work in
+    room : (ROWS * LANES,) work space of the kernels
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
     rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
@@ -53,8 +47,6 @@ class YieldingZone:
     count: int
     blocks: Blocks
     around: tuple[Counts, Ints, Counts]
-    order: Counts
-    taken: Signal
     room: Array
     G: float
     K: float
@@ -84,31 +76,14 @@ class YieldingZone:
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
-        room, order = np.zeros((2, ROWS * LANES)), np.arange(blocks, dtype=np.uint32)
-        threads = order, make_signals(1)[0], room
-        return cls(body, len(dof), state, _around(dof), *threads, G, lame + 2 * G / 3, constants, rate)
+        room = np.zeros(ROWS * LANES)
+        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate)
 
-    def find(self, state: State) -> None:
-        """Advance the blocks, but for those that another thread takes."""
+    def add(self, state: State) -> None:
+        """Advance the blocks and subtract their nodal forces."""
         constants = self.G, self.K, self.law, self.rate
-        update(state.x, state.v, state.dt, self.blocks, *constants, self.room[0], self.order, self.taken)
-
-    def finding(self, state: State, times: Array, touched: Bools) -> tuple[list[Call], list[Call]]:
-        """Return the calls by which a second thread takes blocks; the first begins at the touched ones."""
-        waits = touched[self.blocks.dof].any(axis=(1, 2, 3))
-        self.order[:] = np.argsort(~waits, kind="stable")
-        early, waiting = self.order[waits.sum() :][::-1].copy(), self.order[: waits.sum()][::-1].copy()
-        constants = self.G, self.K, self.law, self.rate
-        given = times, state.x, state.v, self.blocks, *constants, self.room[1]
-        return [Update(*given, early, self.taken)], [Update(*given, waiting, self.taken)]
-
-    def collect(self, state: State) -> None:
-        """Subtract the nodal forces."""
-        subtract_nodal(*self.collecting(state))
-
-    def collecting(self, state: State) -> Call:
-        """Return the call that `collect` makes."""
-        return Subtraction(*self.around, self.blocks.nodal.ravel(), self.taken, state.force)
+        update(state.x, state.v, state.dt, self.blocks, *constants, self.room)
+        subtract_nodal(*self.around, self.blocks.nodal.ravel(), state.force)
 
     def places(self) -> Ints:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""
@@ -117,7 +92,7 @@ class YieldingZone:
     def accounts(self, state: State) -> Accounts:
         """Return elastic energy and plastic work at the last force evaluation."""
         return {
-            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room[0])),
+            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room)),
             f"plastic_{self.body}": float(self.blocks.work.sum()),
         }
 

@@ -16,7 +16,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.calls import call_of
 from fem_impact.solid.hexmodes import (
     CORNERS,
     LANES,
@@ -29,7 +28,6 @@ from fem_impact.solid.hexmodes import (
 )
 from fem_impact.solid.kernels import inlined, kernel
 from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
-from fem_impact.solid.signals import add_one, tell
 
 Array = NDArray[np.float64]
 Counts = NDArray[np.uint32]
@@ -192,17 +190,12 @@ class Blocks(NamedTuple):
 
 
 @kernel
-def update(x, v, dt, z, G, K, law, rate, w, order, taken):  # type: ignore[no-untyped-def]
+def update(x, v, dt, z, G, K, law, rate, w):  # type: ignore[no-untyped-def]
     """Advance blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
 
-    ``w`` (ROWS * LANES,) is room to work in. Goes through the blocks in ``order`` until all are ``taken``.
-    Two threads may do so in opposite orders: each then has nearly the same blocks in every step, and their
-    data stay in its caches.
+    ``w`` (ROWS * LANES,) is work space.
     """
-    for i in range(len(order)):
-        if add_one(taken) >= len(z.dof):
-            return
-        b = order[i]
+    for b in range(len(z.dof)):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
         gather_modes(v, dt, z.dof[b], w[INCREMENT * LANES :])
         w[FORCE * LANES : (FORCE + 21) * LANES] = 0.0
@@ -220,19 +213,11 @@ def update(x, v, dt, z, G, K, law, rate, w, order, taken):  # type: ignore[no-un
 
 
 @kernel
-def update_later(times, x, v, z, G, K, law, rate, w, order, taken):  # type: ignore[no-untyped-def]
-    """Do what `update` does; the step is the first of two ``times``, known only then."""
-    update(x, v, times[0], z, G, K, law, rate, w, order, taken)
-
-
-@kernel
-def subtract_nodal(places, start, entries, nodal, taken, force):  # type: ignore[no-untyped-def]
+def subtract_nodal(places, start, entries, nodal, force):  # type: ignore[no-untyped-def]
     """Subtract the forces of all elements around each node, always in the same order.
 
-    ``entries`` are the places of the first components in the flat ``nodal``, in rows over nodes. From then on
-    no block is ``taken``.
+    ``entries`` are the places of the first components in the flat ``nodal``, in rows over nodes.
     """
-    tell(taken, 0)
     for i in range(len(places)):
         t, b, n = 0.0, 0.0, 0.0
         for p in range(start[i], start[i + 1]):
@@ -267,7 +252,3 @@ def elastic_energy(x, z, G, K, w):  # type: ignore[no-untyped-def]
         for g in range(8):
             _add_energy(sums, z.stress[b, g], z.weight[b, g], 4.0 * G)
     return sums.sum()
-
-
-Update = call_of(update_later, "Update")
-Subtraction = call_of(subtract_nodal, "Subtraction")

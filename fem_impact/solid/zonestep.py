@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse.linalg import LinearOperator
 
-from fem_impact.solid.signals import make_signals
 from fem_impact.solid.stable import gradient_squares, stable_step
 from fem_impact.solid.state import State
 
@@ -41,8 +40,7 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
     def force(motion: Array, share: float) -> Array:
         state = State(x + share * motion, motion, np.zeros_like(x), dt=share)
         trial.blocks.stress[:] = zone.blocks.stress
-        trial.find(state)
-        trial.collect(state)
+        trial.add(state)
         return state.force[used]
 
     rest = force(still, 0.0)
@@ -62,5 +60,4 @@ def _trial(zone: YieldingZone) -> YieldingZone:
     old = zone.blocks
     own = {name: np.empty_like(getattr(old, name)) for name in ("stress", "pressure", "nodal")}
     blocks = old._replace(flow=np.full_like(old.flow, np.inf), **own)
-    order, room = np.arange(len(old.dof), dtype=np.uint32), np.empty_like(zone.room)
-    return replace(zone, blocks=blocks, order=order, taken=make_signals(1)[0], room=room)
+    return replace(zone, blocks=blocks, room=np.empty_like(zone.room))

@@ -7,7 +7,6 @@ from math import pi
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 import meshes
 from fem_impact.solid.contact import PlaneContact
@@ -50,11 +49,6 @@ class Ceiling:
     wall: PlaneContact
     height: float
     bounces: int = 0
-
-    @property
-    def places(self) -> NDArray[np.int64]:
-        """Return the unknowns of the wall's nodes."""
-        return self.wall.nodes
 
     def resolve(self, state: State) -> None:
         """Turn the wall's own nodes upside down, let them touch, turn them back."""

@@ -50,10 +50,7 @@ class NodeSprings:
     def __post_init__(self) -> None:
         self.anchor = np.zeros((len(self.nodes), 2))
 
-    def find(self, state: State) -> None:
-        """Do nothing: few springs are quickly done."""
-
-    def collect(self, state: State) -> None:
+    def add(self, state: State) -> None:
         """Add the springs' forces; where friction gives way, the anchor follows."""
         place = state.x[self.nodes]
         pull, press, self.anchor = spring_force(place, self.anchor, self.stiffness, self.stick, self.f)

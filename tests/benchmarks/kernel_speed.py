@@ -2,21 +2,16 @@
 
 Run ``python tests/benchmarks/kernel_speed.py [SCENE]``; all rows come from one process, so the ratios mean
 something even on a busy machine. Parts of a scene are timed while it runs, for yielding depends on the
-increment: lower deciles of CPU time over steps in the contact. The last two rows are wall times of whole
-steps, by turns with one thread and with two, and need two free cores; below them stands what two threads gain
-that share nothing.
+increment: lower deciles of CPU time over steps in the contact.
 """
 
 from __future__ import annotations
 
-import copy
 import os
 import sys
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
-from threading import Thread
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
@@ -27,11 +22,7 @@ import meshes
 from fem_impact.effects import specify
 from fem_impact.scene import load
 from fem_impact.solid.build import build
-from fem_impact.solid.calls import perform
 from fem_impact.solid.elements import isotropic_stiffness
-from fem_impact.solid.helper import Helper
-from fem_impact.solid.items import add_force
-from fem_impact.solid.kernels import kernel
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.sparse import assemble, tie_operator
@@ -43,7 +34,7 @@ Row = tuple[str, int, float, float]  # part, elements, ns an element-step, over 
 ACROSS, SLICES = 12, 144  # cells across and along the bar
 LEDGER_EVERY = 20  # steps, as a scene's history
 IN_CONTACT = 60e-6  # s: elements yield, nodes touch
-STEPS, TURNS, REPEATS = 400, 100, 20
+STEPS = 400
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,10 +42,7 @@ class Timed:
     """A force under the clock."""
 
     body: str
-    find: Callable[[State], None]
-
-    def collect(self, state: State) -> None:
-        """Do nothing: that was done under the clock too."""
+    add: Callable[[State], None]
 
 
 def cpu_ns(work: Callable[[], object], repeats: int = 7, calls: int = 40) -> float:
@@ -123,7 +111,7 @@ def part_times(model: Model, state: State) -> dict[str, float]:
         return clocked
 
     forces = [
-        Timed(force.body, timed(f"{type(force).__name__} of the {force.body}", partial(add_force, force)))
+        Timed(force.body, timed(f"{type(force).__name__} of the {force.body}", force.add))
         for force in model.forces
     ]
     watched = replace(model, forces=forces)  # type: ignore[arg-type]
@@ -133,49 +121,6 @@ def part_times(model: Model, state: State) -> dict[str, float]:
         advance(watched, state)
         times.setdefault("whole step", []).append(time.process_time_ns() - begun)
     return {name: float(np.quantile(found, 0.1)) for name, found in times.items()}
-
-
-def thread_times(model: Model, state: State) -> list[float]:
-    """Return the lower decile of the wall time of a step, ns, with one thread and with two."""
-    times: tuple[list[float], list[float]] = [], []
-    with Helper(model, state) as helper:
-        for turn in range(2 * TURNS):
-            begun = time.perf_counter_ns()
-            for step in range(10):
-                evaluate(model, state, helper if turn % 2 else None)
-                # the last step of a turn leaves nothing begun
-                advance(model, state, helper if turn % 2 and step < 9 else None)
-            times[turn % 2].append((time.perf_counter_ns() - begun) / 10)
-    return [float(np.quantile(some, 0.1)) for some in times]
-
-
-@kernel
-def repeat(times, calls):  # type: ignore[no-untyped-def]
-    """Make calls again and again, without the interpreter."""
-    for _ in range(times):
-        perform(calls)
-
-
-def machine_gain(zone: YieldingZone, state: State) -> float:
-    """Return how much more two threads do than one, each updating a zone and state of its own: the limit."""
-    work = []
-    for _ in range(2):
-        apart, moving, nowhere = copy.deepcopy(zone), copy.deepcopy(state), np.zeros(len(state.x), dtype=bool)
-        (update,), _ = apart.finding(moving, np.array([state.dt, 0.0]), nowhere)
-        work.append((REPEATS, (update, apart.collecting(moving))))
-    repeat(*work[0])
-    alone, together = [], []
-    for _ in range(TURNS):
-        begun = time.perf_counter_ns()
-        repeat(*work[0])
-        alone.append(time.perf_counter_ns() - begun)
-        thread = Thread(target=repeat, args=work[1])
-        begun = time.perf_counter_ns()
-        thread.start()
-        repeat(*work[0])
-        thread.join()
-        together.append(time.perf_counter_ns() - begun)
-    return 2 * min(alone) / min(together)
 
 
 def scene_rows(model: Model, state: State) -> list[Row]:
@@ -191,9 +136,6 @@ def scene_rows(model: Model, state: State) -> list[Row]:
         count = whole[body] - yielding.get(body, 0) if body in whole else sum(whole.values())
         count = yielding[body] if name.startswith(YieldingZone.__name__) else count
         table.append((name, count, ns / count, ns / count / product))
-    every, (one, two) = sum(whole.values()), thread_times(model, state)
-    table.append(("whole step, one thread (wall)", every, one / every, one / every / product))
-    table.append((f"two threads (wall), gain {one / two:.2f}", every, two / every, two / every / product))
     return table
 
 
@@ -209,9 +151,6 @@ def main(name: str = "t5b") -> None:
     print(f"{'part':<42}{'elements':>9}{'ns/element-step':>17}{'of CSR':>8}")
     for part, count, ns, ratio in [*bar_rows(), *scene_rows(model, state)]:
         print(f"{part:<42}{count:9d}{ns:17.1f}{ratio:8.2f}")
-    if model.zones:
-        gain = machine_gain(model.zones[-1], state)
-        print(f"two threads that share nothing gain {gain:.2f} on this machine at this time")
 
 
 if __name__ == "__main__":

@@ -41,7 +41,6 @@ def outcome(model, name, mesh, out, place=0.0):
         changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={size:.9g} mm", "save.frames=0"]
         changes += [f"effects={EFFECTS}", f"accuracy.grid_shift={place}"] if model == PRESENT else []
         words = [word for change in changes for word in ("--set", change)]
-        words += ["--threads", "1"] if model == PRESENT else []
         command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(folder)]
         alone = {"PYTHONPATH": str(model), "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
         subprocess.run(command, cwd=model, env=os.environ | alone, check=True, stdout=subprocess.DEVNULL)

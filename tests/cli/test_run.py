@@ -37,16 +37,17 @@ def test_changes_are_applied_and_filed_apart(cli, stand):
     assert options["out"] == Path("results") / f"t5b-{scene.digest()[:8]}"
 
 
-@pytest.mark.parametrize(
-    ("asked", "idle", "threads"),
-    [((), 1.8, 2), ((), 1.2, 1), (("--threads", "2"), 0.0, 2), (("--threads", "1"), 8.0, 1)],
-)
-def test_a_second_thread_where_it_is_asked_for_or_two_cores_are_idle(
-    cli, stand, monkeypatch, asked, idle, threads
-):
-    monkeypatch.setattr("fem_impact.cli_run.idle_cores", lambda: idle)
-    cli("run", "t5b", *asked)
-    assert stand.calls[0][2]["threads"] == threads
+def test_a_target_runs_side_by_side_on_the_cores_there_are(cli, stand, monkeypatch):
+    calls = []
+
+    def to_target(scene, **options):
+        calls.append((scene.accuracy.target, options["workers"]))
+        return stand.an_outcome()
+
+    monkeypatch.setattr("fem_impact.cli_run.cores", lambda: 3)
+    monkeypatch.setattr("fem_impact.cost.simulate_to_target", to_target)
+    assert cli("run", "t5b", "--set", "accuracy=20 %", "--quiet")[0] == 0
+    assert calls == [(0.2, 3)] and not stand.calls
 
 
 def test_effects_may_be_listed_with_commas(cli, stand):

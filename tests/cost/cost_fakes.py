@@ -12,7 +12,7 @@ TIP = 0.4e-3
 OFF = {"rigid": 0.15, "modal": 0.1}  # relative error of the reduced fidelities
 
 
-def run(scene, fidelity="solid", out=None, progress=None, resume=False, checkpoint_s=0.0, threads=1):
+def run(scene, fidelity="solid", out=None, progress=None, resume=False, checkpoint_s=0.0):
     """A record as if it had been computed; leaving friction out doubles mu."""
     kinds = {"text": "text", "texts": [], "flag": True, "count": 3, "number": 0.25}
     values = {key.name: kinds[key.kind] for key in KEYS if key.kind in kinds}

@@ -137,10 +137,10 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     assert (tmp_path / "outcome.json").exists()
 
 
-def test_two_threads_run_two_meshes_side_by_side(costs, tmp_path):
+def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
     scene = asking(0.05)
-    one, two = (achieve.simulate_to_target(scene, threads=threads) for threads in (1, 2))
-    assert plan(scene, threads=2).expected_wall_s < plan(scene).expected_wall_s
+    one, two = (achieve.simulate_to_target(scene, workers=workers) for workers in (1, 2))
+    assert plan(scene, workers=2).expected_wall_s < plan(scene).expected_wall_s
     assert two["achieved_wall_s"] < one["achieved_wall_s"]
     assert two["extrapolated"] == one["extrapolated"]
     assert two["achieved_error"] == one["achieved_error"]

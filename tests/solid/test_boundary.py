@@ -14,7 +14,6 @@ from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.elements import isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
-from fem_impact.solid.work import whole
 from fem_impact.verify.reference.radiation import radiation_resistance
 from meshes import OUTER
 
@@ -113,7 +112,7 @@ class Column:
             forces=[self.block],
             impulses=[self.pots] if damped else [],
             inverse_mass=inverse,
-            work=whole([self.block], Hanging.of([(mesh.tie, places)]), size),
+            hanging=Hanging.of([(mesh.tie, places)]),
         )
         self.mass, self.up, self.length = mass, places[:, 2], cells * h
         self.state = shapes.at_rest(mesh.points.ravel())
@@ -174,6 +173,6 @@ def test_dashpots_never_add_energy_however_long_the_step():
 def test_weight_and_its_potential():
     weight = Weight(np.array([-3.0, 0.0, -4.0]), np.zeros(3))
     state = shapes.at_rest(np.array([0.1, 0.2, 0.3, 9.0]))
-    weight.collect(state)
+    weight.add(state)
     assert state.force == pytest.approx([-3.0, 0.0, -4.0, 0.0])
     assert weight.accounts(state)["gravity"] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)

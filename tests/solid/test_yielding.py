@@ -9,7 +9,6 @@ import solid_shapes as shapes
 from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
 from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
 from fem_impact.solid.hexmodes import LANES, dummy_element
-from fem_impact.solid.items import add_force
 from fem_impact.solid.plastic_return import RETURN_ROWS, _hardened_increment, return_map
 from fem_impact.solid.yielding import YieldingZone
 
@@ -44,7 +43,7 @@ class Rig:
         self.state.v[: step.size] = step / DT
         self.state.x[: step.size] += step
         self.state.force[:] = 0.0
-        add_force(self.zone, self.state)
+        self.zone.add(self.state)
         now = -self.state.force[self.places]
         self.work += 0.5 * float(((self.force + now) * step.reshape(-1, 3)).sum())
         self.force = now

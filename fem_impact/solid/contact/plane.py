@@ -40,11 +40,6 @@ class PlaneContact:
     f: float
     book: ContactBook = field(default_factory=ContactBook)
 
-    @property
-    def places(self) -> Ints:
-        """Return the unknowns of the nodes."""
-        return self.nodes
-
     def resolve(self, state: State) -> None:
         """Apply this step's impulses."""
         record = self.book.step

@@ -86,11 +86,6 @@ class SurfaceContact:
             np.zeros((len(barrier.places), 3)),
         )
 
-    @property
-    def places(self) -> Ints:
-        """Return the unknowns (k, 3) of both patches."""
-        return np.concatenate([self.rod.places, self.barrier.places])
-
     def resolve(self, state: State) -> None:
         """Find this step's contacts, solve their impulses, book the work."""
         motion = Motion(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
