@@ -30,7 +30,7 @@ class SkinWatch:
     moving: ClassVar[tuple[str, ...]] = ("lowest",)
 
     def __init__(self, model: Model) -> None:
-        contact, mesh = model.impulses[-1], model.geometry.rod.mesh
+        contact, mesh = model.contact, model.geometry.rod.mesh
         skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
         touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
         self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]

@@ -56,7 +56,7 @@ class HeatWatch:
     pushed: float = 0.0
 
     def __post_init__(self) -> None:
-        contact = self.model.impulses[-1]
+        contact = self.model.contact
         if isinstance(contact, SurfaceContact):
             self.surface = PairSurface(contact, self.model)
         elif isinstance(contact, PlaneContact):

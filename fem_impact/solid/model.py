@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.modes import MassStiffness
-from fem_impact.solid.contact import ContactBook
+from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact
+from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.items import Account, Force, Impulse
 from fem_impact.solid.layout import Layout
@@ -20,6 +21,7 @@ from fem_impact.solid.sparse import Hanging
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
+    from fem_impact.solid.rigid_rest import ElasticNose
     from fem_impact.solid.yielding import YieldingZone
 
 Array = NDArray[np.float64]
@@ -36,9 +38,10 @@ class Model:
     mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
     drawn : where the rod's masses sit
     forces, impulses : items in the order in which they act
-    hanging : ties of the locally refined meshes
+    rod : the rod's linear part, one of the forces
     zones : the yielding zones among the forces
-    book : record of the contact
+    contact : one of the impulses, or None where nothing touches
+    hanging : ties of the locally refined meshes
     rod_stiffness : elastic stiffness of the whole half rod over its masses, N/m; None for a rod that cannot
         vibrate
     steps : stable step of each body with its safety factor, s
@@ -52,9 +55,10 @@ class Model:
     drawn: MassPoints
     forces: Sequence[Force]
     impulses: Sequence[Impulse]
-    hanging: Hanging
+    rod: ElasticRod | ElasticNose
     zones: Sequence[YieldingZone]
-    book: ContactBook
+    contact: PlaneContact | SurfaceContact | None
+    hanging: Hanging
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
     start: tuple[Array, Array]
@@ -63,6 +67,11 @@ class Model:
     def step(self) -> float:
         """Return the step, s, that no body forbids."""
         return min(self.steps.values())
+
+    @property
+    def book(self) -> ContactBook:
+        """Return the record of the contact, an empty one without contact."""
+        return self.contact.book if self.contact else ContactBook()
 
     def nodes(self, vector: Array) -> Array:
         """Return displacements or velocities of the nodes from those of the masses, a flat vector."""

@@ -86,7 +86,7 @@ class Separation:
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
-        ahead, contact = self.view.flight(state, self.model), self.model.impulses[-1]
+        ahead, contact = self.view.flight(state, self.model), self.model.contact
         t = np.arange(0.0, until, SAMPLE)
         lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
         if not isinstance(contact, SurfaceContact):

@@ -17,10 +17,8 @@ from fem_impact.solid.state import State
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
     from fem_impact.solid.damping import ModalDamping
-    from fem_impact.solid.elastic import ElasticRod
     from fem_impact.solid.heatwatch import HeatWatch
     from fem_impact.solid.model import Model
-    from fem_impact.solid.rigid_rest import ElasticNose
 
 REPEATS = 5
 # classes of items, by name so that none is imported in vain, and the effect that they are; the nose is there
@@ -47,14 +45,14 @@ def run_time_shares(
     shares: dict[str, float] = {}
     barrier = next(name for name in scene.active if name in BARRIERS)
     acts: list[tuple[Account, Callable[[State], None]]] = [(item, item.add) for item in model.forces]
-    acts += [(item, item.resolve) for item in model.impulses[:-1]]
+    acts += [(item, item.resolve) for item in model.impulses if item is not model.contact]
     for item, act in acts:
         name = _effect(item, model, barrier)
         every = cast("ModalDamping", item).every if name == "material-damping" else 1
         shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / every / step_time
     if heat is not None:
         shares["contact-heating"] = _shortest(lambda: heat.observe(still)) / step_time
-    rod = cast("ElasticRod | ElasticNose", model.forces[0])
+    rod = model.rod
     if isinstance(rod.frame, TurningFrame):
         n = len(rod.d)
         turning = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))

@@ -15,7 +15,7 @@ from fem_impact.modes import MassStiffness, RigidMotion, rigid_motion
 from fem_impact.solid import build
 from fem_impact.solid.body import Body as Meshed
 from fem_impact.solid.body import make_body, nose_and_whole, slices_of
-from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact
+from fem_impact.solid.contact import PlaneContact, SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.elements import Kind
 from fem_impact.solid.frame import FixedFrame, TurningFrame
@@ -140,9 +140,10 @@ def body_model(body: Body) -> Model:
         drawn=drawn,
         forces=forces,
         impulses=[*impulses, *([contact] if contact else [])],
-        hanging=Hanging.of([(part.mesh.tie, part.places) for part in parts]),
+        rod=linear,
         zones=zones,
-        book=contact.book if contact else ContactBook(),
+        contact=contact,
+        hanging=Hanging.of([(part.mesh.tie, part.places) for part in parts]),
         rod_stiffness=stiffness,
         steps=steps,
         start=(x, v),

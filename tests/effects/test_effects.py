@@ -50,8 +50,8 @@ def test_bare_model_has_nothing_to_spare():
     assert made.zones == []
     assert made.geometry.barrier is None
     assert len(made.layout.barrier) == 0
-    assert isinstance(made.forces[0].frame, FixedFrame)
-    assert made.impulses[0].f == 0.0
+    assert isinstance(made.rod.frame, FixedFrame)
+    assert made.contact.f == 0.0
     assert made.layout.size == made.layout.free_size + 3 * made.geometry.rod.mesh.is_hanging.sum() + 24
 
 
@@ -65,12 +65,12 @@ def test_an_effect_adds_its_item_alone(name, item):
 
 
 def test_friction_reaches_the_contact():
-    assert model("vibration", "friction", "barrier-rigid").impulses[0].f == load("t5b").surface.friction
+    assert model("vibration", "friction", "barrier-rigid").contact.f == load("t5b").surface.friction
 
 
 def test_large_rotation_changes_the_frame_alone():
     made = model("vibration", "barrier-rigid", "large-rotation")
-    assert isinstance(made.forces[0].frame, TurningFrame)
+    assert isinstance(made.rod.frame, TurningFrame)
     assert kinds(made.forces) == [ElasticRod]
 
 

@@ -178,7 +178,7 @@ def test_gradients_of_a_cube():
 def _in_crater(V_n, V_t, swing=0.0, barrier="barrier-elastic"):
     """Rod 40 um deep in a dent of the barrier, 50 um deep and steep-walled, with a made-up flight."""
     model = scenes.model("vibration", "friction", barrier, length=0.08)
-    state, contact = model.initial_state(), model.impulses[-1]
+    state, contact = model.initial_state(), model.contact
     heights = contact.barrier.places[:, 2]
     radius = np.hypot(state.x[contact.barrier.places[:, 0]], state.x[contact.barrier.places[:, 1]])
     state.x[heights[radius < 2.2e-3]] -= 50e-6
@@ -201,8 +201,8 @@ def _in_crater(V_n, V_t, swing=0.0, barrier="barrier-elastic"):
 
 def test_clearance_is_the_height_between_the_surfaces():
     model, state, _ = _in_crater(0.5, 0.0)
-    assert model.impulses[-1].clearance(state.x) == pytest.approx(10e-6, abs=1e-9)
-    assert model.impulses[-1].clearance(model.start[0]) == pytest.approx(START_GAP, abs=1e-9)
+    assert model.contact.clearance(state.x) == pytest.approx(10e-6, abs=1e-9)
+    assert model.contact.clearance(model.start[0]) == pytest.approx(START_GAP, abs=1e-9)
 
 
 @pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])

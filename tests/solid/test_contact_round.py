@@ -92,9 +92,9 @@ def test_a_level_normal_is_not_bent_and_does_not_spoil_the_sag():
 def test_a_barrier_that_flows_conforms_and_an_elastic_one_does_not():
     flowing, elastic = (scenes.model("vibration", b) for b in ("barrier-elastoplastic", "barrier-elastic"))
     assert flowing.geometry.conforming and not elastic.geometry.conforming
-    contact = elastic.impulses[-1]
+    contact = elastic.contact
     assert contact.play == 0.0 and not contact.rod.bend.any() and contact.rod.sag == 0.0
-    contact = flowing.impulses[-1]
+    contact = flowing.contact
     assert contact.play == 0.05 * flowing.geometry.tip_size and contact.rod.sag > 0
     assert not contact.barrier.bend.any()
 
@@ -113,7 +113,7 @@ def test_a_sharp_edge_sinks_no_deeper_than_the_play():
     scene = scenes.scene(*FLOWS, length=0.08, v_n=-4.0, v_t=-4.0, sharp=True)
     scene = scene.replace("accuracy.grid_shift", 0.25)  # the edge lands beside a row
     model = build(scene, specify(scene))
-    state, contact = model.initial_state(), model.impulses[-1]
+    state, contact = model.initial_state(), model.contact
     assert (contact.rod.bend == 0).any()
     deepest, speed = 0.0, 4.0
     while state.time < 60e-6:

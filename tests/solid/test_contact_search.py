@@ -172,7 +172,7 @@ def test_normals_of_a_bowl_point_to_its_centre_and_stay_in_the_symmetry_plane():
 
 def _model_contact():
     model = solid_scenes.model("vibration", "friction", "barrier-elastic", tip=0.8e-3, across=6)
-    contact = model.impulses[-1]
+    contact = model.contact
     assert isinstance(contact, SurfaceContact)
     return model, contact
 

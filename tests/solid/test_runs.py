@@ -204,7 +204,7 @@ def test_first_contact_comes_at_gap_over_speed(barrier, angle):
     assert model.geometry.rod_points[lowest, 1] == 0.0
     gap = model.geometry.rod_points[lowest, 2]
     if barrier == "barrier-elastoplastic":  # its nodes lie up to half a cell beside the lowest point
-        gap = model.impulses[-1].clearance(state.x)
+        gap = model.contact.clearance(state.x)
         assert START_GAP <= gap < START_GAP + (model.geometry.tip_size / 2) ** 2 / (2 * 3e-3)
     else:
         assert gap == pytest.approx(START_GAP, rel=1e-9)
@@ -219,7 +219,7 @@ def test_first_contact_comes_at_gap_over_speed(barrier, angle):
 def test_nodes_on_the_symmetry_plane_stay_on_the_barrier(barrier):
     """Near the peak no rod node of the patch lies below the block's surface, on the plane b = 0 above all."""
     model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-2.0, v_t=-2.0)
-    state, contact = model.initial_state(), model.impulses[-1]
+    state, contact = model.initial_state(), model.contact
     while state.time < 30e-6:
         evaluate(model, state)
         advance(model, state)
@@ -348,7 +348,7 @@ def test_a_run_out_of_time_says_so():
 
 def test_rigid_barrier_has_plane_contact_over_the_whole_skin():
     model = scenes.model(*PLANE, length=0.08)
-    contact = model.impulses[-1]
+    contact = model.contact
     assert isinstance(contact, PlaneContact)
     assert len(model.impulses) == 1
 
@@ -365,7 +365,7 @@ def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):
     mesh = model.geometry.rod.mesh
     skin = np.unique(mesh.faces_with(SKIN))
     heights = model.layout.rod[skin, 2]
-    others = heights[~np.isin(heights, model.impulses[-1].rod.places[:, 2])]
+    others = heights[~np.isin(heights, model.contact.rod.places[:, 2])]
     state, lowest = model.initial_state(), 1.0
     while state.time < 120e-6:
         evaluate(model, state)
