@@ -50,7 +50,7 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
         "solid",
         finished,
         open_ledger or result.reason,
-        warnings=[*result.warnings, *_ringing(result), *neglected(scene), *coarse_tip(scene)],
+        warnings=[*_doubts(result), *neglected(scene), *coarse_tip(scene)],
     )
     values["effect_choices"] = [_told(choice, result.shares) for choice in choices(scene)]
     values |= _motion(scene, result)
@@ -76,6 +76,10 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     return explained(values, reasons)
 
 
+def _doubts(result: SolidResult) -> list[str]:
+    return [*result.warnings, *_ringing(result), *_unresolved(result)]
+
+
 def _ringing(result: SolidResult) -> list[str]:
     """Tell of vibration above the modes where it is not small beside theirs."""
     vibration, E_0 = result.flight.energy, result.E_0
@@ -89,7 +93,18 @@ def _ringing(result: SolidResult) -> list[str]:
     ]
 
 
-def _told(choice: Choice, shares: Mapping[str, float]) -> dict[str, Any]:
+def _unresolved(result: SolidResult) -> list[str]:
+    """Tell which effects' shares of the run time are not known, and why."""
+    names = [name for name, share in result.shares.items() if share is None]
+    if not names:
+        return []
+    return [
+        f"The share of the run time of {', '.join(names)} is not known: it was too short for the processor's "
+        "clock beside the rest."
+    ]
+
+
+def _told(choice: Choice, shares: Mapping[str, float | None]) -> dict[str, Any]:
     """Return a choice with the measured share of its own items, where it has any, for the expected one."""
     told = choice.told()
     return told | {"share": shares.get(choice.name, told["share"])}

@@ -150,7 +150,7 @@ def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
 
 
 def elastic_block(
-    body: Body, layout: Layout, x: Array
+    body: Body, layout: Layout, x: Array, effect: str = "barrier-elastic"
 ) -> tuple[ElasticBlock, sp.csr_matrix, tuple[sp.dia_matrix, Array]]:
     """Return the block's linear part, the stiffness of all its cells, and the half-space around it.
 
@@ -168,7 +168,7 @@ def elastic_block(
     linear = stiffness_of(body, ~body.yields, n, place.start)
     K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
-    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place)
+    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
     return block, linear + stiffness_of(body, body.yields, n, place.start), (springs, pots)
 
 
@@ -183,7 +183,8 @@ def _block(
     """Return the items of a meshed barrier and its step; nothing without one."""
     if not barrier:
         return [], [], {}
-    block, whole, outside = elastic_block(barrier[0], layout, x)
+    effect = "barrier-elastoplastic" if spec.barrier_law else "barrier-elastic"
+    block, whole, outside = elastic_block(barrier[0], layout, x, effect)
     step = stable_step(whole, inverse_mass[layout.barrier_slice], share)
     pots = [dashpots(barrier[0], layout, inverse_mass, whole, outside)] if spec.radiating else []
     return [block], pots, {"barrier": step}

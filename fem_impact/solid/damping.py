@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from fem_impact.modes import RodModes
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
@@ -34,6 +33,8 @@ class ModalDamping:
     taken : energy, J, of the half model; last : time of the last application, s
     """
 
+    effect: ClassVar[str] = "material-damping"
+    accounts: ClassVar[tuple[str, ...]] = ("damping",)
     moving: ClassVar[tuple[str, ...]] = ("taken", "last")
     modes: RodModes
     weighted: Array
@@ -61,9 +62,7 @@ class ModalDamping:
         return cls(modes, weighted, frame, inverse_mass, places, loss, every)
 
     def resolve(self, state: State) -> None:
-        """Damp every few steps and book the work with the mean of old and new velocity."""
-        if state.step % self.every:
-            return
+        """Damp and book the work with the mean of old and new velocity."""
         n = len(self.modes.mass)
         kicked = self._turned(state.v[:n], -self.frame.angle)
         pushed = self._turned(self.inverse_mass * state.force[:n], -self.frame.angle)
@@ -74,9 +73,9 @@ class ModalDamping:
         self.taken += 0.5 * float(lost @ (old + q - lost))
         state.v[:n] -= self._turned(self.modes.shape @ lost, self.frame.angle)
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the energy taken so far."""
-        return {"damping": self.taken}
+        return (self.taken,)
 
     def _turned(self, v: Array, angle: float) -> Array:
         """Return a vector of the rod turned from t towards n."""

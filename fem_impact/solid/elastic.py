@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.slices import SliceOperator
@@ -25,6 +24,8 @@ class ElasticRod:
     """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
 
     body: ClassVar[str] = "rod"
+    effect: ClassVar[str] = "vibration"
+    accounts: ClassVar[tuple[str, ...]] = ("strain_rod",)
     moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
     slices: SliceOperator
     drawn: MassPoints
@@ -48,34 +49,39 @@ class ElasticRod:
         self.drawn.gather(y)
         self.frame.add_force(self.d, self.y, state.force[:n])
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the strain energy at the last force evaluation."""
-        return {"strain_rod": 0.5 * float(self.d @ self.y)}
+        return (0.5 * float(self.d @ self.y),)
 
 
 @dataclass(slots=True)
 class ElasticBlock:
-    """The barrier's linear part at ``place`` of the flat vector."""
+    """The barrier's linear part at ``place`` of the flat vector; ``effect`` is the barrier's."""
 
     body: ClassVar[str] = "barrier"
+    accounts: ClassVar[tuple[str, ...]] = ("strain_barrier",)
     moving: ClassVar[tuple[str, ...]] = ()
     stiffness: NodeProduct
     place: slice
+    effect: str = "barrier-elastic"
 
     def add(self, state: State) -> None:
         """Add the elastic forces of block and boundary springs."""
         self.stiffness.multiply(state.x[self.place])
         self.stiffness.add_to(state.force[self.place], -1.0)
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the strain energy at the last force evaluation."""
-        return {"strain_barrier": self.stiffness.energy}
+        return (self.stiffness.energy,)
 
 
 @dataclass(slots=True)
 class Dashpots:
     """Viscous boundary: takes radiated waves out, implicitly, so that it never limits the step."""
 
+    effect: ClassVar[str] = "radiation"
+    accounts: ClassVar[tuple[str, ...]] = ("radiated",)
+    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("radiated",)
     places: Ints
     damping: Array
@@ -92,9 +98,9 @@ class Dashpots:
         self.radiated += state.kick * float(self.damping @ (mean * mean))
         state.v[self.places] = new
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the energy radiated so far."""
-        return {"radiated": self.radiated}
+        return (self.radiated,)
 
 
 @dataclass(slots=True)
@@ -105,6 +111,8 @@ class Weight:
     """
 
     body: ClassVar[str] = "rod"
+    effect: ClassVar[str] = "gravity"
+    accounts: ClassVar[tuple[str, ...]] = ("gravity",)
     moving: ClassVar[tuple[str, ...]] = ()
     weight: Array
     reference: Array
@@ -113,6 +121,6 @@ class Weight:
         """Add the weight."""
         state.force[: len(self.weight)] += self.weight
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the potential energy since the start."""
-        return {"gravity": -float(self.weight @ (state.x[: len(self.weight)] - self.reference))}
+        return (-float(self.weight @ (state.x[: len(self.weight)] - self.reference)),)

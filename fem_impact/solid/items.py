@@ -9,23 +9,31 @@ from typing import ClassVar, Protocol
 
 from fem_impact.solid.state import State
 
-Accounts = dict[str, float]
 
-
-class Account(Protocol):
-    """Anything that holds energy or has taken energy away.
+class Item(Protocol):
+    """A part of the model that may hold energy or take it away.
 
     ``moving`` names what a checkpoint must keep, see :mod:`~fem_impact.solid.moving`.
     """
 
     moving: ClassVar[tuple[str, ...]]
 
-    def accounts(self, state: State) -> Accounts:
-        """Return half-model energies by ledger name, J."""
+    @property
+    def effect(self) -> str:
+        """Return the effect whose run time it counts to, or ``nose`` or ``contact``, which are no effects."""
+        ...
+
+    @property
+    def accounts(self) -> tuple[str, ...]:
+        """Return the ledger's accounts that it books in; a name that no other item has is a new account."""
+        ...
+
+    def energies(self, state: State) -> tuple[float, ...]:
+        """Return the half model's energy in each of its ``accounts``, J."""
         ...
 
 
-class Force(Account, Protocol):
+class Force(Item, Protocol):
     """An item that adds forces at the present positions; ``body`` is rod or barrier."""
 
     @property
@@ -38,8 +46,13 @@ class Force(Account, Protocol):
         ...
 
 
-class Impulse(Account, Protocol):
+class Impulse(Item, Protocol):
     """An item that changes the kicked velocities: contact, dashpots."""
+
+    @property
+    def every(self) -> int:
+        """Return at every how many steps it acts."""
+        ...
 
     def resolve(self, state: State) -> None:
         """Change ``state.v`` and book the work done with the mean of old and new velocity."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import os
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -63,13 +64,30 @@ def compiled_before(name: str = "yielding_kernel.update") -> bool:
     return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob(f"{name}-*.nbi"))
 
 
-_COMPILER = event.TimingListener()
-event.register("numba:compile", _COMPILER)
+class _Compiling(event.Listener):
+    """Wall and processor time of all compilations so far, s; one within another counts once."""
+
+    def __init__(self) -> None:
+        self.wall, self.cpu = 0.0, 0.0
+        self._depth = 0
+
+    def on_start(self, _: object) -> None:
+        """Begin to measure."""
+        if self._depth == 0:
+            self._begun = time.perf_counter(), time.process_time()
+        self._depth += 1
+
+    def on_end(self, _: object) -> None:
+        """Add what has passed."""
+        self._depth -= 1
+        if self._depth == 0:
+            wall, cpu = self._begun
+            self.wall += time.perf_counter() - wall
+            self.cpu += time.process_time() - cpu
 
 
-def compile_seconds() -> float:
-    """Return the time, s, that this process has spent on compiling kernels; the cache costs none."""
-    return float(_COMPILER.duration) if _COMPILER.done else 0.0
+COMPILING = _Compiling()
+event.register("numba:compile", COMPILING)
 
 
 def kernel(function: F) -> F:

@@ -13,11 +13,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.items import Account
+from fem_impact.solid.items import Item
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
 
+# the accounts of every ledger, 0 where the effect is off; own items may add others
 ACCOUNTS = (
     "kinetic_rod",
     "strain_rod",
@@ -43,23 +44,29 @@ class Ledger:
     mass : (size,) lumped masses, kg, of the half model (0 where nothing may move)
     rod : the rod's part of the flat vectors
     items : everything with accounts
-    start : E_0, J
+    names : all accounts, the usual ones first
+    start : E_0, J; worst : largest residual so far, J
     """
 
     mass: Array
     rod: slice
-    items: Sequence[Account]
+    items: Sequence[Item]
+    names: tuple[str, ...] = field(init=False)
     start: float = 0.0
-    worst: float = field(default=0.0)
+    worst: float = 0.0
+
+    def __post_init__(self) -> None:
+        own = (name for item in self.items for name in item.accounts)
+        self.names = tuple(dict.fromkeys((*ACCOUNTS, *own)))
 
     def sample(self, state: State) -> dict[str, float]:
         """Return all accounts (missing effects are 0) and the residual, J."""
-        totals = dict.fromkeys(ACCOUNTS, 0.0)
+        totals = dict.fromkeys(self.names, 0.0)
         whole = self._kinetic(state, slice(None))
         totals["kinetic_rod"] = self._kinetic(state, self.rod)
         totals["kinetic_barrier"] = whole - totals["kinetic_rod"]
         for item in self.items:
-            for name, value in item.accounts(state).items():
+            for name, value in zip(item.accounts, item.energies(state), strict=True):
                 totals[name] += value
         totals = {name: HALVES * value for name, value in totals.items()}
         total = sum(totals.values())

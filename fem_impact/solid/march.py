@@ -33,7 +33,8 @@ def advance(model: Model, state: State) -> None:
     state.kick = 0.5 * (state.dt + state.dt_next)
     kick(state.v, state.kick, model.inverse_mass, state.force)
     for item in model.impulses:
-        item.resolve(state)
+        if state.step % item.every == 0:
+            item.resolve(state)
     model.hanging.expand(state.v)
     drift(state.x, state.dt_next, state.v)
     state.dt = state.dt_next

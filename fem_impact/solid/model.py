@@ -13,7 +13,7 @@ from fem_impact.modes import MassStiffness
 from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.geometry import Geometry
-from fem_impact.solid.items import Account, Force, Impulse
+from fem_impact.solid.items import Force, Impulse, Item
 from fem_impact.solid.layout import Layout
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.masspoints import MassPoints
@@ -93,6 +93,6 @@ class Model:
 
     def ledger(self) -> Ledger:
         """Return an empty ledger over all items."""
-        items: list[Account] = [*self.forces, *self.impulses]
+        items: list[Item] = [*self.forces, *self.impulses]
         moved = np.where(self.inverse_mass > 0, self.mass, 0.0)
         return Ledger(moved, slice(0, self.layout.rod_size), items)

@@ -14,7 +14,7 @@ from fem_impact.output import FieldWriter, HistoryWriter
 from fem_impact.progress import Progress
 from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.fields import Fields
-from fem_impact.solid.ledger import ACCOUNTS, Ledger
+from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.state import State
@@ -24,9 +24,13 @@ Array = NDArray[np.float64]
 GROWTH = 1e-2  # of E_0, made from nothing: the run is unstable and stops
 
 TAKEN = {"friction", "closing", "radiated", "damping"}
-COLUMNS = {name: f"{'W' if name in TAKEN else 'E'}_{name}_J" for name in ACCOUNTS} | {
-    "residual": "residual_J"
-}
+
+
+def history_column(account: str) -> str:
+    """Return the column of history.csv that holds an account or the residual."""
+    if account == "residual":
+        return "residual_J"
+    return f"{'W' if account in TAKEN else 'E'}_{account}_J"
 
 
 @dataclass(slots=True)
@@ -49,7 +53,7 @@ class Watch:
 
     @sampled.setter
     def sampled(self, values: Array) -> None:
-        self.accounts = dict(zip((*ACCOUNTS, "residual"), map(float, values), strict=True))
+        self.accounts = dict(zip((*self.ledger.names, "residual"), map(float, values), strict=True))
 
     def observe(self, state: State) -> bool:
         """Sample."""
@@ -85,7 +89,7 @@ class History:
         """Append one row."""
         motion = self.view.rigid(state)
         force_t, force_n = self._force(state)
-        row: dict[str, float] = {COLUMNS[k]: v for k, v in self.watch.accounts.items()}
+        row: dict[str, float] = {history_column(k): v for k, v in self.watch.accounts.items()}
         row |= {"time_s": state.time, "force_n_N": force_n, "force_t_N": force_t}
         row |= {"contact_nodes": int(self.model.book.step[ACTIVE])}
         row |= {"V_n_m_per_s": motion.V_n, "V_t_m_per_s": motion.V_t, "Omega_rad_per_s": motion.Omega}

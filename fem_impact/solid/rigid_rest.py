@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
@@ -45,6 +44,8 @@ class ElasticNose:
     """The linear part of a nose that ends in a rigid rest."""
 
     body: ClassVar[str] = "rod"
+    effect: ClassVar[str] = "nose"
+    accounts: ClassVar[tuple[str, ...]] = ("strain_rod",)
     moving: ClassVar[tuple[str, ...]] = ("frame.work",)  # its angle
     nose: NodeProduct
     frame: FixedFrame | TurningFrame
@@ -60,9 +61,9 @@ class ElasticNose:
         self.nose.add_to(self.y)
         self.frame.add_force(self.d, self.y, state.force[:n])
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return the strain energy at the last force evaluation."""
-        return {"strain_rod": 0.5 * float(self.d @ self.y)}
+        return (0.5 * float(self.d @ self.y),)
 
 
 @dataclass(slots=True)
@@ -74,6 +75,9 @@ class RigidRest:
     places : (k, 3) int64, unknowns of the nodes; mass : (k,) kg
     """
 
+    effect: ClassVar[str] = "nose"
+    accounts: ClassVar[tuple[str, ...]] = ()
+    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ()
     places: Ints
     mass: Array
@@ -82,9 +86,9 @@ class RigidRest:
         """Replace the kicked velocities by the rigid motion of equal momentum."""
         hold(self.places, self.mass, state.x, state.v, state.dt_next)
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return nothing: the constraint does no work."""
-        return {}
+        return ()
 
 
 @kernel

@@ -61,7 +61,7 @@ class SolidResult:
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodView`, J, or None
     heat : the contact's patch and friction power over time, or None
-    shares : share of the run time of the effects that have items of their own
+    shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
 
     scene: Scene
@@ -82,7 +82,7 @@ class SolidResult:
     cost: Cost
     warnings: tuple[str, ...]
     heat: HeatWatch | None = None
-    shares: dict[str, float] = field(default_factory=dict)
+    shares: dict[str, float | None] = field(default_factory=dict)
 
 
 def solve(
@@ -139,7 +139,7 @@ def solve(
     cost = Cost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
     result = _result(scene, model, view, state, looking, check, cost)
     step_time = result.cost.cpu / max(result.steps, 1)
-    return replace(result, shares=run_time_shares(scene, model, state, step_time, looking.heat))
+    return replace(result, shares=run_time_shares(model, state, step_time, looking.heat))
 
 
 def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch) -> Meter:

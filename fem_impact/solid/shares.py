@@ -4,75 +4,61 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from time import perf_counter
-from typing import TYPE_CHECKING, cast
+from time import process_time
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from fem_impact.scene import BARRIERS
 from fem_impact.solid.frame import TurningFrame
-from fem_impact.solid.items import Account
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
-    from fem_impact.solid.damping import ModalDamping
     from fem_impact.solid.heatwatch import HeatWatch
     from fem_impact.solid.model import Model
 
 REPEATS = 5
-# classes of items, by name so that none is imported in vain, and the effect that they are; the nose is there
-# without any effect
-SINGLE = {
-    "ElasticRod": "vibration",
-    "ElasticNose": "nose",
-    "RigidRest": "nose",
-    "Weight": "gravity",
-    "Dashpots": "radiation",
-    "ModalDamping": "material-damping",
-}
 
 
 def run_time_shares(
-    scene: Scene, model: Model, state: State, step_time: float, heat: HeatWatch | None = None
-) -> dict[str, float]:
+    model: Model, state: State, step_time: float, heat: HeatWatch | None = None
+) -> dict[str, float | None]:
     """Return the share of the mean step, ``step_time`` in s, that each effect's own items take.
 
-    Friction and rate hardening have no items of their own: they are in the contact's and the zones' time.
-    The state of the items is used up; call it last.
+    It is None where the processor's clock does not resolve it. Friction and rate hardening have no items of
+    their own: they are in the contact's and the zones' time. The state of the items is used up; call it last.
     """
     still = State(state.x.copy(), state.v.copy(), state.force.copy(), dt=0.0, kick=model.step)
-    shares: dict[str, float] = {}
-    barrier = next(name for name in scene.active if name in BARRIERS)
-    acts: list[tuple[Account, Callable[[State], None]]] = [(item, item.add) for item in model.forces]
-    acts += [(item, item.resolve) for item in model.impulses if item is not model.contact]
-    for item, act in acts:
-        name = _effect(item, model, barrier)
-        every = cast("ModalDamping", item).every if name == "material-damping" else 1
-        shares[name] = shares.get(name, 0.0) + _shortest(partial(act, still)) / every / step_time
+    seconds: dict[str, float] = {}
+    for force in model.forces:
+        _count(seconds, force.effect, _shortest(partial(force.add, still)))
+    for item in model.impulses:
+        if item is not model.contact:  # no effect, and its record must stay
+            _count(seconds, item.effect, _shortest(partial(item.resolve, still)) / item.every)
     if heat is not None:
-        shares["contact-heating"] = _shortest(lambda: heat.observe(still)) / step_time
-    rod = model.rod
-    if isinstance(rod.frame, TurningFrame):
-        n = len(rod.d)
-        turning = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
-        turning += _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
-        shares["large-rotation"] = turning / step_time
-        shares[SINGLE[type(rod).__name__]] -= turning / step_time
-    return shares
+        _count(seconds, "contact-heating", _shortest(partial(heat.observe, still)))
+    if isinstance(model.rod.frame, TurningFrame):
+        turning = _turning(model, still)
+        _count(seconds, "large-rotation", turning)
+        _count(seconds, model.rod.effect, -turning)
+    return {
+        effect: time / step_time if min(time, step_time) > 0 else None for effect, time in seconds.items()
+    }
 
 
-def _effect(item: Account, model: Model, barrier: str) -> str:
-    for zone in model.zones:
-        if zone is item:
-            return "rod-plasticity" if zone.body == "rod" else barrier
-    return {**SINGLE, "ElasticBlock": barrier}[type(item).__name__]
+def _count(seconds: dict[str, float], effect: str, time: float) -> None:
+    seconds[effect] = seconds.get(effect, 0.0) + time
+
+
+def _turning(model: Model, still: State) -> float:
+    """Return the time, s, that the rod's frame takes in a step for turning."""
+    rod, n = model.rod, len(model.rod.d)
+    there = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
+    return there + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
 
 
 def _shortest(act: Callable[[], object]) -> float:
+    """Return the shortest processor time, s, of a few calls."""
     times = []
     for _ in range(REPEATS):
-        begun = perf_counter()
+        begun = process_time()
         act()
-        times.append(perf_counter() - begun)
-    return float(np.min(times))
+        times.append(process_time() - begun)
+    return min(times)

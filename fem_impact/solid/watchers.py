@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.estimates import contact_estimate
-from fem_impact.output import FieldWriter, HistoryWriter
+from fem_impact.output import HISTORY, FieldWriter, HistoryWriter
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.fields import Fields
 from fem_impact.solid.geometry import tail_corners
-from fem_impact.solid.kernels import compile_seconds
+from fem_impact.solid.kernels import COMPILING
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.moving import Moving
-from fem_impact.solid.observers import Frames, History, Watch
+from fem_impact.solid.observers import Frames, History, Watch, history_column
 from fem_impact.solid.peak import PeakForce
 from fem_impact.solid.rodview import RodView
 from fem_impact.solid.separation import Separation, horizon
@@ -41,11 +41,11 @@ class Saved(Observer, Moving, Protocol):
 
 
 def _wall() -> float:
-    return time.perf_counter() - compile_seconds()
+    return time.perf_counter() - COMPILING.wall
 
 
 def _cpu() -> float:
-    return time.process_time() - compile_seconds()
+    return time.process_time() - COMPILING.cpu
 
 
 @dataclass(slots=True)
@@ -100,7 +100,8 @@ class Watchers:
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames = [], []
         if out is not None:
-            writer = HistoryWriter(out / "history.csv", go_on=go_on)
+            own = [c for c in map(history_column, watch.ledger.names) if c not in HISTORY]
+            writer = HistoryWriter(out / "history.csv", (*HISTORY, *own), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(scene, model, view, out, go_on)]

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from fem_impact.solid.elements import lame_constants
 from fem_impact.solid.hardening import Hardening
 from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import (
     ROWS,
@@ -32,7 +31,7 @@ class YieldingZone:
 
     Attributes
     ----------
-    body : ``rod`` or ``barrier``, names the accounts
+    body : ``rod`` or ``barrier``
     count : number of true elements
     blocks : their places and state
     around : nodes (k, 3), starts and entries for `subtract_nodal`
@@ -89,12 +88,20 @@ class YieldingZone:
         """Return the unknowns (count, 8, 3) of the elements' nodes."""
         return self.blocks.dof.transpose(0, 3, 2, 1).reshape(-1, 8, 3)[: self.count].astype(np.int64)
 
-    def accounts(self, state: State) -> Accounts:
+    @property
+    def effect(self) -> str:
+        """Return the effect by which the body yields."""
+        return "rod-plasticity" if self.body == "rod" else "barrier-elastoplastic"
+
+    @property
+    def accounts(self) -> tuple[str, ...]:
+        """Return the body's accounts."""
+        return f"strain_{self.body}", f"plastic_{self.body}"
+
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return elastic energy and plastic work at the last force evaluation."""
-        return {
-            f"strain_{self.body}": float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room)),
-            f"plastic_{self.body}": float(self.blocks.work.sum()),
-        }
+        elastic = float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room))
+        return elastic, float(self.blocks.work.sum())
 
     def plastic_strain(self) -> Array:
         """Return the mean equivalent plastic strain (count,) of each element."""

@@ -11,7 +11,6 @@ import numpy as np
 import meshes
 from fem_impact.solid.contact import PlaneContact
 from fem_impact.solid.contact.book import ACTIVE
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -45,6 +44,9 @@ def _model(p: Values, slices: int, gap: float, across: int) -> Model:
 class Ceiling:
     """A second rigid wall at n = height: the solver's plane contact, seen upside down."""
 
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ()
+    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ()
     wall: PlaneContact
     height: float
@@ -62,9 +64,9 @@ class Ceiling:
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return nothing: this wall's closing loss is left to the energy that is checked."""
-        return {}
+        return ()
 
 
 def _lost(slices: int) -> float:

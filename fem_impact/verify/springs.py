@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 from fem_impact.verify.reference.bricks import spring_force
 from meshes import HexMesh
@@ -40,6 +39,8 @@ class NodeSprings:
     """
 
     body: ClassVar[str] = "rod"
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ()
     moving: ClassVar[tuple[str, ...]] = ("anchor",)
     nodes: NDArray[np.int64]
     stiffness: Array
@@ -56,6 +57,6 @@ class NodeSprings:
         pull, press, self.anchor = spring_force(place, self.anchor, self.stiffness, self.stick, self.f)
         state.force[self.nodes] += np.column_stack([pull, press])
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return nothing: what springs hold and lose is no part of the ledger."""
-        return {}
+        return ()

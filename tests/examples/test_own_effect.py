@@ -1,4 +1,4 @@
-"""README's "Make it yours", an effect: its number and slot, and an item that takes energy and says so."""
+"""README's "Make it yours", an effect: its number and slot, and an item with an account of its own."""
 
 from dataclasses import dataclass, replace
 from math import exp, hypot
@@ -8,7 +8,10 @@ import pytest
 
 from fem_impact.effects import EFFECTS, Effect, Harm, choices, choose, neglected, specify
 from fem_impact.estimates import contact_estimate, projectile
+from fem_impact.output import read_table
 from fem_impact.scene import effect_names, load, replace_all
+from fem_impact.simulate import simulate
+from fem_impact.solid import run
 from fem_impact.solid.build import build
 from fem_impact.solid.elastic import Weight
 from fem_impact.solid.march import march
@@ -80,6 +83,9 @@ def test_it_is_built_when_it_is_on_and_only_then(moon):
 class Drag:
     """An item: every step it takes a share of the velocities, and books it with their mean."""
 
+    effect = "air-drag"  # whose run time it counts to
+    accounts = ("air",)  # one that no other item books in
+    every = 1
     moving = ("taken",)
     mass: np.ndarray
     inverse_mass: np.ndarray
@@ -94,12 +100,15 @@ class Drag:
         state.v[:n] -= lost
         self.taken += 0.5 * float(self.mass * lost @ (old + kicked - lost))
 
-    def accounts(self, state):
-        return {"damping": self.taken}
+    def energies(self, state):
+        return (self.taken,)
 
 
-def test_an_own_item_closes_the_ledger():
-    scene = replace_all(
+RATE = 5e3  # 1/s
+
+
+def coarse_scene():
+    return replace_all(
         load("quick"),
         {
             "effects": ["vibration", "barrier-rigid"],
@@ -108,11 +117,18 @@ def test_an_own_item_closes_the_ledger():
             "projectile.length": "60 mm",
         },
     )
-    model = build(scene, specify(scene)).coasting()
-    n, rate = model.layout.rod_size, 5e3
+
+
+def with_drag(model, rate):
+    n = model.layout.rod_size
     free = model.inverse_mass[:n] > 0
     drag = Drag(np.where(free, model.mass[:n], 0.0), model.inverse_mass[:n], rate)
-    model = replace(model, impulses=[drag])
+    return replace(model, impulses=[*model.impulses, drag])
+
+
+def test_an_own_item_closes_the_ledger():
+    scene = coarse_scene()
+    model = with_drag(build(scene, specify(scene)).coasting(), RATE)
     watch, state = Watch(model.ledger(), every=10), model.initial_state()
 
     class End:
@@ -125,5 +141,16 @@ def test_an_own_item_closes_the_ledger():
     assert watch.ledger.worst < 1e-12 * watch.ledger.start
     flown = state.time - 0.5 * state.dt  # velocities stand half a step behind
     kept = watch.accounts["kinetic_rod"] / watch.ledger.start
-    assert kept == pytest.approx(exp(-2 * rate * flown), rel=1e-6)
+    assert kept == pytest.approx(exp(-2 * RATE * flown), rel=1e-6)
     assert kept < 0.9
+
+
+def test_a_run_with_an_own_item_comes_to_its_end(monkeypatch, tmp_path):
+    """What `build` would do for a filled slot; the item's account and run time are its own."""
+    monkeypatch.setattr(run, "build", lambda scene, spec: with_drag(build(scene, spec), 50.0))
+    outcome = simulate(coarse_scene(), out=tmp_path)
+    assert outcome["finished"] and abs(outcome["residual_over_E_0"]) < 1e-4
+    history = read_table(tmp_path / "history.csv")
+    held = history.numbers("E_kinetic_rod_J")
+    assert 0.005 * held[0] < history.numbers("E_air_J")[-1] < 0.05 * held[0]
+    assert outcome["E_vib_over_E_0"] > 0  # what comes after the march was computed too

@@ -3,6 +3,11 @@
 import os
 import subprocess
 import sys
+import time
+
+from numba.core import event
+
+from fem_impact.solid.watchers import Stopwatch
 
 TURNED = """
 import numpy as np
@@ -26,3 +31,12 @@ def test_the_width_of_registers_does_not_change_a_bit():
     features, d = _turned(NUMBA_CPU_FEATURES="+prefer-128-bit")
     assert features == "+prefer-128-bit"  # the environment comes first
     assert _turned()[1] == d
+
+
+def test_compiling_is_taken_from_each_clock_by_itself():
+    """A compilation that waits for others takes wall time, and hardly any of the processor's."""
+    clock = Stopwatch()
+    with event.trigger_event("numba:compile"), event.trigger_event("numba:compile"):
+        time.sleep(0.1)
+    wall, cpu = clock.read()
+    assert 0.0 <= cpu < 0.05 and 0.0 <= wall < 0.05

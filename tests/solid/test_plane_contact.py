@@ -94,7 +94,7 @@ def test_one_node_sticks_or_slips(f, sticks):
     assert state.v == pytest.approx([0.0 if sticks else -1.0 + 2 * f, 0.0, 0.0], abs=1e-15)
     assert contact.book.intervals[0].impulse_n == pytest.approx(2 * 2e-6)  # both halves
     assert contact.book.intervals[0].impulse_t == pytest.approx(2 * min(f * 2, 1) * 1e-6)
-    assert contact.accounts(state)["closing"] == pytest.approx(2e-6)
+    assert contact.energies(state)[1] == pytest.approx(2e-6)
 
 
 def test_friction_turns_in_the_plane():

@@ -50,10 +50,10 @@ class Rig:
         return now
 
     def plastic_work(self):
-        return self.zone.accounts(self.state)["plastic_rod"]
+        return self.zone.energies(self.state)[1]
 
     def energy(self):
-        return self.zone.accounts(self.state)["strain_rod"]
+        return self.zone.energies(self.state)[0]
 
     def stress(self):
         """Kirchhoff deviators of the true elements: (m, 8 points, 6)."""

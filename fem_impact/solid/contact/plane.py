@@ -18,7 +18,6 @@ from fem_impact.solid.contact.book import (
     MOVING,
     ContactBook,
 )
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.kernels import kernel
 from fem_impact.solid.state import State
 
@@ -34,6 +33,9 @@ class PlaneContact:
     arrive exactly there (Fekak et al. 2017, doi:10.1007/s00466-017-1397-0, with the predicted gap).
     """
 
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = MOVING
     nodes: Ints
     inverse_mass: Array
@@ -56,9 +58,9 @@ class PlaneContact:
         )
         self.book.close_step(state.time)
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return friction heat and closing loss."""
-        return {"friction": self.book.friction, "closing": self.book.closing}
+        return self.book.friction, self.book.closing
 
 
 @kernel

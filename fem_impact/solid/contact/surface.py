@@ -34,7 +34,6 @@ from fem_impact.solid.contact.points import (
     rod_over_barrier,
 )
 from fem_impact.solid.contact.search import lowest_gap, vertex_normals
-from fem_impact.solid.items import Accounts
 from fem_impact.solid.state import State
 
 Array = NDArray[np.float64]
@@ -54,6 +53,9 @@ class SurfaceContact:
     last : (rod nodes + barrier nodes,) last quad found for each node
     """
 
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("last", "points.memory", *MOVING)
     rod: Patch
     barrier: Patch
@@ -116,6 +118,6 @@ class SurfaceContact:
         if rod.sag > 0.0:
             vertex_normals(x, rod.places, rod.quads, rod.mirrored, self.rod_normals)
 
-    def accounts(self, state: State) -> Accounts:
+    def energies(self, state: State) -> tuple[float, ...]:
         """Return friction heat and closing loss."""
-        return {"friction": self.book.friction, "closing": self.book.closing}
+        return self.book.friction, self.book.closing
