@@ -6,7 +6,7 @@ import tomllib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import UsageError
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -30,7 +30,7 @@ def read_changes(changes: Sequence[str]) -> dict[str, Any]:
 def _one(change: str) -> tuple[str, Any]:
     key, equals, text = change.partition("=")
     if not equals or not key.strip():
-        raise SceneError(
+        raise UsageError(
             "is not of the form key=value.",
             key="--set",
             value=change,

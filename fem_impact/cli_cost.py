@@ -13,7 +13,7 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.wrap import wrapped
 
 if TYPE_CHECKING:
@@ -29,14 +29,13 @@ def cost(options: Options) -> int:
     """Run the ladder of settings, judge it, and name the cheapest setting that does."""
     from fem_impact.cost import chosen
     from fem_impact.paper import quantity
-    from fem_impact.scene.units import parse_share
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
-    target = parse_share(options.target, "--target") if options.target else None
+    target = _share(options.target) if options.target else None
     budget = quantity(options.budget, "time", "--budget") if options.budget else None
     if options.scene == PAPER and (target or budget):
         remedy = "Leave them out, or name one scene."
-        raise SceneError("are about one scene.", key="--target, --budget", remedy=remedy)
+        raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
@@ -58,6 +57,16 @@ def cost(options: Options) -> int:
     return RunError.exit_code if found.failures else 0
 
 
+def _share(text: str) -> float:
+    """Read the error that ``--target`` allows."""
+    from fem_impact.scene.units import parse_share
+
+    try:
+        return parse_share(text, "--target")
+    except SceneError as error:
+        raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
+
+
 def _family(scene: Scene, finest: str) -> list[Mesh]:
     """Return the meshes that are no finer at the tip than wanted."""
     from fem_impact.cost import FAMILY
@@ -66,7 +75,7 @@ def _family(scene: Scene, finest: str) -> list[Mesh]:
     least = quantity(finest, "length", "--finest") if finest else 0.0
     sizes = [mesh.tip_size(scene.projectile.diameter) for mesh in FAMILY]
     if least > sizes[1]:
-        raise SceneError(
+        raise UsageError(
             "leaves less than two meshes.",
             key="--finest",
             value=finest,

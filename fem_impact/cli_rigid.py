@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.cli_out import checked_file
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.wrap import wrapped
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
     if given == (None, None):
         return rod.arms(alpha), "lowest point of the tip's shape"
     if options.d_c is None or options.d_d is None:
-        raise SceneError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
+        raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
     d_c, d_d = (quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
     return Arms(np.asarray(d_c), np.asarray(d_d)), "as stated"
 

@@ -14,7 +14,7 @@ from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_outcome
 from fem_impact.cores import cores
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, UsageError
 from fem_impact.run_files import CHECKPOINT
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ def run(options: Options) -> int:
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
-        raise SceneError(problem, key="--resume", value=options.fidelity, remedy=remedy)
+        raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.earlier import earlier

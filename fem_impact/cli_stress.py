@@ -12,7 +12,7 @@ from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
 from fem_impact.cores import cores
-from fem_impact.errors import RunError, SceneError, did_you_mean
+from fem_impact.errors import RunError, UsageError, did_you_mean
 from fem_impact.outcome import utc_now
 from fem_impact.output import read_text, write_text
 from fem_impact.stress import CASES, Row, run_cases
@@ -54,8 +54,8 @@ def _chosen(options: Options) -> list[str]:
     if not options.only:
         return list(CASES)
     if options.readme:
-        raise SceneError("takes all cases.", key="--readme", remedy="Leave --only out.")
+        raise UsageError("takes all cases.", key="--readme", remedy="Leave --only out.")
     if options.only not in CASES:
         hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
-        raise SceneError("is no hard case.", key="--only", value=options.only, remedy=hint)
+        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
     return [options.only]

@@ -13,7 +13,7 @@ from fem_impact.cli_meter import chosen_meter
 from fem_impact.cli_out import checked_out
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import RunError, SceneError, did_you_mean
+from fem_impact.errors import RunError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from fem_impact.progress import Meter
@@ -116,12 +116,12 @@ def _check_options(options: Options) -> None:
     """Refuse what the named study would not look at."""
     if options.name == "report" and (options.quick or options.estimate or options.scheduler):
         remedy = "Leave out --quick, --estimate and --scheduler."
-        raise SceneError("reads what others have computed.", key="study report", remedy=remedy)
+        raise UsageError("reads what others have computed.", key="study report", remedy=remedy)
     looked_at = (("ID", " ".join(options.ids), ABOUT_SETS), ("--fidelity", options.fidelity, ("scatter",)))
     for key, given, studies in looked_at:
         if given and options.name not in studies:
             problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(studies)}."
-            raise SceneError(problem, key=key, value=given, remedy=f"Leave it out. {remedy}")
+            raise UsageError(problem, key=key, value=given, remedy=f"Leave it out. {remedy}")
 
 
 def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
@@ -130,5 +130,5 @@ def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
     for name in ids:
         if name not in MEASURED_SETS:
             remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
-            raise SceneError("is not a measured set.", key="ID", value=name, remedy=remedy)
+            raise UsageError("is not a measured set.", key="ID", value=name, remedy=remedy)
     return tuple(dict.fromkeys(ids))

@@ -6,7 +6,7 @@ import sys
 
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, UsageError
 from fem_impact.verify import PROBLEMS, Problem, Verification, problem
 from fem_impact.wrap import wrapped
 
@@ -16,14 +16,14 @@ __all__ = ["verify"]
 def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""
     if options.parameters and (options.changes or options.readme):
-        raise SceneError("only lists.", key="--parameters", remedy="Leave out --set and --readme, or itself.")
+        raise UsageError("only lists.", key="--parameters", remedy="Leave out --set and --readme, or itself.")
     if options.parameters:
         return _show_parameters(options)
     if options.readme:
         return _write_page(options)
     changes = dict(_change(text) for text in options.changes)
     if changes and not options.problem:
-        raise SceneError(
+        raise UsageError(
             "belongs to one problem.", key="--set", remedy="Name it: fem-impact verify NAME --set ..."
         )
     chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
@@ -47,7 +47,7 @@ def _write_page(options: Options) -> int:
     from fem_impact.verify.page import page, put_page
 
     if options.problem or options.changes:
-        raise SceneError("takes all problems at their defaults.", key="--readme")
+        raise UsageError("takes all problems at their defaults.", key="--readme")
     put_page(read_text(options.readme), "")  # before any work
     done = []
     for name in PROBLEMS:
@@ -62,13 +62,13 @@ def _write_page(options: Options) -> int:
 def _change(text: str) -> tuple[str, str]:
     name, equals, value = text.partition("=")
     if not equals:
-        raise SceneError("is not of the form parameter=value.", key="--set", value=text)
+        raise UsageError("is not of the form parameter=value.", key="--set", value=text)
     return name.strip(), value.strip().strip("\"'")
 
 
 def _show_parameters(options: Options) -> int:
     if not options.problem:
-        raise SceneError(
+        raise UsageError(
             "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
         )
     found = problem(options.problem)

@@ -13,6 +13,8 @@ __all__ = [
     "ResultError",
     "RunError",
     "SceneError",
+    "StatementError",
+    "UsageError",
     "did_you_mean",
 ]
 
@@ -23,15 +25,15 @@ class FemImpactError(ValueError):
     exit_code: ClassVar[int] = 1
 
 
-class SceneError(FemImpactError):
-    """A scene that cannot be run as stated.
+class StatementError(FemImpactError):
+    """A key, an option or a name that cannot be used as the user stated it.
 
     Parameters
     ----------
     problem : str
         What is wrong, in physical words.
     key : str, optional
-        Dotted key in the scene, such as ``projectile.length``.
+        Dotted key in the scene, such as ``projectile.length``, or an option, such as ``--height``.
     value : object, optional
         The refused value as the user gave it; left out of the message when None.
     remedy : str, optional
@@ -39,8 +41,6 @@ class SceneError(FemImpactError):
     source : str, optional
         The file, or the Python object, in which the key stands.
     """
-
-    exit_code: ClassVar[int] = 3
 
     def __init__(
         self, problem: str, *, key: str = "", value: Any = None, remedy: str = "", source: str = ""
@@ -54,6 +54,18 @@ class SceneError(FemImpactError):
         place = ": ".join(part for part in (self.source, f"{self.key}{shown}".strip(" =")) if part)
         text = f"{place}: {self.problem}" if place else self.problem
         return f"{text} {self.remedy}".strip()
+
+
+class UsageError(StatementError):
+    """A command line or call that names what there is not, leaves out a unit, or contradicts itself."""
+
+    exit_code: ClassVar[int] = 2
+
+
+class SceneError(StatementError):
+    """A scene, a rod or a parameter that is understood and cannot be run as stated."""
+
+    exit_code: ClassVar[int] = 3
 
     def under(self, prefix: str, source: str = "") -> SceneError:
         """Return the same complaint, with its key placed below ``prefix`` and its file named."""
@@ -90,8 +102,8 @@ class MissingLibraryError(FemImpactError):
 EXIT_CODES: dict[int, str] = {
     0: "done",
     1: "a fault of the program (please report it with the command and the scene)",
-    2: "the command line was not understood",
-    SceneError.exit_code: "the scene was refused before any work",
+    UsageError.exit_code: "the command line is wrong: unknown name, missing unit, options at odds",
+    SceneError.exit_code: "the scene, the rod or a parameter was refused before any work",
     OutputPathError.exit_code: "the output place cannot be written, or the disk is full",
     ResultError.exit_code: "a result handed in cannot be read",
     RunError.exit_code: "a run stopped early or its ledger did not close, or `verify` failed",

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.run_files import CHECKPOINT
 from fem_impact.solid.checkpoint import INTERVAL
 
@@ -48,9 +48,11 @@ def simulate(
 
     Raises
     ------
+    UsageError
+        If the fidelity is unknown.
     SceneError
-        If the fidelity is unknown, the tip has no fine zone where the solid fidelity needs one, or no
-        measured cost tells how to keep to the error that the scene allows.
+        If the tip has no fine zone where the solid fidelity needs one, or no measured cost tells how to keep
+        to the error that the scene allows.
     ResultError
         If the checkpoint is damaged, or of another scene or program.
     RunError
@@ -58,7 +60,7 @@ def simulate(
     """
     if fidelity not in (None, *FIDELITIES):
         hint = did_you_mean(str(fidelity), FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
-        raise SceneError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+        raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     if scene.accuracy.target is not None:
         from fem_impact.cost import simulate_to_target
 

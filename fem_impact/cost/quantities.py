@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -67,8 +67,10 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
 
     Raises
     ------
+    UsageError
+        For an unknown name.
     SceneError
-        For an unknown name, or one that no run of the ``scene`` knows.
+        For one that no run of the ``scene`` knows.
     """
     wanted = tuple(names)
     rigid = scene is not None and "vibration" not in scene.active
@@ -82,7 +84,7 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     known = [quantity.name for quantity in QUANTITIES]
     for name in wanted:
         if name not in known:
-            raise SceneError(
+            raise UsageError(
                 "is not a quantity of interest.", key="--of", value=name, remedy=f"Known: {', '.join(known)}."
             )
     return wanted or tuple(name for name in TARGETED if not (rigid and name == "E_vib"))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.paper.numbers import estimate_entry, statistic_entry
 from rigid import first_order
 from rigid.experiments import (
@@ -42,7 +42,7 @@ def audit_document(set_id: str | None = None) -> dict[str, Any]:
 
     Raises
     ------
-    SceneError
+    UsageError
         There is no such set.
     """
     ids = (_checked(set_id),) if set_id else set_ids()
@@ -69,7 +69,7 @@ def _checked(set_id: str) -> str:
     if set_id in set_ids():
         return set_id
     remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
-    raise SceneError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
+    raise UsageError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
 
 
 def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:

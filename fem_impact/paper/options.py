@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene import parse_quantity
 from rigid import Projectile, RigidError
 
@@ -31,7 +31,7 @@ def quantity(text: str, dimension: str, option: str) -> float:
     except SceneError as error:
         example = _EXAMPLES.get(option, "240 mm")
         remedy = f'Write it with its unit, such as {option} "{example}".'
-        raise SceneError(error.problem, key=option, value=text, remedy=remedy) from None
+        raise UsageError(error.problem, key=option, value=text, remedy=remedy) from None
 
 
 def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | None) -> Projectile:

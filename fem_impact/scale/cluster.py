@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from concurrent.futures import Executor
 from contextlib import contextmanager
 
-from fem_impact.errors import MissingLibraryError, SceneError
+from fem_impact.errors import MissingLibraryError, UsageError
 
 __all__ = ["on_scheduler"]
 
@@ -23,7 +23,7 @@ def on_scheduler(address: str) -> Iterator[Executor]:
     ------
     MissingLibraryError
         dask.distributed is not installed.
-    SceneError
+    UsageError
         No scheduler answers there, or it has no worker.
     """
     try:
@@ -43,6 +43,6 @@ def on_scheduler(address: str) -> Iterator[Executor]:
         yield client.get_executor(pure=False)
 
 
-def _refused(address: str, problem: str) -> SceneError:
+def _refused(address: str, problem: str) -> UsageError:
     remedy = "Start `dask scheduler` and `dask worker ADDRESS --nthreads 1`."
-    return SceneError(problem, key="--scheduler", value=address, remedy=remedy)
+    return UsageError(problem, key="--scheduler", value=address, remedy=remedy)

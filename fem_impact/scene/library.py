@@ -10,7 +10,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.types import Material, Scene, Surface
 from fem_impact.scene.units import parse_quantity
@@ -30,14 +30,16 @@ def load(id_or_path: str | Path) -> Scene:
 
     Raises
     ------
+    UsageError
+        For an unknown id or a missing file.
     SceneError
-        For an unknown id, a missing file, or any mistake in the file.
+        For any mistake in the file.
     """
     name = os.fspath(id_or_path)
     if name in shipped():
         return _shipped(name)
     if not _looks_like_a_file(name):
-        raise SceneError(
+        raise UsageError(
             "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
         )
     return Scene.from_toml(name)

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene import library
 from fem_impact.scene.sections import read_scene
 from fem_impact.scene.types import Scene
@@ -38,7 +38,7 @@ def _load(path: Path) -> str:
             raw = file.read(_LARGEST_FILE + 1)
         text = raw.decode("utf-8-sig")
     except FileNotFoundError:
-        raise SceneError("there is no such file.", source=str(path), remedy=library.proposal(path)) from None
+        raise UsageError("there is no such file.", source=str(path), remedy=library.proposal(path)) from None
     except IsADirectoryError:
         remedy = f"Name the file, such as {path / 'scene.toml'}."
         raise SceneError("is a directory, not a scene file.", source=str(path), remedy=remedy) from None

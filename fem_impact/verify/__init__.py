@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from importlib import import_module
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.verify.problem import Check, Cost, Parameter, Problem, Verification
 
 __all__ = ["PROBLEMS", "Check", "Cost", "Parameter", "Problem", "Verification", "problem", "verify"]
@@ -37,12 +37,12 @@ def problem(name: str) -> Problem:
 
     Raises
     ------
-    SceneError
+    UsageError
         If there is none of that name.
     """
     if name not in PROBLEMS:
-        known = ", ".join(PROBLEMS)
-        raise SceneError("is no problem of the verification.", key=name, remedy=f"Known are: {known}.")
+        remedy = did_you_mean(name, PROBLEMS, f"Known are: {', '.join(PROBLEMS)}.")
+        raise UsageError("is no problem of the verification.", key=name, remedy=remedy)
     module, attribute = PROBLEMS[name]
     found: Problem = getattr(import_module(f"fem_impact.verify.{module}"), attribute)
     return found
@@ -53,7 +53,9 @@ def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verif
 
     Raises
     ------
+    UsageError
+        If there is no problem of that name.
     SceneError
-        If the problem or a parameter is unknown, or a value out of range.
+        If a parameter is unknown, or a value out of range.
     """
     return problem(name).run(changes)

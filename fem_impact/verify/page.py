@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import UsageError
 from fem_impact.study.markdown import table
 from fem_impact.verify.problem import Check, Verification
 
@@ -54,12 +54,12 @@ def put_page(text: str, new: str, marks: tuple[str, str] = MARKS) -> str:
 
     Raises
     ------
-    SceneError
+    UsageError
         If the marks are missing.
     """
     between = re.compile(f"({re.escape(marks[0])}\n).*?({re.escape(marks[1])})", re.DOTALL)
     if not between.search(text):
-        raise SceneError(
+        raise UsageError(
             "has no place for the page.", key="--readme", remedy=f"Add the lines {marks[0]} and {marks[1]}."
         )
     return between.sub(lambda found: f"{found[1]}{new}\n{found[2]}", text)

@@ -123,7 +123,7 @@ def test_options_that_nothing_would_look_at_are_refused(cli, stand):
 @pytest.mark.parametrize("words", [("gamma", "t5b"), ("gamma", "--fidelity", "solid")])
 def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
     code, _, err = cli("study", *words)
-    assert code == 3
+    assert code == 2
     assert f'= "{words[-1]}": is nothing to study gamma' in err
     assert not stand.calls
 
@@ -144,7 +144,7 @@ def test_a_closed_output_is_no_traceback():
 
 def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
     code, _, err = cli("study", "sets", "t3-machned")
-    assert code == 3
+    assert code == 2
     assert "Did you mean t3-machined" in err
     assert not stand.calls
 

@@ -34,7 +34,7 @@ from fem_impact.cost import (
 from fem_impact.cost.limits import EVEN, LOWEST, pair_limit, truths
 from fem_impact.cost.settings import placed
 from fem_impact.cost.yardsticks import yardsticks
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, UsageError
 from fem_impact.progress import NullMeter
 from fem_impact.scene import load
 
@@ -332,7 +332,7 @@ def test_yardsticks_are_of_a_machine_of_this_world():
 def test_unknown_quantities_are_refused():
     assert chosen(()) == TARGETED
     assert chosen(["mu"]) == ("mu",)
-    with pytest.raises(SceneError, match="muu"):
+    with pytest.raises(UsageError, match="muu"):
         chosen(["muu"])
 
 

@@ -77,7 +77,7 @@ def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
 )
 def test_wrong_words_are_refused_before_any_work(cli, words, complaint):
     code, _, err = cli("cost", "t5b", *words)
-    assert code == 3
+    assert code == 2
     assert complaint in err
     assert not Path("results").exists()
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from fem_impact.compare import compare, text_table
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.estimates import effective_mass, projectile
 from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.outcome import KEYS, Outcome
@@ -181,7 +181,7 @@ def test_restitution_is_a_key_of_the_scene():
 
 
 def test_an_unknown_fidelity_is_refused():
-    with pytest.raises(SceneError, match=r'fidelity = "modl": is not a fidelity. Did you mean modal\?'):
+    with pytest.raises(UsageError, match=r'fidelity = "modl": is not a fidelity. Did you mean modal\?'):
         simulate(load("t5b"), "modl")
 
 

@@ -218,7 +218,7 @@ def test_the_published_drop_as_a_command(cli):
     ("change", "code", "words"),
     [
         (("--height", "-1 m"), 3, "--height"),
-        (("--height", "82"), 3, 'such as --height "0.82 m"'),
+        (("--height", "82"), 2, 'such as --height "0.82 m"'),
         (("--angle", "0 deg"), 3, "between 0 and 90"),
         (("--surface", "oily"), 2, "oily"),
         (("--tip", "C"), 2, "C"),

@@ -43,7 +43,7 @@ def test_one_set_and_its_file(cli, tmp_path):
 
 def test_a_set_that_does_not_exist(cli):
     code, out, err = cli("audit", "--set", "t5e")
-    assert (code, out) == (3, "")
+    assert (code, out) == (2, "")
     assert "Did you mean t5" in err
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from scale_tasks import LOG, Acting, job
 
-from fem_impact.errors import MissingLibraryError, SceneError
+from fem_impact.errors import MissingLibraryError, UsageError
 from fem_impact.progress import NullMeter
 from fem_impact.scale import Failure, on_scheduler, run_jobs
 from fem_impact.scale import cluster as cluster_module
@@ -81,11 +81,11 @@ def test_a_worker_killed_in_mid_study_costs_nothing(cluster, tmp_path):
 def test_a_scheduler_that_does_not_answer_is_refused(monkeypatch):
     monkeypatch.setattr(cluster_module, "PATIENCE", 1)
     with (
-        pytest.raises(SceneError, match=r"--scheduler = .*no scheduler answers"),
+        pytest.raises(UsageError, match=r"--scheduler = .*no scheduler answers"),
         on_scheduler("tcp://127.0.0.1:1"),
     ):
         pass
-    with pytest.raises(SceneError, match="--scheduler"), on_scheduler("nowhere://x"):
+    with pytest.raises(UsageError, match="--scheduler"), on_scheduler("nowhere://x"):
         pass
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from fem_impact.errors import UsageError
 from fem_impact.scene import (
     DEFAULTS,
     MEASURED_SETS,
@@ -13,7 +14,6 @@ from fem_impact.scene import (
     Impact,
     Save,
     Scene,
-    SceneError,
     load,
     materials,
     shipped,
@@ -97,7 +97,7 @@ def test_a_scene_that_leaves_the_measured_range_says_where():
 
 
 def test_an_unknown_scene_is_answered_with_the_nearest_name():
-    with pytest.raises(SceneError, match="Did you mean t5b"):
+    with pytest.raises(UsageError, match="Did you mean t5b"):
         load("t5bb")
-    with pytest.raises(SceneError, match=r"no such file.*Did you mean quick"):
+    with pytest.raises(UsageError, match=r"no such file.*Did you mean quick"):
         Scene.from_toml("nowhere/qick.toml")

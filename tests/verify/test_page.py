@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from fem_impact.cli import main
-from fem_impact.errors import SceneError
+from fem_impact.errors import UsageError
 from fem_impact.verify import PROBLEMS, Check, Cost, Verification
 from fem_impact.verify.page import HEAD, MARKS, page, put_page
 
@@ -35,15 +35,15 @@ def test_a_row_shows_the_check_nearest_to_its_limit():
 def test_the_page_goes_between_its_marks_and_nowhere_else():
     text = f"before\n{MARKS[0]}\nold\nold\n{MARKS[1]}\nafter\n"
     assert put_page(text, "new \\1") == f"before\n{MARKS[0]}\nnew \\1\n{MARKS[1]}\nafter\n"
-    with pytest.raises(SceneError, match="no place"):
+    with pytest.raises(UsageError, match="no place"):
         put_page("before\nafter\n", "new")
 
 
 def test_the_command_refuses_a_file_without_a_place_before_any_work(tmp_path, capsys):
     target = tmp_path / "page.md"
     target.write_text("nothing here\n")
-    assert main(["verify", "--readme", str(target)]) == 3
-    assert main(["verify", "modes", "--readme", str(target)]) == 3
+    assert main(["verify", "--readme", str(target)]) == 2
+    assert main(["verify", "modes", "--readme", str(target)]) == 2
     assert main(["verify", "--readme", str(tmp_path / "none.md")]) == 5
     assert target.read_text() == "nothing here\n"
 

@@ -1,0 +1,57 @@
+"""A wrong command line is exit code 2; what is understood and refused is 3."""
+
+import pytest
+
+ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
+DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        (("run", "t5bb"), "Did you mean t5b?"),
+        (("check", "nowhere/qick.toml"), "there is no such file. Did you mean quick?"),
+        (("run", "t5b", "--set", "accuracy.tip_size"), "is not of the form key=value"),
+        (("run", "t5b", "--fidelity", "modal", "--resume"), "is of finite elements"),
+        (("study", "nope"), "invalid choice"),
+        (("study", "sets", "t3-machned"), "Did you mean t3-machined?"),
+        (("study", "gamma", "t4"), "is nothing to study gamma"),
+        (("study", "gamma", "--fidelity", "solid"), "is nothing to study gamma"),
+        (("study", "report", "--quick"), "reads what others have computed"),
+        (("cost", "paper", "--target", "5 %"), "are about one scene"),
+        (("cost", "t5b", "--target", "2"), "--target"),
+        (("cost", "t5b", "--budget", "30"), "has no unit"),
+        (("cost", "t5b", "--of", "speed"), "is not a quantity of interest"),
+        (("cost", "t5b", "--finest", "0.5 mm"), "Give at most"),
+        (("verify", "nope"), "is no problem of the verification"),
+        (("verify", "ber"), "Did you mean bar?"),
+        (("verify", "modes", "--set", "length"), "is not of the form"),
+        (("verify", "--set", "length=0.1"), "belongs to one problem"),
+        (("verify", "--parameters"), "needs a problem"),
+        (("verify", "bar", "--parameters", "--set", "length=1"), "only lists"),
+        (("verify", "bar", "--readme", "page.md"), "takes all problems"),
+        (("stress", "--only", "nope"), "is no hard case"),
+        (("stress", "--only", "painleve", "--readme", "page.md"), "takes all cases"),
+        (("audit", "--set", "t5e"), "is not a measured set"),
+        (("coefficients", "mine.csv", *ROD, "--d-c", "22 mm"), "one arm alone"),
+        (("assess", *DROP, "--length", "80"), "has no unit"),
+    ],
+)
+def test_a_wrong_command_line_is_two(cli, line, complaint):
+    code, out, err = cli(*line)
+    assert (code, out) == (2, "")
+    assert complaint in err
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        ("check", "t5b", "--set", "projectile.length=1 mm"),
+        ("check", "t5b", "--set", "projectile.lenght=80 mm"),
+        ("verify", "modes", "--set", "length=50 m"),
+        ("assess", *DROP, "--angle", "95 deg"),
+        ("assess", *DROP, "--diameter", "200 mm"),
+    ],
+)
+def test_what_is_understood_and_refused_is_three(cli, line):
+    assert cli(*line)[0] == 3
