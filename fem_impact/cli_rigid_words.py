@@ -62,6 +62,7 @@ def _add_assess(commands: Commands, command: Command) -> None:
 def _add_rod(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--length", required=True, help='of the rod, such as "240 mm"')
     parser.add_argument("--diameter", required=True, help='such as "19 mm"')
-    tips = "A: round nose, B: rounded edge (default), plain: sharp edge"
-    parser.add_argument("--tip", choices=("A", "B", "plain"), default="B", help=tips)
-    parser.add_argument("--tip-radius", metavar="LENGTH", help="default: 7 mm for A, 3 mm for B")
+    tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
+    parser.add_argument("--tip", default="B", help=tips)
+    radii = "default: 7 mm for A, 3 mm for B; an added tip needs it"
+    parser.add_argument("--tip-radius", metavar="LENGTH", help=radii)

@@ -10,7 +10,7 @@ from typing import Literal
 import numpy as np
 
 from fem_impact.errors import SceneError
-from rigid import Arms, Projectile, drop_velocities
+from rigid import SHAPES, Arms, Nose, Projectile, drop_velocities
 from rigid.experiments import MeasuredSet, measured_sets
 
 __all__ = ["Case", "outside_of", "sets_of", "warnings_of", "weights_of"]
@@ -87,19 +87,19 @@ def weights_of(case: Case) -> dict[str, float]:
 
 
 def _distance(case: Case, s: MeasuredSet) -> float:
-    """Count steps in length, angle and speed; another tip than the measured one is one step."""
+    """Count steps in length, angle and speed; an edge for a measured nose, or a nose for an edge, is one."""
     steps = (
         math.log(case.rod.length / s.length) / NEAR["length"],
         (case.alpha - s.alpha) / NEAR["alpha"],
         math.log(case.speed / _speed(s)) / NEAR["speed"],
-        float(_edge(case.rod.tip) != _edge(s.tip)),
+        float(_has_face(case.rod.nose) != _has_face(SHAPES[s.tip](s.diameter / 2, s.tip_radius))),
     )
     return math.hypot(*steps)
 
 
-def _edge(tip: str) -> bool:
-    """Tell an edge (B, plain) from a nose (A)."""
-    return tip != "A"
+def _has_face(tip: Nose) -> bool:
+    """Whether the tip has a flat face, so that its edge strikes (B, plain), and not its nose (A)."""
+    return tip.face > 0
 
 
 def _speed(s: MeasuredSet) -> float:

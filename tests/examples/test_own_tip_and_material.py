@@ -1,6 +1,8 @@
 """The two examples of README's "Make it yours": a hemispherical tip and an aluminium rod."""
 
+import json
 import math
+from pathlib import Path
 
 import pytest
 
@@ -29,9 +31,42 @@ def test_an_added_tip_is_turned_meshed_and_touches_where_it_should(ball):
     assert built.rod_points[:, 2].min() == pytest.approx(1e-5)
 
 
-def test_a_tip_nobody_added_is_refused():
+ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
+DROP = ("--height", "0.82 m", "--surface", "machined")
+
+
+def test_an_added_tip_is_assessed_as_the_shape_it_has(ball, cli):
+    code, out, err = cli("assess", *ROD, *DROP, "--tip", "ball", "--tip-radius", "9.5 mm", "--json")
+    assert (code, err) == (0, "")
+    document = json.loads(out)
+    assert document["case"]["tip"] == "ball"
+    round_nose = json.loads(cli("assess", *ROD, *DROP, "--tip", "A", "--tip-radius", "7 mm", "--json")[1])
+    assert document["basis"]["weights"] == round_nose["basis"]["weights"]  # as far from the rounded edges
+
+
+def test_an_added_tip_has_coefficients(ball, cli):
+    Path("mine.csv").write_text(
+        "test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s\n"
+        "1,-1.572,-1.602,0.381,-0.371,3.607\n2,-1.516,-1.507,0.271,-0.369,1.019\n"
+    )
+    line = ("coefficients", "mine.csv", *ROD, "--tip", "ball", "--tip-radius", "9.5 mm", "--json")
+    code, out, err = cli(*line)
+    assert (code, err) == (0, "")
+    assert json.loads(out)["rod"]["tip"] == "ball"
+
+
+def test_an_added_tip_has_no_usual_radius(ball, cli):
+    code, _, err = cli("assess", *ROD, *DROP, "--tip", "ball")
+    assert code == 2
+    assert "--tip-radius" in err
+
+
+def test_a_tip_nobody_added_is_refused(cli):
     with pytest.raises(ValueError, match='"A", "B" or "plain"'):
         load("t5b").replace("projectile.tip", "ball")
+    code, _, err = cli("assess", *ROD, *DROP, "--tip", "plane")
+    assert code == 2
+    assert "Did you mean plain?" in err
 
 
 def test_an_own_material_is_a_table_of_the_scene():
