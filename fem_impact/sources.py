@@ -3,52 +3,61 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator
 from functools import cache
 from importlib import metadata
-from pathlib import Path
+from importlib.resources import files
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
     from fem_impact.scene import Scene
 
 __all__ = ["source_digest", "stamp"]
 
-# parts of fem_impact that make no numbers: they may change without a new run
-TELLING = frozenset({"cost", "figures", "paper", "render", "report", "scale", "stress", "study", "verify"})
-TELLING_FILES = ("cli", "progress", "__main__")
+ROOMS = (
+    *("fem_impact/scene", "fem_impact/effects", "fem_impact/estimates.py", "fem_impact/contact_law.py"),
+    *("fem_impact/solid", "fem_impact/modes", "fem_impact/modal", "fem_impact/rigid_limit.py"),
+    *("fem_impact/simulate.py", "fem_impact/reduce.py", "fem_impact/markers.py", "fem_impact/heating.py"),
+    *("fem_impact/outcome", "fem_impact/outcome_keys.py"),
+    *("meshes", "rigid"),
+)
+"""Packages and modules whose code determines the numbers of an outcome."""
+DATA = ("fem_impact/scene/data", "fem_impact/cost/data/summary.json", "rigid/experiments/data")
+"""Files, and folders of files, that this code reads (expected times of effects are no result)."""
+KINDS = (".toml", ".csv", ".json")
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")
-KINDS = {".py", ".toml", ".csv", ".json"}
 
 
 @cache
 def source_digest() -> str:
     """Return a digest of sources and library versions: another program never reads a stale result."""
     digest = hashlib.sha256()
-    for name, path in _sources().items():
+    for name, file in _sources().items():
         digest.update(name.encode())
-        digest.update(path.read_bytes())
+        digest.update(file.read_bytes())
     for library in LIBRARIES:
         digest.update(f"{library} {metadata.version(library)}\n".encode())
     return digest.hexdigest()
 
 
-def _sources() -> dict[str, Path]:
-    """Return every source and data file that can change a number, by its name within the packages."""
-    import fem_impact
-    import meshes
-    import rigid
-
-    found: dict[str, Path] = {}
-    for package in (fem_impact, meshes, rigid):
-        top = Path(str(package.__file__)).parent
-        files = sorted(path for path in top.rglob("*") if path.suffix in KINDS)
-        found |= {f"{top.name}/{path.relative_to(top).as_posix()}": path for path in files}
-    return {name: path for name, path in found.items() if _computes(name)}
+def _sources() -> dict[str, Traversable]:
+    """Return every source and data file that can change a number, by its path from the packages."""
+    code = {name: file for room in ROOMS for name, file in _files(room) if name.endswith(".py")}
+    data = {name: file for place in DATA for name, file in _files(place) if name.endswith(KINDS)}
+    return code | data
 
 
-def _computes(name: str) -> bool:
-    package, first, *_ = name.split("/")
-    return package != "fem_impact" or not (first in TELLING or first.startswith(TELLING_FILES))
+def _files(place: str) -> Iterator[tuple[str, Traversable]]:
+    """Yield the file at a path such as ``rigid/massive.py``, or all files below it, sorted by name."""
+    package, *rest = place.split("/")
+    entry = files(package).joinpath(*rest)
+    if entry.is_file():
+        yield place, entry
+        return
+    for name in sorted(child.name for child in entry.iterdir()):
+        yield from _files(f"{place}/{name}")
 
 
 def stamp(scene: Scene) -> str:

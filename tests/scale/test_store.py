@@ -1,6 +1,10 @@
 """Results by content address: read back whole or not at all, never for another scene or program."""
 
 import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from scale_tasks import Here, job, simulate
@@ -13,6 +17,8 @@ from fem_impact.scale import Failure, Store, run_jobs
 from fem_impact.scale import job as job_module
 from fem_impact.scene import load
 from fem_impact.sources import source_digest, stamp
+
+ROOT = Path(fem_impact.simulate.__file__).parents[1]
 
 
 @pytest.fixture(autouse=True)
@@ -124,11 +130,47 @@ def test_the_digest_covers_what_makes_numbers():
         "markers.py",
         "modes/eigen.py",
         "scene/data/surfaces.toml",
+        "cost/data/summary.json",
     )
     assert {f"fem_impact/{name}" for name in wanted} <= names
     assert {"meshes/rod.py", "rigid/experiments/data/sets.toml"} <= names
-    assert not {"fem_impact/render/film.py", "fem_impact/cli_run.py", "fem_impact/scale/run.py"} & names
+    others = ("render/film.py", "cli_run.py", "scale/run.py", "wrap.py", "effects/data/effect-cost.csv")
+    assert not {f"fem_impact/{name}" for name in others} & names
     assert stamp(load("t5b")) != stamp(load("t5c"))
+
+
+@pytest.mark.parametrize(
+    ("file", "moves"),
+    [
+        ("fem_impact/cost/data/summary.json", True),
+        ("fem_impact/scene/data/materials.toml", True),
+        ("rigid/massive.py", True),
+        ("fem_impact/wrap.py", False),
+        ("fem_impact/effects/data/effect-cost.csv", False),
+    ],
+)
+def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, file, moves):
+    for package in ("fem_impact", "meshes", "rigid"):
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(sources_module, "files", lambda package: tmp_path / package)
+    before = source_digest.__wrapped__()
+    (tmp_path / file).write_text("changed")
+    assert (source_digest.__wrapped__() != before) == moves
+
+
+def test_the_digest_covers_all_modules_that_a_run_imports():
+    """All but those that refuse, write files or show progress."""
+    probe = (
+        "import sys\nfrom fem_impact.scene import load\nfrom fem_impact.simulate import simulate\n"
+        "import fem_impact.reduce, fem_impact.solid.run\n"
+        "simulate(load('t5b'), 'rigid'), simulate(load('t5b'), 'modal')\n"
+        "print(*(name for name in sys.modules if name.startswith('fem_impact.')))"
+    )
+    done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
+    known = {name.removesuffix(".py").replace("/", ".") for name in sources_module._sources()}
+    known |= {name.removesuffix(".__init__") for name in known} | {"fem_impact.solid"}  # has no __init__
+    others = {name.split(".")[1] for name in set(done.stdout.split()) - known}
+    assert others == {"errors", "output", "progress", "run_files", "sources"}
 
 
 def test_the_digest_covers_the_libraries(monkeypatch):
