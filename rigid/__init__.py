@@ -1,4 +1,7 @@
-"""Rigid impulse-momentum theory of a projectile on a massive barrier.
+"""Rigid impulse-momentum theory of a projectile on a barrier.
+
+`solve` takes a massive barrier, `solve_free` one of finite mass that moves freely (Brach's theory of two
+bodies), `General` external impulses and changed inertia as well, `sliding_path` resolves friction.
 
 Axes: n out of the barrier, t up the slope; the contact point lies at -d_c t - d_d n from the mass
 centre; v_n, v_t < 0 before impact; Omega is positive turning n towards t. SI units throughout.

@@ -1,4 +1,4 @@
-"""What every formula of this package takes and gives: float64, any shape, broadcast together."""
+"""Arrays of the package: float64 of any shape, broadcast together."""
 
 from __future__ import annotations
 
@@ -11,5 +11,5 @@ Floats: TypeAlias = NDArray[np.float64]
 
 
 def floats(*values: ArrayLike) -> tuple[Floats, ...]:
-    """Give each value as a float64 array, unbroadcast (numpy broadcasts in the formula itself)."""
+    """Each value as a float64 array of its own shape (numpy broadcasts in the formula)."""
     return tuple(np.asarray(v, dtype=np.float64) for v in values)

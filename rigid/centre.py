@@ -1,4 +1,4 @@
-"""The centre of the contact impulse: where the contact would have to be for e_m = -1."""
+"""The centre of the contact impulse: the contact point for which e_m = -1."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def impulse_centre(
     """Arms of the point of the barrier's surface through which the contact impulse acted.
 
     Eq 18 with e_m = -1 solved for d_c = (k^2 (Omega - omega) + d_d (V_t - v_t))/(V_n - v_n). Unlike e_m it is
-    well conditioned at every angle, so a distance of a millimetre or two to the geometric contact point
-    says what a wild e_m does not: that the arms are not known better.
+    well conditioned at every angle: a distance of a millimetre or two to the geometric contact point shows
+    that errors of the arms alone explain why e_m differs from -1.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What the sum of losses and retained energy can and cannot show."""
+"""The defect of the sum of losses and retained energy: an identity, not a check of the losses."""
 
 from __future__ import annotations
 
@@ -10,13 +10,12 @@ from .arrays import Floats, floats
 def closure_defect(
     Omega: ArrayLike, e_m: ArrayLike, *, mass: ArrayLike, k2: ArrayLike, omega: ArrayLike = 0.0
 ) -> Floats:
-    """E_ln + E_lt + E_r - E_0 = (I Omega/2)(Omega + omega)(1 + 1/e_m), J, for any impact whatever.
+    """E_ln + E_lt + E_r - E_0 = (I Omega/2)(Omega + omega)(1 + 1/e_m), J, for any impact.
 
     It is an identity of Eq 18, 20, 21 and 26, true for any six velocities: at e_m = -1 the losses and the
-    retained energy add up to E_0 whatever became of the energy. So a table that closes tests its
-    mass, its moment of inertia and e_m = -1, and nothing else. It cannot say whether vibration took
-    a share, or how the loss divides between friction and plastic work: rigid-body velocities alone
-    do not hold that.
+    retained energy add up to E_0 in every case. So a table that closes tests its mass, its moment of
+    inertia and e_m = -1, and nothing else: rigid-body velocities do not contain the share of vibration,
+    or the division of the loss between friction and plastic work.
 
     Parameters
     ----------

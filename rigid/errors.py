@@ -1,4 +1,4 @@
-"""The refusals of this package, in physical words and with the offending number."""
+"""Errors of the package: what is physically wrong, with the number."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class RigidError(ValueError):
-    """An input for which rigid-body impact theory has no meaning."""
+    """An input that rigid-body impact theory cannot take."""
 
 
 class ShapeError(RigidError):
@@ -33,7 +33,7 @@ def refuse(bad: Any, message: str, values: Any, error: type[RigidError] = Impact
     message : str
         What is wrong and what to do, with ``{value}`` where the number belongs.
     values : array_like
-        The quantity judged, broadcastable to the shape of `bad`.
+        The quantity that is checked, broadcastable to the shape of `bad`.
     error : type of RigidError
         The class to raise.
     """

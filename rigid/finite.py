@@ -1,4 +1,4 @@
-"""A barrier of finite mass, free to move: the limit check of the massive barrier."""
+"""A barrier of finite mass, free to move: Brach's impact of two bodies; a massive barrier is its limit."""
 
 from __future__ import annotations
 

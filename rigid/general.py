@@ -20,7 +20,7 @@ from .massive import APPROACH, Motion
 
 @dataclass(frozen=True, slots=True)
 class General:
-    """A planar impact in full; every entry is an array_like and all broadcast together.
+    """A planar impact; every entry is an array_like and all broadcast together.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class General:
         ImpactError
             If the contact does not close, the body has no mass or inertia, the rebound would go through
             the barrier, the system is singular, the barrier would have to pull, or energy would
-            come from nowhere. A kinematic e above 1 is no error: friction can turn tangential energy
+            be created. A kinematic e above 1 is no error: friction can turn tangential energy
             into rebound.
 
         Examples
@@ -88,7 +88,13 @@ class General:
         >>> f"{V_n:.3f} {V_t:.3f} {Omega:.2f}"
         '0.330 -0.411 7.11'
         """
-        _check(self)
+        v_n, omega, d_c, v_bn, e = floats(self.v_n, self.omega, self.d_c, self.v_bn, self.e)
+        approach = v_n + d_c * omega - v_bn
+        refuse(~(approach < 0), APPROACH, approach)
+        refuse(~(e >= 0), "with e = {value} < 0 the rod would pass through the barrier", e)
+        inertia = _inertia_and_arms(self)[1]
+        for name, value in (("mass", self.mass), ("k2", self.k2), ("inertia J", inertia)):
+            refuse(~(np.asarray(value) > 0), f"{name} must be positive, got {{value}}", value)
         A, b = system(self)
         singular = np.abs(np.linalg.det(A)) <= 1e-12 * np.abs(A).max(axis=(-1, -2))
         refuse(singular, "the equations are singular: no finite impulse gives this restitution", singular)
@@ -127,20 +133,10 @@ def system(s: General) -> tuple[Floats, Floats]:
 
 
 def _inertia_and_arms(s: General) -> tuple[Floats, ...]:
-    """Give I, J, D_c, D_d, those after impact as before unless stated."""
+    """Inertia I and J (kg m2), arms D_c and D_d (m); after impact as before unless stated."""
     I = np.asarray(s.mass, dtype=np.float64) * np.asarray(s.k2, dtype=np.float64)
     after = (s.J, I), (s.D_c, s.d_c), (s.D_d, s.d_d)
     return floats(I, *(old if new is None else new for new, old in after))
-
-
-def _check(s: General) -> None:
-    """Refuse a statement that has no meaning before it is solved."""
-    v_n, omega, d_c, v_bn, e = floats(s.v_n, s.omega, s.d_c, s.v_bn, s.e)
-    approach = v_n + d_c * omega - v_bn
-    refuse(~(approach < 0), APPROACH, approach)
-    refuse(~(e >= 0), "with e = {value} < 0 the rod would pass through the barrier", e)
-    for name, value in (("mass", s.mass), ("k2", s.k2), ("inertia J", _inertia_and_arms(s)[1])):
-        refuse(~(np.asarray(value) > 0), f"{name} must be positive, got {{value}}", value)
 
 
 def _check_result(s: General, after: Motion) -> None:

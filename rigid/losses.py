@@ -19,7 +19,7 @@ class Losses(NamedTuple):
     E_0: Floats
 
     def fractions(self) -> Losses:
-        """Give all four divided by E_0."""
+        """All four divided by E_0."""
         return Losses(*(value / self.E_0 for value in self))
 
 

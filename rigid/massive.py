@@ -73,9 +73,9 @@ def solve(
 
     Notes
     -----
-    The three equations know no energy: coefficients can be stated (mu beyond mu_c, e_m far from -1) that
-    make some from nothing. They are solved all the same, since measured coefficients with their
-    errors must invert; `kinetic_energy` shows the gain, and `General` refuses it.
+    The three equations do not conserve energy by themselves: coefficients can be stated (mu beyond mu_c,
+    e_m far from -1) that create some. They are solved all the same, since measured coefficients with
+    their errors must invert; `kinetic_energy` shows the gain, and `General` refuses it.
 
     Examples
     --------
@@ -135,7 +135,7 @@ def critical_ratio(
     d_c, d_d, k2 = floats(d_c, d_d, k2)
     approach = v_n + d_c * omega
     refuse(~(approach < 0), APPROACH, approach)
-    # minus what the impulse has to change: the spin left over, -e_m omega, moves the contact point too
+    # velocities of the contact point to be changed; the spin -e_m omega left after impact moves it too
     normal = v_n - e_m * d_c * omega + e * approach
     tangential, coupling = v_t + e_m * d_d * omega, e_m * d_c * d_d
     above = tangential * (k2 - e_m * d_c**2) - normal * coupling

@@ -41,7 +41,7 @@ class Nose:
 
     @property
     def arc_end(self) -> tuple[float, float]:
-        """Where the arc ends, (rho, z) in m."""
+        """End of the arc, (rho, z) in m."""
         return self.face + self.r * np.sin(self.sweep), self.r * (1.0 - np.cos(self.sweep))
 
     @property
@@ -51,14 +51,14 @@ class Nose:
 
     @property
     def z_side(self) -> float:
-        """Where the cylinder begins, m from the tip end."""
+        """Start of the cylinder, m from the tip end."""
         if not self.has_cone:
             return self.r
         rho, z = self.arc_end
         return float(z + (self.radius - rho) * np.tan(self.sweep))
 
     def polyline(self, n: int) -> Floats:
-        """Give the meridian as points, with `n` on the arc and every break point exact.
+        """Meridian as points: `n` on the arc, and the ends of face, arc and cone.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class Nose:
         return points
 
     def lowest(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
-        """Give the point of the meridian that touches a barrier inclined at `alpha`.
+        """Point of the meridian that touches a barrier inclined at `alpha`.
 
         The outward normal there is -n, that is (sin alpha, -cos alpha) in (rho, z), so the arc is
         touched at the angle alpha itself, until the arc ends and the shoulder of the cone comes down.
@@ -109,9 +109,4 @@ SHAPES: dict[str, Callable[[float, float], Nose]] = {
     "B": lambda radius, r: Nose(radius, radius - r, r, np.pi / 2),
     "plain": lambda radius, r: Nose(radius, radius, 0.0, np.pi / 2),
 }
-"""The tips by name: each makes a nose of the rod's radius and the tip's radius, m. Add yours here."""
-
-
-def nose(tip: str, radius: float, r: float) -> Nose:
-    """Give the nose of a rod of ``radius`` with the named tip of radius ``r``, m."""
-    return SHAPES[tip](radius, r)
+"""Tips by name: each makes the meridian from the rod's radius and the tip's radius, m. Add yours here."""

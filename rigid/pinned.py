@@ -1,4 +1,4 @@
-"""The most energy that an impulse at the contact point can take, whatever its law."""
+"""Upper bound of the energy that an impulse at the contact point can take, for any contact law."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from .arms import Arms, corner_arms
 from .arrays import Floats, floats
 from .errors import ShapeError, refuse
-from .nose import SHAPES, Nose, nose
+from .nose import SHAPES, Nose
 from .slenderness import slenderness
 
 
@@ -49,16 +49,28 @@ class Projectile:
     density: float
 
     def __post_init__(self) -> None:
-        _check(self)
+        for name in ("length", "diameter", "density"):
+            value = getattr(self, name)
+            if not (math.isfinite(value) and value > 0):
+                raise ShapeError(f"{name} must be positive and finite, got {value}")
+        if self.tip not in SHAPES:
+            raise ShapeError(f"tip must be one of {', '.join(SHAPES)}, got {self.tip!r}")
+        if self.tip == "plain" and self.tip_radius != 0:
+            raise ShapeError(f"a plain tip has a sharp edge: tip_radius must be 0, got {self.tip_radius}")
+        if self.tip != "plain" and not 0 < self.tip_radius <= self.diameter / 2:
+            limit = f"must lie in 0 < tip_radius <= {self.diameter / 2} m (the rod's radius)"
+            raise ShapeError(f"tip_radius of tip {self.tip} {limit}, got {self.tip_radius}")
+        if not self.z_side < self.length:
+            raise ShapeError(f"the nose is {self.z_side:.6g} m long, the rod only {self.length} m")
 
     @property
     def nose(self) -> Nose:
-        """Shape of the tip."""
-        return nose(self.tip, self.diameter / 2, self.tip_radius)
+        """Meridian of the tip."""
+        return SHAPES[self.tip](self.diameter / 2, self.tip_radius)
 
     @property
     def z_side(self) -> float:
-        """Where the nose ends and the cylinder begins, m from the tip end."""
+        """End of the nose and start of the cylinder, m from the tip end."""
         return self.nose.z_side
 
     @property
@@ -82,7 +94,7 @@ class Projectile:
         return float(slenderness(self.length, self.diameter))
 
     def meridian(self, n: int = 33) -> Floats:
-        """Give the tip's meridian as (rho, z) points, m, from (0, 0) to (R, z_side).
+        """Meridian of the tip as (rho, z) points, m, from (0, 0) to (R, z_side).
 
         `n` points lie on the arc (both ends counted); the flat face and the cone add their ends only.
         Shape (m, 2), float64; every break point is exact.
@@ -92,20 +104,20 @@ class Projectile:
         return self.nose.polyline(n)
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
-        """Give (rho, z), m, of the lowest meridian point at inclination `alpha` (rad)."""
+        """Lowest point (rho, z), m, of the meridian at inclination `alpha` (rad)."""
         (alpha,) = floats(alpha)
         outside = ~((alpha >= 0) & (alpha < np.pi / 2))
         refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
         return self.nose.lowest(alpha)
 
     def arms(self, alpha: ArrayLike) -> Arms:
-        """Give (d_c, d_d), m, of the real tip: its lowest point seen from the true mass centre."""
+        """Arms d_c, d_d, m, of the tip's lowest point about the mass centre of the turned rod."""
         rho, z = self.contact_point(alpha)
         sin, cos = np.sin(alpha), np.cos(alpha)
         return Arms((self.z_c - z) * sin - rho * cos, (self.z_c - z) * cos + rho * sin)
 
     def corner_arms(self, alpha: ArrayLike) -> Arms:
-        """Give (d_c, d_d), m, of the sharp corner of a plain cylinder of this size (Eq 6-7)."""
+        """Arms d_c, d_d, m, of the sharp corner of a plain cylinder of this size (Eq 6-7)."""
         return corner_arms(self.length, self.diameter, alpha)
 
 
@@ -117,29 +129,12 @@ class Moments(NamedTuple):
     k2: float
 
 
-def _check(rod: Projectile) -> None:
-    """Refuse a shape that cannot be turned."""
-    for name in ("length", "diameter", "density"):
-        value = getattr(rod, name)
-        if not (math.isfinite(value) and value > 0):
-            raise ShapeError(f"{name} must be positive and finite, got {value}")
-    if rod.tip not in SHAPES:
-        raise ShapeError(f"tip must be one of {', '.join(SHAPES)}, got {rod.tip!r}")
-    if rod.tip == "plain" and rod.tip_radius != 0:
-        raise ShapeError(f"a plain tip has a sharp edge: tip_radius must be 0, got {rod.tip_radius}")
-    if rod.tip != "plain" and not 0 < rod.tip_radius <= rod.diameter / 2:
-        limit = f"must lie in 0 < tip_radius <= {rod.diameter / 2} m (the rod's radius)"
-        raise ShapeError(f"tip_radius of tip {rod.tip} {limit}, got {rod.tip_radius}")
-    if not rod.nose.z_side < rod.length:
-        raise ShapeError(f"the nose is {rod.nose.z_side:.6g} m long, the rod only {rod.length} m")
-
-
 @lru_cache(maxsize=128)
 def _moments(rod: Projectile) -> Moments:
-    """Integrate the solid of revolution.
+    """Integrate the solid of revolution by discs dm = density pi rho^2 dz.
 
-    dm = density pi rho^2 dz, and a disc adds its own rho^2/4 about its diameter; Gauss points are
-    exact for the straight pieces and reach round-off on the arc.
+    A disc has the moment rho^2/4 dm about its diameter. Gauss points are exact for the straight pieces
+    and reach round-off on the arc.
     """
     z, rho2, dz = (np.concatenate(part) for part in zip(*_pieces(rod), strict=True))
     dm = rod.density * np.pi * rho2 * dz
@@ -149,7 +144,7 @@ def _moments(rod: Projectile) -> Moments:
 
 
 def _pieces(rod: Projectile) -> Iterator[tuple[Floats, Floats, Floats]]:
-    """Yield (z, rho^2, dz) at the Gauss points of arc, cone and cylinder."""
+    """Yield z (m), rho^2 (m2) and weight dz (m) at the Gauss points of arc, cone and cylinder, (24,) each."""
     x, weight = np.polynomial.legendre.leggauss(24)
     unit, weight = 0.5 * (x + 1), 0.5 * weight
     tip = rod.nose

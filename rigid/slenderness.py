@@ -46,10 +46,10 @@ def slenderness(length: ArrayLike, diameter: ArrayLike) -> Floats:
 
 
 def in_millimetres(gamma: ArrayLike) -> Floats:
-    """Give gamma in mm^-0.3815 for gamma in m^-0.3815 (the limit 26.45 becomes 1.896)."""
+    """Gamma in mm^-0.3815 for gamma in m^-0.3815 (the limit 26.45 becomes 1.896)."""
     return np.asarray(gamma, dtype=np.float64) * TO_MM
 
 
 def behaves_rigidly(gamma: ArrayLike) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
-    """Tell whether gamma (m^-0.3815) meets the criterion gamma <= 26.45 (Eq 29)."""
+    """Whether gamma (m^-0.3815) meets the criterion gamma <= 26.45 (Eq 29)."""
     return np.asarray(np.asarray(gamma) <= LIMIT)

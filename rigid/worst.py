@@ -36,7 +36,7 @@ def worst_case(
     k2: ArrayLike,
     mass: ArrayLike,
 ) -> WorstCase:
-    """Find the largest total and the largest tangential loss of an impact whose friction is not known.
+    """Largest total and largest tangential loss of an impact whose friction is not known.
 
     Brach's practical rule takes mu_c for the worst; the two maxima are searched for here (512 steps of mu,
     where a flat maximum is good to 1e-5 of itself), because they need not lie there. While the tip slides one
@@ -77,7 +77,7 @@ def worst_case(
 
 
 def _largest(loss: Floats, mu: Floats) -> tuple[Floats, Floats]:
-    """Give the largest loss along the last axis, and its mu."""
+    """Largest loss along the last axis, and its mu."""
     at = loss.argmax(axis=-1)[..., None]
     best = np.take_along_axis(mu, at, axis=-1)[..., 0]
     return loss.max(axis=-1), best[()]

@@ -1,4 +1,4 @@
-"""How well the short rod's losses against the angle are known: the tests of each set drawn anew."""
+"""Scatter of the short rod's losses against the angle: the tests of each set drawn with replacement."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ COEFFICIENTS = ("e", "mu", "e_m")
 
 
 def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> PredictedLosses:
-    """Losses of `loss_against_angle` for imagined repetitions of the five sets.
+    """Losses of `loss_against_angle` for random repetitions of the five sets.
 
     Parameters
     ----------
     alpha : (n,) array_like
         Inclinations, rad, from 17 to 60 degrees.
     samples : int
-        Imagined repetitions: in each, every set's tests are drawn with replacement.
+        Repetitions; in each, the tests of every set are drawn with replacement.
     seed : int
-        Of the draws.
+        Of the random numbers.
 
     Returns
     -------
@@ -40,7 +40,8 @@ def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> Predic
     """
     x, rng = np.asarray(alpha, dtype=np.float64), np.random.default_rng(seed)
     means = _drawn_means(samples, rng)
-    weights = _weights(x)
+    angles = np.array([s.alpha for s in angle_sets()])
+    weights = np.stack([np.interp(x, angles, unit) for unit in np.eye(len(angles))])  # of each set, (5, n)
     given: dict[str, Any] = {name: means[i] @ weights for i, name in enumerate(COEFFICIENTS)}
     arms = at_angle(x)
     body: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": angle_sets()[0].k2, "mass": 2.0}
@@ -48,16 +49,11 @@ def drawn_losses(alpha: ArrayLike, samples: int = 1000, seed: int = 0) -> Predic
 
 
 def _drawn_means(samples: int, rng: np.random.Generator) -> Floats:
-    """Give the means of e, mu and e_m, (3, samples, 5)."""
+    """Means of e, mu and e_m of tests drawn with replacement from each set, (3, samples, 5)."""
     columns = []
-    for found in (s.recomputed() for s in angle_sets()):
-        rows = np.stack([found[name] for name in COEFFICIENTS])
+    for measured in angle_sets():
+        recomputed = measured.recomputed()
+        rows = np.stack([recomputed[name] for name in COEFFICIENTS])
         chosen = rng.integers(rows.shape[1], size=(samples, rows.shape[1]))
         columns.append(rows[:, chosen].mean(axis=2))
     return np.stack(columns, axis=-1)
-
-
-def _weights(x: Floats) -> Floats:
-    """Give the weight of each set at each angle for linear interpolation, (5, n)."""
-    angles = np.array([s.alpha for s in angle_sets()])
-    return np.stack([np.interp(x, angles, unit) for unit in np.eye(len(angles))])

@@ -1,4 +1,4 @@
-"""The short rod against the angle of the barrier: means, critical ratio, and Eq 23-25 in between.
+"""The short rod against the angle of the barrier: means, critical ratio, and losses by Eq 23-25.
 
 Five sets of the 0.08 m rod dropped at about 2.1 m/s: 17, 25, 37, 60 degrees (Table 6) and 45 (Table 5, b).
 """
@@ -30,7 +30,7 @@ class AtAngle(NamedTuple):
 
 
 def angle_sets() -> tuple[MeasuredSet, ...]:
-    """Give the five sets in the order of their angle."""
+    """Five sets in the order of their angle."""
     return tuple(measured_set(id) for id in IDS)
 
 
@@ -51,9 +51,9 @@ def at_angle(alpha: ArrayLike) -> AtAngle:
     angles = np.array([s.alpha for s in angle_sets()])
     outside = ~((x >= angles[0]) & (x <= angles[-1]))
     refuse(outside, "the short rod was measured from 17 to 60 degrees, not at {value} rad", x, DataError)
-    rows = [(s.statistics(), s.arms) for s in angle_sets()]
-    means = [[found[name].mean for found, _ in rows] for name in ("e", "mu", "e_m")]
-    arms = [[float(pair[i]) for _, pair in rows] for i in (0, 1)]
+    statistics = [s.statistics() for s in angle_sets()]
+    means = [[of_set[name].mean for of_set in statistics] for name in ("e", "mu", "e_m")]
+    arms = [[float(s.arms[i]) for s in angle_sets()] for i in (0, 1)]
     return AtAngle(*(np.interp(x, angles, column)[()] for column in (*means, *arms)))
 
 

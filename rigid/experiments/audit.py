@@ -32,7 +32,7 @@ class AuditRecord:
     Attributes
     ----------
     set_id, column, row : str
-        Where it stands; `row` is the test's number, "mean" or "sd".
+        Place of the number; `row` is the test's number, "mean" or "sd".
     table : int
         Of the paper.
     printed, recomputed : float
@@ -40,7 +40,7 @@ class AuditRecord:
     tolerance : float
         Largest difference that the rounding of all numbers involved can make.
     explanation : str
-        What is known of a number that does not agree; empty if it does, or if nothing is known.
+        Reason why a number does not agree; empty if it does, or if the reason is not known.
     """
 
     set_id: str
@@ -84,15 +84,15 @@ def audit_statistics() -> tuple[AuditRecord, ...]:
 
 
 def column_arms(set_id: str) -> Mapping[str, float]:
-    """Give the d_c (m) of the columns that were not worked out with their set's own.
+    """Arm d_c (m) of the columns that were not worked out with their set's own.
 
     Examples
     --------
     >>> dict(column_arms("t2"))
     {'e': 0.084, 'e_m': 0.0838}
     """
-    found: Mapping[str, float] = _knowledge()["arms"].get(set_id, {})
-    return found
+    arms: Mapping[str, float] = _knowledge()["arms"].get(set_id, {})
+    return arms
 
 
 def recompute(
@@ -107,13 +107,13 @@ def recompute(
     k2: ArrayLike,
     mass: ArrayLike,
 ) -> dict[str, Floats]:
-    """Give every derived column of a row: Eq 14-18, 20, 21 and 26 (SI units)."""
+    """Return the derived columns of the tables: Eq 14-18, 20, 21 and 26 (SI units)."""
     V_n, V_t, Omega, d_c, d_d = floats(V_n, V_t, Omega, d_c, d_d)
     motion = (v_n, v_t, V_n, V_t, Omega)
     markers = {"V_cn": V_n + d_c * Omega, "V_ct": V_t - d_d * Omega}
-    found = coefficients(*motion, d_c=d_c, d_d=d_d, k2=k2)._asdict()
+    ratios = coefficients(*motion, d_c=d_c, d_d=d_d, k2=k2)._asdict()
     energies = losses(*motion, d_c=d_c, d_d=d_d, k2=k2, mass=mass)._asdict()
-    return {**markers, **found, **energies}
+    return {**markers, **ratios, **energies}
 
 
 def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
@@ -134,7 +134,7 @@ def _totals(s: MeasuredSet) -> Iterator[AuditRecord]:
 
 
 def _inputs(s: MeasuredSet, column: str) -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Give the inputs of every row and the half unit of their last digit."""
+    """Return the inputs of every row, (n,) each, and half a unit of their last digit."""
     d_c = column_arms(s.id).get(column, s.arms.d_c)
     constants = {"d_c": d_c, "d_d": s.arms.d_d, "k2": s.k2, "mass": s.mass}
     shape = s.motion["v_n"].shape
@@ -147,14 +147,14 @@ def _inputs(s: MeasuredSet, column: str) -> tuple[dict[str, Floats], dict[str, F
 
 
 def _half_units(s: MeasuredSet, column: str) -> Floats:
-    """Half a unit in the last printed digit of each row (a hair more, for binary fractions)."""
+    """Half a unit in the last printed digit of each row, (n,); 2e-4 of it more, for binary fractions."""
     return 0.5001 * 10.0 ** -np.array(decimals(s.table, column, s.select), dtype=np.float64)
 
 
-def _records(s: MeasuredSet, column: str, found: Floats, tolerance: Floats) -> Iterator[AuditRecord]:
-    """Pair the printed rows with what was found."""
+def _records(s: MeasuredSet, column: str, recomputed: Floats, tolerance: Floats) -> Iterator[AuditRecord]:
+    """Pair the printed rows with the recomputed values."""
     tests = (f"{test:.0f}" for test in s.printed["test"])
-    for row, printed, value, half in zip(tests, s.printed[column], found, tolerance, strict=True):
+    for row, printed, value, half in zip(tests, s.printed[column], recomputed, tolerance, strict=True):
         yield _record(s, row, column, printed, value, half)
 
 
@@ -172,7 +172,7 @@ def _statistics(s: MeasuredSet) -> Iterator[AuditRecord]:
 def _record(
     s: MeasuredSet, row: str, column: str, printed: float, value: float, tolerance: float
 ) -> AuditRecord:
-    """Make a record, with an explanation where it is needed and known."""
+    """Record of one number, with an explanation where it disagrees and the reason is known."""
     record = AuditRecord(s.id, s.table, row, column, float(printed), float(value), float(tolerance), "")
     if record.agrees:
         return record
@@ -181,7 +181,7 @@ def _record(
 
 
 def _applies(known: dict[str, Any], record: AuditRecord) -> bool:
-    """Tell whether a piece of knowledge is about this record ("*" in rows means every test, no statistic)."""
+    """Whether an entry of audit.toml is about this record ("*" in rows: all tests, no statistics)."""
     rows = {record.row} if record.row in ("mean", "sd") else {record.row, "*"}
     return (
         known["set"] in ("*", record.set_id)
@@ -192,5 +192,5 @@ def _applies(known: dict[str, Any], record: AuditRecord) -> bool:
 
 @cache
 def _knowledge() -> dict[str, Any]:
-    """Read the packaged knowledge about the tables."""
+    """Tables of audit.toml: constants that columns were worked out with, and known misprints."""
     return tomllib.loads((files(__package__) / "data" / "audit.toml").read_text(encoding="utf-8"))

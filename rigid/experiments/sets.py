@@ -1,4 +1,4 @@
-"""The thirteen measured sets: rod, barrier, arms and rows, with everything recomputed from the rows."""
+"""The thirteen measured sets: rod, barrier, arms, rows, and the quantities recomputed from the rows."""
 
 from __future__ import annotations
 
@@ -82,10 +82,10 @@ class MeasuredSet:
             E_r_over_E_0, with E_0 = m (v_n^2 + v_t^2)/2 of that row.
         """
         body: dict[str, Any] = {"d_c": self.arms.d_c, "d_d": self.arms.d_d, "k2": self.k2}
-        found = coefficients(**self.motion, **body)._asdict()
+        ratios = coefficients(**self.motion, **body)._asdict()
         shares = losses(**self.motion, **body, mass=self.mass).fractions()
         energies = {f"{k}_over_E_0": v for k, v in shares._asdict().items() if k != "E_0"}
-        return {**self.motion, **found, **energies}
+        return {**self.motion, **ratios, **energies}
 
     def statistics(self) -> dict[str, Statistic]:
         """Mean, sample SD and 95 % interval of the mean for each recomputed quantity."""
@@ -93,7 +93,7 @@ class MeasuredSet:
 
 
 def _motion(entry: Mapping[str, Any], rows: Mapping[str, Floats]) -> dict[str, Floats]:
-    """Give the measured velocities, or those that the printed coefficients imply (Eq 9, 10 and 12)."""
+    """Measured velocities, or those that the printed coefficients give (Eq 9, 10 and 12)."""
     if "v_n" not in entry:
         return {name: rows[name] for name in MOTION}
     given = {name: entry[name] for name in ("d_c", "d_d", "k2")}
@@ -104,22 +104,22 @@ def _motion(entry: Mapping[str, Any], rows: Mapping[str, Floats]) -> dict[str, F
 
 @cache
 def _entries() -> dict[str, dict[str, Any]]:
-    """Read the packaged description of the sets."""
+    """Return the sets by id, as sets.toml states them."""
     return tomllib.loads((files(__package__) / "data" / "sets.toml").read_text(encoding="utf-8"))
 
 
 def set_ids() -> tuple[str, ...]:
-    """Give the ids of the thirteen sets, in the paper's order."""
+    """Ids of the thirteen sets, in the paper's order."""
     return tuple(_entries())
 
 
 def measured_set(id: str) -> MeasuredSet:
-    """Give one measured set.
+    """Measured set by its id.
 
     Raises
     ------
     DataError
-        If there is no set of this id; the message lists those there are.
+        If there is no set of this id; the message lists all ids.
 
     Examples
     --------
@@ -145,5 +145,5 @@ def measured_set(id: str) -> MeasuredSet:
 
 
 def measured_sets() -> tuple[MeasuredSet, ...]:
-    """Give all thirteen sets, in the paper's order."""
+    """Thirteen sets, in the paper's order."""
     return tuple(measured_set(id) for id in set_ids())

@@ -12,7 +12,7 @@ from ..errors import DataError
 
 @dataclass(frozen=True, slots=True)
 class Statistic:
-    """What a column of measurements says.
+    """Statistics of a column of measurements.
 
     Attributes
     ----------
@@ -32,7 +32,7 @@ class Statistic:
 
 
 def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:
-    """Recompute the statistics of one column.
+    """Mean, scatter and interval of one column.
 
     Parameters
     ----------

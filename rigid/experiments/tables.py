@@ -18,13 +18,13 @@ TABLES = (2, 3, 4, 5, 6)
 
 @cache
 def _lines(name: str) -> tuple[dict[str, str], ...]:
-    """Read one packaged CSV file."""
+    """Rows of one CSV file of the package."""
     text = (files(__package__) / "data" / name).read_text(encoding="utf-8")
     return tuple(csv.DictReader(text.splitlines()))
 
 
 def _select(name: str, select: Mapping[str, str]) -> list[dict[str, str]]:
-    """Give the lines whose labels match `select`."""
+    """Rows whose labels match `select`."""
     lines = [line for line in _lines(name) if all(line.get(k) == v for k, v in select.items())]
     if not lines:
         raise DataError(f"{name} has no row with {dict(select)}")
@@ -32,19 +32,19 @@ def _select(name: str, select: Mapping[str, str]) -> list[dict[str, str]]:
 
 
 def _columns(name: str, select: Mapping[str, str]) -> dict[str, Floats]:
-    """Give the numeric columns of the selected lines."""
+    """Numeric columns of the selected rows, (n,) each."""
     lines = _select(name, select)
     numeric = [key for key in lines[0] if key not in LABELS]
     return {key: np.array([float(line[key]) for line in lines]) for key in numeric}
 
 
 def _decimals(text: str) -> int:
-    """Count the digits after the point."""
+    """Return the number of digits after the point."""
     return len(text.partition(".")[2])
 
 
 def table(number: int, select: Mapping[str, str] | None = None) -> dict[str, Floats]:
-    """Give the rows of Table `number` (2 to 6) as columns, SI units, in the printed order.
+    """Rows of Table `number` (2 to 6) as columns, SI units, in the printed order.
 
     Parameters
     ----------
@@ -69,16 +69,16 @@ def table(number: int, select: Mapping[str, str] | None = None) -> dict[str, Flo
 
 
 def decimals(number: int, column: str, select: Mapping[str, str] | None = None) -> tuple[int, ...]:
-    """Give the decimals with which each row of a column was printed."""
+    """Return the decimals with which each row of a column was printed."""
     return tuple(_decimals(line[column]) for line in _select(f"table{number}.csv", select or {}))
 
 
 def printed_statistics(number: int, which: str, select: Mapping[str, str] | None = None) -> dict[str, Floats]:
-    """Give the printed "mean" or "sd" line of a table (misprints included), as one-element columns."""
+    """Return the printed "mean" or "sd" line of a table, misprints included, as one-element columns."""
     return _columns(f"table{number}_printed_statistics.csv", {**(select or {}), "statistic": which})
 
 
 def statistic_decimals(number: int, which: str, column: str, select: Mapping[str, str] | None = None) -> int:
-    """Give the decimals of one number of the printed "mean" or "sd" line."""
+    """Return the decimals of one number of the printed "mean" or "sd" line."""
     wanted = {**(select or {}), "statistic": which}
     return _decimals(_select(f"table{number}_printed_statistics.csv", wanted)[0][column])

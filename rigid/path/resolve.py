@@ -1,10 +1,10 @@
-"""From the path to the motion after impact, for three laws of restitution.
+"""Motion after impact from the sliding path, for three laws of restitution.
 
 A point contact (e_m = -1) on a massive barrier, everything in closed form. References: Stronge, Impact
 Mechanics, Cambridge (energetic restitution); Wang and Mason, J. Appl. Mech. 59 (1992), 635 (sticking and
 reversal in the impulse plane). Above the Painleve threshold sliding presses the point further into the
-barrier, yet it stops, sticks and is thrown out: the impulse domain has a solution where a rigid model with
-forces has none.
+barrier, yet it stops, sticks and rebounds: the equations in impulses have a solution where those in forces
+have none.
 """
 
 from __future__ import annotations
@@ -70,23 +70,15 @@ class SlidingPath:
         return -(sum(self.normal_work) + sum(self.tangential_work))  # type: ignore[return-value]
 
 
-Law = Callable[[Segments, Floats, Floats], Floats]
+LAWS: dict[str, Callable[[Segments, Floats, Floats], Floats]] = {
+    "kinematic": lambda path, e, p_c: path.reaching(-e * path.u),
+    "kinetic": lambda path, e, p_c: (1.0 + e) * p_c,
+    "energetic": lambda path, e, p_c: path.regaining(-(e**2) * sum(path.normal_work(p_c)), p_c),
+}
+"""Impulse at separation by Newton's, Poisson's and Stronge's definition of restitution.
 
-
-def _kinematic(path: Segments, e: Floats, p_c: Floats) -> Floats:
-    return path.reaching(-e * path.u)
-
-
-def _kinetic(path: Segments, e: Floats, p_c: Floats) -> Floats:
-    return (1.0 + e) * p_c
-
-
-def _energetic(path: Segments, e: Floats, p_c: Floats) -> Floats:
-    return path.regaining(-(e**2) * sum(path.normal_work(p_c)), p_c)
-
-
-LAWS: dict[str, Law] = {"kinematic": _kinematic, "kinetic": _kinetic, "energetic": _energetic}
-"""Impulse at separation by Newton's, Poisson's and Stronge's definition of restitution."""
+From the path, e and the impulse p_c at greatest compression (m/s, per unit mass).
+"""
 
 
 def sliding_path(
@@ -142,7 +134,11 @@ def sliding_path(
     v_n, v_t, e, f, omega = np.broadcast_arrays(*floats(v_n, v_t, e, f, omega))
     d_c, d_d, k2 = floats(d_c, d_d, k2)
     u, w = v_n + d_c * omega, v_t - d_d * omega
-    _check(u, e, f, law)
+    if law not in LAWS:
+        raise ImpactError(f"law must be one of {', '.join(LAWS)}, got {law!r}")
+    refuse(~(u < 0), APPROACH, u)
+    refuse(~(e >= 0), "restitution must not be negative, got {value}", e)
+    refuse(~(f >= 0), "friction must not be negative, got {value}", f)
     path = segments(u, w, f, d_c=d_c, d_d=d_d, k2=k2)
     p_c = path.reaching(np.zeros_like(path.p_s))
     p_f = LAWS[law](path, e, p_c)
@@ -151,20 +147,11 @@ def sliding_path(
     return _result(path, motion, p_c, p_f, q)
 
 
-def _check(u: Floats, e: Floats, f: Floats, law: str) -> None:
-    """Refuse a meaningless statement."""
-    if law not in LAWS:
-        raise ImpactError(f"law must be one of {', '.join(LAWS)}, got {law!r}")
-    refuse(~(u < 0), APPROACH, u)
-    refuse(~(e >= 0), "restitution must not be negative, got {value}", e)
-    refuse(~(f >= 0), "friction must not be negative, got {value}", f)
-
-
 def _result(path: Segments, motion: Motion, p_c: Floats, p_f: Floats, q: Floats) -> SlidingPath:
-    """Gather what the path says, and refuse a rebound stronger than the compression could pay for."""
+    """Collect the result; refuse a rebound that needs more work than the compression stored."""
     works = path.normal_work(p_f)
     stored = -sum(path.normal_work(p_c))
-    returned = np.maximum(sum(works) + stored, 0.0)  # round-off can leave it a hair below zero
+    returned = np.maximum(sum(works) + stored, 0.0)  # round-off can leave it below zero
     e_energetic = np.sqrt(returned / stored)
     gain = (
         "this restitution needs an energetic one of {value} > 1, energy from nothing: state it as energetic"

@@ -17,7 +17,7 @@ import numpy as np
 from ..arrays import Floats
 
 NEVER = 1e12
-"""Sliding that would need this many times the approach velocity as impulse is taken never to stop."""
+"""Sliding that needs more than this times the approach velocity as impulse is taken never to stop."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +50,11 @@ class Segments:
         return kink, kink + slope[1] * (p - first)
 
     def normal(self, p: Floats) -> Floats:
-        """Give v_cn at impulse `p`, m/s."""
+        """Return the normal velocity of the contact point at impulse `p`, m/s."""
         return self._kinked(self.u, self.n, p)[1]
 
     def tangential_impulse(self, p: Floats) -> Floats:
-        """Tangential impulse per unit mass that has gone with `p`, m/s."""
+        """Tangential impulse per unit mass up to normal impulse `p`, m/s."""
         return self._kinked(np.zeros_like(p), self.s, p)[1]
 
     def normal_work(self, p: Floats) -> tuple[Floats, Floats]:
@@ -79,7 +79,7 @@ class Segments:
         return np.where(early, (v - self.u) / slope, start + (v - kink) / slope)
 
     def regaining(self, work: Floats, p_c: Floats) -> Floats:
-        """Impulse at which the normal impulse, after compression ended at `p_c`, has given back `work`."""
+        """Impulse, m/s, at which the work since the end of compression at `p_c` reaches `work`, m2/s2."""
         forever = np.isinf(self.p_s)
         split = np.where(forever, p_c, np.maximum(self.p_s, p_c))
         v = self.normal(split)
@@ -91,7 +91,7 @@ class Segments:
 
 
 def segments(u: Floats, w: Floats, f: Floats, *, d_c: Floats, d_d: Floats, k2: Floats) -> Segments:
-    """Build the two pieces from the contact point's velocities (m/s) and the friction f."""
+    """Two pieces from the contact point's velocities u, w (m/s) and the friction f."""
     n_n, n_t, t_t = 1.0 + d_c**2 / k2, -d_c * d_d / k2, 1.0 + d_d**2 / k2
     slide, hold = -f * np.sign(w), np.clip(-n_t / t_t, -f, f)
     t_slide = t_t * slide + n_t

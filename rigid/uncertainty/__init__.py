@@ -1,4 +1,4 @@
-"""How well measured velocities determine the impact coefficients."""
+"""Uncertainty of impact coefficients that are worked out from measured velocities."""
 
 from .bootstrap import bootstrap
 from .estimate import Errors, Estimate

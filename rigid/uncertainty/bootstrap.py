@@ -37,11 +37,11 @@ def bootstrap(
     errors = errors or Errors()
     rows, rng = stack_tests(motion), np.random.default_rng(seed)
     draws = {name: _draw(rows, (name,), errors, d_c, d_d, k2, samples, rng) for name in SOURCES}
-    every = _draw(rows, SOURCES, errors, d_c, d_d, k2, samples, rng)
+    together = _draw(rows, SOURCES, errors, d_c, d_d, k2, samples, rng)
     mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
     centre = named(**mean, d_c=np.asarray(d_c), d_d=np.asarray(d_d), k2=np.asarray(k2))
     return {
-        name: _estimate(float(value), every[name], {s: draws[s][name] for s in SOURCES})
+        name: _estimate(float(value), together[name], {s: draws[s][name] for s in SOURCES})
         for name, value in centre.items()
     }
 
@@ -56,7 +56,7 @@ def _draw(
     samples: int,
     rng: np.random.Generator,
 ) -> dict[str, Floats]:
-    """Draw the coefficients of `samples` imagined repetitions of the set."""
+    """Coefficients of `samples` random repetitions of the set, (samples,) each."""
     n = rows.shape[1]
     chosen = (
         rng.integers(n, size=(samples, n)) if "scatter" in sources else np.tile(np.arange(n), (samples, 1))
@@ -70,11 +70,11 @@ def _draw(
     )
 
 
-def _estimate(value: float, every: Floats, alone: Mapping[str, Floats]) -> Estimate:
-    """Read the percentiles."""
-    low, high = np.percentile(every, [2.5, 97.5])
+def _estimate(value: float, together: Floats, alone: Mapping[str, Floats]) -> Estimate:
+    """Estimate from the percentiles of samples with all sources together, and with each alone."""
+    low, high = np.percentile(together, [2.5, 97.5])
     parts = {source: _half_width(drawn) for source, drawn in alone.items()}
-    return Estimate(value, _half_width(every), float(low), float(high), parts)
+    return Estimate(value, _half_width(together), float(low), float(high), parts)
 
 
 def _half_width(drawn: Floats) -> float:

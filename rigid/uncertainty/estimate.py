@@ -1,4 +1,4 @@
-"""What is uncertain in a measurement, and an estimate with its error bar."""
+"""Error bounds of a measurement, and an estimate with its interval."""
 
 from __future__ import annotations
 
@@ -70,13 +70,9 @@ class Estimate:
     high: float
     parts: Mapping[str, float]
 
-    def contains(self, value: float) -> bool:
-        """Whether the interval holds `value`, say e_m = -1."""
-        return self.low <= value <= self.high
-
 
 def stack_tests(motion: Mapping[str, ArrayLike]) -> Floats:
-    """Stack v_n, v_t, V_n, V_t, Omega as (5, n) and refuse what has no scatter."""
+    """Stack v_n, v_t, V_n, V_t, Omega as (5, n); refuse less than two tests."""
     missing = [name for name in MOTION if name not in motion]
     if missing:
         raise DataError(f"the motion lacks {', '.join(missing)}; it needs {', '.join(MOTION)}")
@@ -87,5 +83,5 @@ def stack_tests(motion: Mapping[str, ArrayLike]) -> Floats:
 
 
 def named(**inputs: Floats) -> dict[str, Floats]:
-    """Give e, mu and e_m by name."""
+    """Coefficients e, mu and e_m by name."""
     return coefficients(**inputs)._asdict()

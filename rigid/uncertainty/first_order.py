@@ -55,7 +55,7 @@ def first_order(
 
 
 def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: Errors) -> Estimate:
-    """Add the three sources in squares."""
+    """Estimate with the root sum of squares of the three sources."""
     from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
 
     n = rows.shape[1]

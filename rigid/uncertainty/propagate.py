@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TypeVar
 
 import numpy as np
 
 from ..arrays import Floats
 
-Name = TypeVar("Name", bound=str)
 STEP = float(np.finfo(np.float64).eps) ** (1 / 3)
 
 
 def sensitivities(
     formula: Callable[..., Mapping[str, Floats]], at: Mapping[str, Floats]
 ) -> dict[str, dict[str, Floats]]:
-    """Give d(output)/d(input) for every output and input of `formula`.
+    """Return the derivatives d(output)/d(input) of every output of `formula`.
 
     Parameters
     ----------

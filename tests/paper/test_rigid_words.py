@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+import rigid
 from fem_impact.cli_parser import read_line
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
@@ -67,6 +68,13 @@ def test_the_python_of_the_section_runs(capsys):
     found = re.search(r"<!-- rigid-python -->\n```python\n(.*?)\n```", README, re.DOTALL)
     exec(compile(found.group(1), "README.md", "exec"), {})
     assert capsys.readouterr().out == "0.322 0.583 -0.79\n"
+
+
+def test_the_table_of_the_section_names_what_there_is():
+    table = re.search(r"^\| in `rigid` \|.*?\n\n", README, re.DOTALL | re.MULTILINE).group()
+    names = [name for row in table.strip().splitlines()[2:] for name in re.findall("`([^`]+)`", row.split("|")[1])]
+    assert "solve_free" in names
+    assert [name for name in names if name != "rigid.experiments" and name not in rigid.__all__] == []
 
 
 def test_options_of_one_command_do_not_leak_into_another():
