@@ -1,0 +1,1 @@
+"""Finite-element operators: the weak forms of the model and what is assembled from them."""

@@ -1,0 +1,161 @@
+"""The weak forms: against the assembled operators, the compiled kernels, and exact fields."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sp
+import solid_shapes as shapes
+from skfem import Basis, ElementHex1, ElementVector, FacetBasis
+
+import meshes
+from fem_impact.fem import forms
+from fem_impact.render.kinematics import stretch
+from fem_impact.solid.boundary import spread_boundary
+from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.solid.hardening import linear_hardening
+from fem_impact.solid.hexmodes import dummy_element
+from fem_impact.solid.items import add_force
+from fem_impact.solid.slices import SliceOperator
+from fem_impact.solid.sparse import NodeProduct, assemble, tie_operator
+from fem_impact.solid.yielding import YieldingZone
+from meshes import OUTER, Zone
+
+E, NU, RHO = shapes.E, shapes.NU, shapes.RHO
+LAME, G = lame_constants(E, NU)
+C = isotropic_stiffness(E, NU)
+LINEAR, MODES = ElementVector(ElementHex1()), ElementVector(forms.ElementHexModes())
+KINDS = {
+    "full": (forms.stiffness, LINEAR),
+    "bbar": (forms.mean_dilatation_stiffness, LINEAR),
+    "incompatible": (forms.stiffness, MODES),
+}
+
+
+def off(ours, exact):
+    """Return the largest difference over the largest exact number."""
+    return abs(ours - exact).max() / abs(exact).max()
+
+
+def local(kind, points, cells):
+    form, element = KINDS[kind]
+    return forms.element_matrices(form, forms.hex_mesh(points, cells), element, lame=LAME, G=G)
+
+
+def whole(form, mesh, **parameters):
+    basis = Basis(mesh, LINEAR, intorder=2)
+    return form.assemble(basis, dx=basis.dx, **parameters)
+
+
+def block(levels=1):
+    zone = Zone(np.zeros(3), np.eye(3), np.array([-0.9e-3, 0.0, -0.9e-3]), np.array([0.9e-3, 0.9e-3, 0.0]))
+    return meshes.block([-4e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3, zone, levels, buffer=1)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_element_stiffness_is_the_form(kind):
+    points, cells = shapes.distorted((3, 2, 4), 0.25, seed=1)
+    assert off(element_stiffness(points, cells, C, kind), local(kind, points, cells)) < 1e-12
+
+
+def test_the_three_stiffnesses_differ():
+    points, cells = shapes.distorted((1, 1, 2), 0.25, seed=2)
+    full, bbar, modes = (local(kind, points, cells) for kind in KINDS)
+    assert min(off(full, bbar), off(full, modes), off(bbar, modes)) > 0.01
+
+
+def test_lumped_masses_are_the_row_sums_of_the_form():
+    points, cells = shapes.distorted((3, 2, 4), 0.25, seed=3)
+    mesh = forms.hex_mesh(points, cells)
+    exact = forms.element_matrices(forms.mass, mesh, ElementHex1(), rho=RHO).sum(axis=2)
+    ours = lumped_mass(points, cells, RHO)
+    assert off(ours, exact) < 1e-12
+    nodal = whole(forms.mass, mesh, rho=RHO) @ np.ones(points.size)
+    assert off(np.repeat(np.bincount(cells.ravel(), ours.ravel()), 3), nodal) < 1e-12
+
+
+@pytest.mark.parametrize("kind", ["full", "bbar"])
+def test_assembly_through_ties_is_the_form(kind):
+    mesh, points = shapes.refined_patch(seed=4)
+    T = tie_operator(mesh.tie, np.arange(points.size).reshape(-1, 3), points.size)
+    K = whole(KINDS[kind][0], forms.hex_mesh(points, mesh.cells), lame=LAME, G=G)
+    assert off(assemble(points, mesh.cells, C, kind, T), T.T @ K @ T) < 1e-12
+
+
+def test_springs_and_dashpots_of_the_boundary_are_the_forms():
+    mesh = block()
+    spring, damping = spread_boundary(mesh, E, NU, RHO)
+    basis = forms.face_basis(forms.hex_mesh(mesh.points, mesh.cells), mesh.faces_with(OUTER))
+    assert basis.nelems == len(mesh.faces_with(OUTER))
+    ones, fast, slow = np.ones(mesh.points.size), np.sqrt((LAME + 2 * G) / RHO), np.sqrt(G / RHO)
+    assert off(spring.ravel(), forms.springs.assemble(basis, G=G) @ ones) < 1e-12
+    pots = forms.dashpots.assemble(basis, rho=RHO, c_d=fast, c_s=slow)
+    assert off(damping.ravel(), pots @ ones) < 1e-12
+
+
+def test_the_sliced_rod_is_the_form():
+    rod = meshes.rod(np.array([[0.0, 0.0], [9.5e-3, 0.0]]), 30e-3, 6, nose=False)
+    section, layers = rod.body_nodes.shape
+    operator = SliceOperator.of_rod(
+        rod, element_stiffness(rod.mesh.points, rod.mesh.cells[rod.body_cells[:, 0]], C, "full")
+    )
+    K = whole(forms.stiffness, forms.hex_mesh(rod.mesh.points, rod.mesh.cells), lame=LAME, G=G)
+    u = np.random.default_rng(5).normal(size=rod.mesh.points.shape)
+    rows = np.ascontiguousarray(u[rod.body_nodes].transpose(2, 0, 1).reshape(3 * section, layers))
+    force, exact = np.empty_like(rows), (K @ u.ravel()).reshape(-1, 3)[rod.body_nodes]
+    operator.apply(rows, force)
+    assert off(force.reshape(3, section, layers).transpose(1, 2, 0), exact) < 1e-12
+
+
+def test_the_block_on_springs_is_the_form():
+    mesh = block(levels=0)
+    body = forms.hex_mesh(mesh.points, mesh.cells)
+    places = np.arange(mesh.points.size).reshape(-1, 3)
+    springs = sp.diags(spread_boundary(mesh, E, NU, RHO)[0].ravel())
+    ours = assemble(mesh.points, mesh.cells, C, "bbar", sp.identity(places.size, format="csr")) + springs
+    product, force = NodeProduct.of(sp.csr_matrix(ours), places), np.zeros(places.size)
+    outside = forms.springs.assemble(forms.face_basis(body, mesh.faces_with(OUTER)), G=G)
+    u = np.random.default_rng(6).normal(size=places.size)
+    product.multiply(u)
+    product.add_to(force)
+    K = whole(forms.mean_dilatation_stiffness, body, lame=LAME, G=G)
+    assert off(force, K @ u + (outside @ np.ones(len(u))) * u) < 1e-12
+
+
+def test_the_yielding_kernel_starts_as_the_form_with_mean_dilatation():
+    points, cells = shapes.distorted((3, 3, 2), 0.2, seed=7)
+    places, size = np.arange(points.size).reshape(-1, 3), points.size
+    dummy = size + np.arange(24).reshape(8, 3)
+    law = linear_hardening(1e12, 0.0)  # never yields
+    zone = YieldingZone.of("rod", places[cells], points[cells], E, NU, law, dummy)
+    state = shapes.at_rest(np.concatenate([points.ravel(), dummy_element().ravel()]))
+    u = 1e-12 * np.random.default_rng(8).normal(size=size)
+    state.dt = 1e-8
+    state.x[:size] += u
+    state.v[:size] = u / state.dt
+    add_force(zone, state)
+    K = whole(forms.mean_dilatation_stiffness, forms.hex_mesh(points, cells), lame=LAME, G=G)
+    assert off(-state.force[:size], K @ u) < 1e-5  # of strains of 1e-9 and of what positions round off
+
+
+def test_a_constant_stress_is_in_balance_with_its_surface_load():
+    points, cells = shapes.distorted((3, 3, 3), 0.2, seed=9)
+    mesh = forms.hex_mesh(points, cells)
+    H = np.random.default_rng(10).normal(size=(3, 3))
+    strain = (H + H.T) / 2
+    stress = LAME * np.trace(strain) * np.eye(3) + 2 * G * strain
+    faces = FacetBasis(mesh, LINEAR, intorder=2)
+    load = forms.surface_load.assemble(faces, t=np.einsum("ij,jkl->ikl", stress, faces.normals))
+    K = whole(forms.stiffness, mesh, lame=LAME, G=G)
+    assert off(K @ (points @ H.T).ravel(), load) < 1e-12
+
+
+def test_axial_strain_is_what_films_show_of_a_small_motion():
+    points, cells = shapes.grid((2, 2, 3), 1e-3)
+    axis = np.array([0.6, 0.0, 0.8])
+    u = 1e-9 * np.random.default_rng(11).normal(size=points.shape)
+    basis = Basis(forms.hex_mesh(points, cells), LINEAR, intorder=1)
+    strain = forms.axial_strain.elemental(basis, u=u.ravel(), a=axis[:, None, None]) / basis.dx.sum(axis=1)
+    shown = stretch(points, points + u, cells, axis) - 1.0
+    assert off(shown, strain) < 1e-5
+    H = np.random.default_rng(12).normal(size=(3, 3))
+    linear = forms.axial_strain.assemble(basis, u=(points @ H.T).ravel(), a=axis[:, None, None])
+    assert linear == pytest.approx(axis @ H @ axis * 12e-9, rel=1e-12)
