@@ -53,7 +53,7 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out)
-    return 0 if outcome["finished"] else _stopped(outcome["stopped_because"], out)
+    return 0 if outcome.validity.finished else _stopped(outcome.validity.stopped_because, out)
 
 
 def _simulation(scene: Scene) -> Callable[..., Outcome]:

@@ -10,6 +10,7 @@ from typing import Any
 from fem_impact.cli_changes import changed_scene
 from fem_impact.cli_parser import Options
 from fem_impact.cli_print import print_json, print_table
+from fem_impact.outcome import EffectChoice, keys_of
 from fem_impact.scene import BARRIERS, DEFAULTS, Scene, load, shipped, source_of, validity
 from fem_impact.wrap import wrapped
 
@@ -57,10 +58,14 @@ def _statement(scene: Scene) -> dict[str, Any]:
         "digest": scene.digest(),
         "sources": _sources(scene),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [choice.told() for choice in choices(scene)],
+        "effects": [_flat(choice.told(choice.share)) for choice in choices(scene)],
         "validity": list(validity(scene)),
         "warnings": [*neglected(scene), *coarse_tip(scene)],
     }
+
+
+def _flat(choice: EffectChoice) -> dict[str, Any]:
+    return {key.name: key.of(choice) for key in keys_of(EffectChoice)}
 
 
 def _sources(scene: Scene) -> dict[str, str]:
@@ -74,12 +79,14 @@ def _sources(scene: Scene) -> dict[str, str]:
 
 
 def _readable(scene: Scene, statement: dict[str, Any]) -> str:
+    from fem_impact.effects import choices
+
     lines = [scene.to_toml().rstrip(), "", "Sources"]
     lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Effects"]
-    lines += [line for effect in statement["effects"] for line in _effect_lines(effect)]
+    lines += [line for choice in choices(scene) for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
     lines += ["", "Validity"]
     inside = "inside the measured range of speed, angle, rod, steels and surfaces"
@@ -91,27 +98,27 @@ def _wrapped(sentences: Iterable[str]) -> list[str]:
     return [line for sentence in sentences for line in wrapped(sentence, "  ")]
 
 
-def _effect_lines(effect: dict[str, Any]) -> list[str]:
-    number = "not finite" if effect["number"] is None else f"{effect['number']:.2g}"
-    verdict = f"{'on ' if effect['on'] else 'off'} {effect['name']}{' (forced)' if effect['forced'] else ''}"
-    decided = f"{effect['measure']}: {number}, threshold {effect['threshold']:g}"
+def _effect_lines(effect: EffectChoice) -> list[str]:
+    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
+    verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
+    decided = f"{effect.measure}: {number}, threshold {effect.threshold:g}"
     told = [decided, _harm(effect), _time(effect)]
     decision = wrapped("; ".join(words for words in told if words), " " * 8, "")
-    return [*wrapped(f"{verdict}: {effect['sentence']}", "  ", " " * 4), *decision]
+    return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
 
 
-def _harm(effect: dict[str, Any]) -> str:
+def _harm(effect: EffectChoice) -> str:
     """Return what leaving it out changes; nothing for a barrier beside the one in use."""
-    if effect["name"] in BARRIERS and not effect["on"]:
+    if effect.name in BARRIERS and not effect.on:
         return ""
     return (
-        f"leaving it out changes e by about {effect['change_of_e']:.1g}, "
-        f"E_vib by {effect['change_of_E_vib_over_E_0']:.1g} of E_0"
+        f"leaving it out changes e by about {effect.change_of_e:.1g}, "
+        f"E_vib by {effect.change_of_vibration:.1g} of E_0"
     )
 
 
-def _time(effect: dict[str, Any]) -> str:
-    if effect["share"] is None:
+def _time(effect: EffectChoice) -> str:
+    if effect.share is None:
         return ""
-    share = "under 1" if effect["share"] < 0.005 else f"about {100 * effect['share']:.0f}"
+    share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
     return f"it takes {share} % of the run time"

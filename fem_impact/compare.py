@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from fem_impact.outcome import KEY_TABLE, Key, Num, Outcome, Unknown, known, or_none, shares
 from rigid.experiments import Statistic, measured_set
 
 Row = dict[str, Any]
@@ -13,34 +13,24 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class Quantity:
-    """A compared quantity: its name in the tables, its key in the Outcome, its unit, its name in the set."""
+    """A compared quantity: its name in the tables, its key in the outcome, its name in the measured set."""
 
     name: str
-    key: str
-    unit: str
-    measured: str | None
+    key: Key
+    measured: str | None = None
 
 
 MEASURED = (
-    Quantity("e", "e_paper", "-", "e"),
-    Quantity("mu", "mu", "-", "mu"),
-    Quantity("Omega", "Omega_rad_per_s", "rad/s", "Omega"),
-    Quantity("V_n", "V_n_m_per_s", "m/s", "V_n"),
-    Quantity("V_t", "V_t_m_per_s", "m/s", "V_t"),
-    Quantity("E_ln/E_0", "E_ln_paper_over_E_0", "-", "E_ln_over_E_0"),
-    Quantity("E_lt/E_0", "E_lt_paper_over_E_0", "-", "E_lt_over_E_0"),
-    Quantity("E_r/E_0", "E_r_over_E_0", "-", "E_r_over_E_0"),
+    Quantity("e", KEY_TABLE["e_paper"], "e"),
+    Quantity("mu", KEY_TABLE["mu"], "mu"),
+    Quantity("Omega", KEY_TABLE["Omega_rad_per_s"], "Omega"),
+    Quantity("V_n", KEY_TABLE["V_n_m_per_s"], "V_n"),
+    Quantity("V_t", KEY_TABLE["V_t_m_per_s"], "V_t"),
+    Quantity("E_ln/E_0", KEY_TABLE["E_ln_paper_over_E_0"], "E_ln_over_E_0"),
+    Quantity("E_lt/E_0", KEY_TABLE["E_lt_paper_over_E_0"], "E_lt_over_E_0"),
+    Quantity("E_r/E_0", KEY_TABLE["E_r_over_E_0"], "E_r_over_E_0"),
 )
-UNSEEN = (
-    Quantity("vibration/E_0", "E_vib_over_E_0", "-", None),
-    Quantity("friction/E_0", "W_friction_over_E_0", "-", None),
-    Quantity("plastic rod/E_0", "E_plastic_rod_over_E_0", "-", None),
-    Quantity("plastic barrier/E_0", "E_plastic_barrier_over_E_0", "-", None),
-    Quantity("locked-in rod/E_0", "E_locked_rod_over_E_0", "-", None),
-    Quantity("locked-in barrier/E_0", "E_locked_barrier_over_E_0", "-", None),
-    Quantity("radiated/E_0", "W_radiated_over_E_0", "-", None),
-)
-BANDED = tuple(q.key for q in (*MEASURED, *UNSEEN))
+UNSEEN = tuple(Quantity(f"{share.label}/E_0", share.key) for share in shares("comparison"))
 
 
 def verdict(model: float, band: float | None, measured: Statistic) -> str:
@@ -69,53 +59,44 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
-def compare(outcome: Mapping[str, Any]) -> list[Row]:
-    """Return the comparison rows of the outcome of a measured set."""
-    statistics = measured_set(outcome["scene_id"]).statistics()
-    rows = []
-    for quantity in (*MEASURED, *UNSEEN):
-        found = statistics[quantity.measured] if quantity.measured else None
-        rows.append(_row(outcome, quantity, found))
-    return rows
+def compare(outcome: Outcome) -> list[Row]:
+    """Return the comparison rows of the outcome of a measured set; model and band are those of two meshes.
+
+    Without a second mesh the model is the run's own value and has no band.
+    """
+    statistics = measured_set(outcome.provenance.scene_id).statistics()
+    return [
+        _row(outcome, quantity, statistics[quantity.measured] if quantity.measured else None)
+        for quantity in (*MEASURED, *UNSEEN)
+    ]
 
 
-def _row(outcome: Mapping[str, Any], quantity: Quantity, found: Statistic | None) -> Row:
-    model, band = outcome[quantity.key], (outcome["bands"] or {}).get(quantity.key)
-    row: Row = {
-        "set": outcome["scene_id"],
+def _row(outcome: Outcome, quantity: Quantity, found: Statistic | None) -> Row:
+    model, band = outcome.estimate(quantity.key)
+    return {
+        "set": outcome.provenance.scene_id,
         "quantity": quantity.name,
-        "unit": quantity.unit,
-        "model": model,
+        "unit": quantity.key.unit,
+        "model": or_none(model),
         "band": band,
-        "measured_mean": None,
-        "measured_sd": None,
-        "measured_low": None,
-        "measured_high": None,
-        "n": None,
-        "verdict": _unseen_verdict(outcome, quantity),
+        "measured_mean": found and found.mean,
+        "measured_sd": found and found.sd,
+        "measured_low": found and found.low,
+        "measured_high": found and found.high,
+        "n": found and found.n,
+        "verdict": _verdict(outcome, quantity, model, band, found),
     }
+
+
+def _verdict(
+    outcome: Outcome, quantity: Quantity, model: Num, band: float | None, found: Statistic | None
+) -> str:
+    if isinstance(model, Unknown):
+        return f"not known: {model.reason}"
     if found is not None:
-        row |= {
-            "measured_mean": found.mean,
-            "measured_sd": found.sd,
-            "measured_low": found.low,
-            "measured_high": found.high,
-            "n": found.n,
-            "verdict": verdict(model, band, found) if model is not None else _unknown(outcome, quantity),
-        }
-    return row
-
-
-def _unknown(outcome: Mapping[str, Any], quantity: Quantity) -> str:
-    return f"not known: {outcome['reasons'][quantity.key]}"
-
-
-def _unseen_verdict(outcome: Mapping[str, Any], quantity: Quantity) -> str:
-    if outcome[quantity.key] is None:
-        return _unknown(outcome, quantity)
-    if quantity.key == "E_vib_over_E_0" and outcome["E_vib_below_floor"]:
-        return "below floor"
-    return "not measurable by camera"
+        return verdict(model, band, found)
+    vibration = quantity.key.path == ("energy", "vibration")
+    return "below floor" if vibration and known(outcome.energy.below_floor) else "not measurable by camera"
 
 
 def text_table(rows: list[Row]) -> str:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -36,7 +36,6 @@ __all__ = [
     "flash",
     "flash_bound",
     "halves",
-    "heat_keys",
     "moving_rise",
     "short_rise",
 ]
@@ -151,11 +150,14 @@ def _steady_flash(scene: Scene, q: float) -> Flash:
     return flash(t, q * one, a * one, V * one, *halves(scene))
 
 
-def closed_form(scene: Scene, friction_work: float) -> dict[str, Any]:
-    """Return the keys from a friction work, J, spread evenly over the estimated contact and its time."""
+def closed_form(scene: Scene, friction_work: float) -> tuple[Flash, float, float, float]:
+    """Return flash, power, W, flux, W/m2, and patch, m2, of the estimated contact.
+
+    The friction work, J, is spread evenly over its patch and its time.
+    """
     size = contact_estimate(scene)
     patch, power = pi * size.a_t * size.a_b, friction_work / size.duration
-    return heat_keys(scene, _steady_flash(scene, power / patch), power, power / patch, patch)
+    return _steady_flash(scene, power / patch), power, power / patch, patch
 
 
 def flash_bound(scene: Scene) -> float:
@@ -165,18 +167,3 @@ def flash_bound(scene: Scene) -> float:
     speed = sliding_speed(scene) + approach(scene)
     q, t = f * HARDNESS * softer * speed, 3 * size.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves(scene))
-
-
-def heat_keys(scene: Scene, found: Flash, power: float, flux: float, patch: float) -> dict[str, Any]:
-    """Return the keys of an outcome: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
-    allowed = scene.heating.ignition - scene.heating.ambient
-    return {
-        "contact_patch_m2": patch,
-        "friction_power_W": power,
-        "friction_flux_W_per_m2": flux,
-        "flash_rise_K": found.peak,
-        "flash_temperature_K": scene.heating.ambient + found.peak,
-        "ignition_temperature_K": scene.heating.ignition,
-        "time_above_ignition_s": found.time_above(allowed),
-        "flash_bound_K": scene.heating.ambient + flash_bound(scene),
-    }

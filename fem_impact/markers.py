@@ -8,11 +8,12 @@ gives 124 mm, beyond the tip, so there the marker is taken at the tip.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+
+from fem_impact.outcome import Markers
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
@@ -25,23 +26,12 @@ LEVER = {0.24: 0.124, 0.12: 0.052, 0.08: 0.032}  # m, by rod length
 OTHER_LEVER = 0.42  # of the length, for rods that were not measured
 
 
-@dataclass(frozen=True, slots=True)
-class Marked:
-    """Velocities as two markers give them: mass centre, lower marker (m/s), rotation (rad/s)."""
-
-    V_n: float
-    V_t: float
-    Omega: float
-    V_cn: float
-    V_ct: float
-
-
 def lever_of(length: float) -> float:
     """Return the lower marker's distance from the mass centre, m, at most to the tip."""
     return min(LEVER.get(round(length, 6), OTHER_LEVER * length), 0.5 * length)
 
 
-def replay(result: SolidResult, V_n: float, V_t: float) -> Marked:
+def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
     """Return what the camera would have read in the free flight after the run.
 
     ``V_n`` and ``V_t`` are the mass centre's velocities, m/s, with gravity taken out, as it is here.
@@ -59,7 +49,13 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Marked:
     line = (upper - lower) * WINDOW - arm
     angle = float(np.arctan2(line @ across, line @ axis))
     angle += 2 * np.pi * round((turn - angle) / (2 * np.pi))  # a film shows how often it has turned
-    return Marked(upper[2], upper[0], angle / WINDOW, lower[2], lower[0])
+    return Markers(
+        V_n=float(upper[2]),
+        V_t=float(upper[0]),
+        Omega=angle / WINDOW,
+        V_cn=float(lower[2]),
+        V_ct=float(lower[0]),
+    )
 
 
 def _turned(arm: Array, angle: float) -> Array:

@@ -1,157 +1,157 @@
-"""Keys of an outcome that every fidelity fills in the same way: provenance, motion, coefficients."""
+"""Groups of an outcome that every fidelity fills in the same way: provenance, motion, coefficients, heat."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.contact_law import softer
 from fem_impact.estimates import arms, projectile
-from fem_impact.outcome import Outcome, installed_versions, utc_now
-from fem_impact.scene import validity
+from fem_impact.heating import Flash, flash_bound
+from fem_impact.outcome import (
+    ArmCoefficients,
+    EffectChoice,
+    Heat,
+    Num,
+    Provenance,
+    Restitution,
+    RodMotion,
+    Unknown,
+    Validity,
+    installed_versions,
+    unknown,
+    utc_now,
+)
+from fem_impact.scene import validity as outside
 from rigid.experiments import measured_set
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
-__all__ = [
-    "NO_TARGET",
-    "Values",
-    "coefficient_keys",
-    "explained",
-    "motion_keys",
-    "plastic_keys",
-    "provenance",
-]
+__all__ = ["heat", "motion", "plastic_shares", "provenance", "restitution", "validity"]
 
-Values = dict[str, Any]
-
-NO_TARGET = dict.fromkeys(
-    (
-        *("accuracy_target", "accuracy_setting", "expected_error", "expected_wall_s"),
-        *("achieved_error", "achieved_wall_s", "extrapolated"),
-    ),
-    "the scene gives a mesh, not the error it allows",
-)
-"""Reasons of a run that no target chose."""
-
+NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
+NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
+UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 ROUND_OFF = 1e-9  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
-UNDETERMINED = "the contact point does not approach, or no moment acts about the mass centre: 0 / 0"
 
 
 def provenance(
     scene: Scene,
     fidelity: str,
+    effect_choices: tuple[EffectChoice, ...] | Unknown,
+    without: Iterable[str] = (),
+) -> Provenance:
+    """Return where a record comes from; ``without`` are effects that the fidelity does not know."""
+    return Provenance(
+        fidelity=fidelity,
+        scene_id=scene.id,
+        scene_title=scene.title,
+        scene_digest=scene.digest(),
+        created_utc=utc_now(),
+        versions=installed_versions(),
+        effects=tuple(name for name in scene.active if name not in without),
+        effect_choices=effect_choices,
+    )
+
+
+def validity(
+    scene: Scene,
     finished: bool,
     stopped_because: str,
+    meshes: str,
     assumptions: Iterable[str] = (),
     warnings: Iterable[str] = (),
-    without: Iterable[str] = (),
-) -> Values:
-    """Return where a record comes from and how far to trust it; ``without`` are effects it does not know."""
-    return {
-        "fidelity": fidelity,
-        "scene_id": scene.id,
-        "scene_title": scene.title,
-        "scene_digest": scene.digest(),
-        "created_utc": utc_now(),
-        "versions": installed_versions(),
-        "finished": finished,
-        "stopped_because": stopped_because,
-        "effects": [name for name in scene.active if name not in without],
-        "assumptions": list(assumptions),
-        "validity": list(validity(scene)),
-        "warnings": list(warnings),
-    }
+) -> Validity:
+    """Return how far to trust a record of one run; ``meshes`` says why it has no limit of two meshes."""
+    return Validity(
+        finished=finished,
+        stopped_because=stopped_because,
+        assumptions=tuple(assumptions),
+        outside=tuple(outside(scene)),
+        warnings=tuple(warnings),
+        accuracy_target=NO_TARGET,
+        accuracy_setting=NO_TARGET,
+        expected_error=NO_TARGET,
+        expected_wall=NO_TARGET,
+        achieved_error=NO_TARGET,
+        achieved_wall=NO_TARGET,
+        mesh_limit=Unknown(meshes),
+        mesh_band=Unknown(meshes),
+    )
 
 
-def explained(values: Values, reasons: Mapping[str, str]) -> Outcome:
-    """Return the record; of the reasons those of what is not known."""
-    return Outcome(values, {key: why for key, why in reasons.items() if values.get(key) is None})
-
-
-def motion_keys(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> Values:
+def motion(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
     """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2)."""
-    impact, (d_c, d_d) = scene.impact, arms(scene)
-    body = {"d_c": d_c, "d_d": d_d, "k2": k2, "omega": impact.omega}
-    e = float(rigid.restitution(impact.v_n, V_n, Omega, d_c, impact.omega))
-    mu_c = rigid.critical_ratio(impact.v_n, impact.v_t, e=e, **body)
-    return {
-        "v_n_m_per_s": impact.v_n,
-        "v_t_m_per_s": impact.v_t,
-        "V_n_m_per_s": float(V_n),
-        "V_t_m_per_s": float(V_t),
-        "Omega_rad_per_s": float(Omega),
-        "mu": float(rigid.impulse_ratio(impact.v_n, impact.v_t, V_n, V_t)),
-        "mu_c": float(mu_c),
-        "friction_f": scene.surface.friction if "friction" in scene.active else 0.0,
-        "alpha_rad": impact.angle,
-        "mass_kg": mass,
-        "k_squared_m2": k2,
-        "gamma_per_m0_3815": projectile(scene).gamma,
-    }
+    return RodMotion(
+        friction=scene.surface.friction if "friction" in scene.active else 0.0,
+        alpha=scene.impact.angle,
+        mass=mass,
+        k_squared=k2,
+        gamma=projectile(scene).gamma,
+        v_n=scene.impact.v_n,
+        v_t=scene.impact.v_t,
+        V_n=float(V_n),
+        V_t=float(V_t),
+        Omega=float(Omega),
+    )
 
 
-def coefficient_keys(scene: Scene, motion: Values) -> tuple[Values, dict[str, str]]:
-    """Return the coefficients with the three sets of arms, and why a set of arms is missing."""
-    values: Values = {}
-    reasons: dict[str, str] = {}
-    for name, pair in _arm_sets(scene, motion).items():
-        if pair is None:
-            missing = "the scene repeats no measured set, so no table gives its arms"
-            reasons |= dict.fromkeys(_arm_keys(name), missing)
-        else:
-            values |= _with_arms(name, pair, scene.impact.omega, motion)
-            reasons |= {key: UNDETERMINED for key in _arm_keys(name) if values[key] is None}
-    return values, reasons
-
-
-def plastic_keys(scene: Scene, share: float) -> Values:
-    """Return the plastic work of both bodies: the law lets only the softer one yield."""
-    soft = softer(scene)
-    in_rod = soft is not None and soft == scene.projectile.material and "rod-plasticity" in scene.active
-    return {
-        "E_plastic_rod_over_E_0": share if in_rod else 0.0,
-        "E_plastic_barrier_over_E_0": 0.0 if in_rod else share,
-    }
-
-
-def _arm_sets(scene: Scene, motion: Values) -> dict[str, tuple[float, float] | None]:
-    """Return (d_c, d_d) of the paper, the edge geometry and the centre of impulse.
+def restitution(scene: Scene, motion: RodMotion) -> Restitution:
+    """Return impulse ratios, and the coefficients with the three sets of arms.
 
     The centre of the impulse is the point at the height of the geometric contact where the moment
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
-    d_c, d_d = arms(scene)
-    gained_n = motion["V_n_m_per_s"] - motion["v_n_m_per_s"]
-    gained_t = motion["V_t_m_per_s"] - motion["v_t_m_per_s"]
-    spin = motion["k_squared_m2"] * (motion["Omega_rad_per_s"] - scene.impact.omega)
-    paper = measured_set(scene.measured).arms if scene.measured else None
-    return {
-        "paper": (float(paper.d_c), float(paper.d_d)) if paper else None,
-        "edge": (d_c, d_d),
-        "impulse": ((spin + d_d * gained_t) / gained_n, d_d),
-    }
-
-
-def _arm_keys(name: str) -> list[str]:
-    shares = [f"E_{kind}_{name}_over_E_0" for kind in ("ln", "lt")]
-    return [f"d_c_{name}_m", f"d_d_{name}_m", f"e_{name}", f"e_m_{name}", *shares]
-
-
-def _with_arms(name: str, pair: tuple[float, float], omega: float, values: Values) -> Values:
-    """Return the keys of one set of arms; what it leaves undetermined is None."""
-    v_n, v_t, V_n, V_t, Omega = (
-        values[k] for k in ("v_n_m_per_s", "v_t_m_per_s", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s")
+    (d_c, d_d), omega, m = arms(scene), scene.impact.omega, motion
+    e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
+    spin = m.k_squared * (m.Omega - omega)
+    centre = (spin + d_d * (m.V_t - m.v_t)) / (m.V_n - m.v_n)
+    table = measured_set(scene.measured).arms if scene.measured else None
+    return Restitution(
+        mu=float(rigid.impulse_ratio(m.v_n, m.v_t, m.V_n, m.V_t)),
+        mu_c=float(rigid.critical_ratio(m.v_n, m.v_t, e=e, d_c=d_c, d_d=d_d, k2=m.k_squared, omega=omega)),
+        paper=_with_arms(float(table.d_c), float(table.d_d), omega, m)
+        if table
+        else unknown(ArmCoefficients, NO_TABLE),
+        edge=_with_arms(d_c, d_d, omega, m),
+        impulse=_with_arms(centre, d_d, omega, m),
     )
-    (d_c, d_d), k2 = pair, values["k_squared_m2"]
-    body = {"d_c": d_c, "d_d": d_d, "k2": k2, "omega": omega}
-    lost = rigid.losses(v_n, v_t, V_n, V_t, Omega, **body, mass=values["mass_kg"]).fractions()
-    e = e_m = None
-    if v_n + d_c * omega < 0:
-        e, _, e_m = (float(c) for c in rigid.coefficients(v_n, v_t, V_n, V_t, Omega, **body))
-        moment = d_c * (V_n - v_n) - d_d * (V_t - v_t) + k2 * omega
-        e_m = e_m if abs(moment) > ROUND_OFF * d_d * (V_n - v_n) else None
-    numbers = [*pair, e, e_m, float(lost.E_ln), float(lost.E_lt)]
-    return dict(zip(_arm_keys(name), numbers, strict=True))
+
+
+def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoefficients:
+    """Return coefficients and losses with one set of arms, m."""
+    velocities, body = (m.v_n, m.v_t, m.V_n, m.V_t, m.Omega), {"d_c": d_c, "d_d": d_d, "k2": m.k_squared}
+    lost = rigid.losses(*velocities, **body, omega=omega, mass=m.mass).fractions()
+    e: Num = UNDETERMINED
+    e_m: Num = UNDETERMINED
+    if m.v_n + d_c * omega < 0:
+        found = rigid.coefficients(*velocities, **body, omega=omega)
+        e, moment = float(found.e), d_c * (m.V_n - m.v_n) - d_d * (m.V_t - m.v_t) + m.k_squared * omega
+        if abs(moment) > ROUND_OFF * d_d * (m.V_n - m.v_n):
+            e_m = float(found.e_m)
+    return ArmCoefficients(d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln), E_lt=float(lost.E_lt))
+
+
+def plastic_shares(scene: Scene, share: float) -> tuple[float, float]:
+    """Return the plastic work of rod and barrier: the law lets only the softer one yield."""
+    soft = softer(scene)
+    in_rod = soft is not None and soft == scene.projectile.material and "rod-plasticity" in scene.active
+    return (share, 0.0) if in_rod else (0.0, share)
+
+
+def heat(scene: Scene, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:
+    """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
+    ambient, ignition = scene.heating.ambient, scene.heating.ignition
+    return Heat(
+        patch=patch,
+        power=power,
+        flux=flux,
+        rise=flash.peak,
+        temperature=ambient + flash.peak,
+        ignition=ignition,
+        time_above_ignition=flash.time_above(ignition - ambient),
+        bound=ambient + flash_bound(scene),
+        less_vibration=less_vibration,
+    )

@@ -1,39 +1,46 @@
-"""From the end of a finite-element run to the quantities of the study: the flat Outcome record."""
+"""From the end of a finite-element run to the quantities of the study: its outcome."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import rigid
-from fem_impact.effects import Choice, choices, neglected
+from fem_impact.effects import choices, neglected
 from fem_impact.errors import RunError
 from fem_impact.estimates import coarse_tip
-from fem_impact.heating import flash, halves, heat_keys
+from fem_impact.heating import flash, halves
 from fem_impact.markers import replay
-from fem_impact.outcome import Outcome
-from fem_impact.outcome.keys import HEATING
-from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, explained, motion_keys, provenance
+from fem_impact.outcome import (
+    Contact,
+    ContactInterval,
+    EffectChoice,
+    Energy,
+    Heat,
+    Num,
+    Outcome,
+    RodMotion,
+    RunCost,
+    Unknown,
+    Validity,
+    known,
+    unknown,
+)
+from fem_impact.outcome_keys import heat, motion, provenance, restitution, validity
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
     from fem_impact.solid.run import SolidResult
 
-VIBRATING = (
-    "E_lt_less_vibration_over_E_0",
-    "E_vib_over_E_0",
-    "E_vib_floor_over_E_0",
-    "E_vib_below_floor",
-    "E_vib_check_over_E_0",
-)
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
+STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
+ONE_MESH = "one mesh alone has no limit and no band: run the study, or a second tip size"
 
 
 def reduce(scene: Scene, result: SolidResult) -> Outcome:
-    """Return the Outcome of a run; what cannot be known is null with its reason.
+    """Return the Outcome of a run.
 
     Raises
     ------
@@ -43,37 +50,34 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     if not result.model.book.intervals:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
+    moved = _motion(scene, result)
+    coefficients, energy = restitution(scene, moved), _energy(result, moved)
+    return Outcome(
+        provenance=provenance(scene, "solid", _choices(scene, result)),
+        validity=_validity(scene, result),
+        motion=moved,
+        restitution=coefficients,
+        energy=energy,
+        contact=_contact(result, moved),
+        heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
+        cost=_cost(result),
+    )
+
+
+def _choices(scene: Scene, result: SolidResult) -> tuple[EffectChoice, ...]:
+    """Return the choice of effects; measured shares of the run time take the place of expected ones."""
+    return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in choices(scene))
+
+
+def _validity(scene: Scene, result: SolidResult) -> Validity:
     open_ledger = _open_ledger(result)
-    finished = result.finished and not open_ledger
-    values = provenance(
+    return validity(
         scene,
-        "solid",
-        finished,
+        result.finished and not open_ledger,
         open_ledger or result.reason,
+        ONE_MESH,
         warnings=[*_doubts(result), *neglected(scene), *coarse_tip(scene)],
     )
-    values["effect_choices"] = [_told(choice, result.shares) for choice in choices(scene)]
-    values |= _motion(scene, result)
-    coefficients, reasons = coefficient_keys(scene, values)
-    values |= coefficients | _energies(result, values) | _markers(result, values) | _cost(result)
-    values |= _heat(result, values)
-    reasons |= NO_TARGET | {
-        "W_damping_over_E_0": "the material-damping effect is off",
-        "W_gravity_over_E_0": "the gravity effect is off",
-        "E_hourglass_over_E_0": "fully integrated elements have no hourglass modes",
-        "bands": "one mesh alone has no band: run the study, or a second tip size",
-    }
-    if result.vibration_check is None:
-        reasons["E_vib_check_over_E_0"] = (
-            "the strain that the last forces release was not found"
-            if result.finished
-            else "the run ended before the last separation was certain"
-        )
-    if result.heat is None:
-        reasons |= dict.fromkeys((k.name for k in HEATING), "the contact-heating effect is off")
-    if "vibration" not in scene.active:
-        reasons |= dict.fromkeys(VIBRATING, "the vibration effect is off: the rod is rigid behind its nose")
-    return explained(values, reasons)
 
 
 def _doubts(result: SolidResult) -> list[str]:
@@ -104,12 +108,6 @@ def _unresolved(result: SolidResult) -> list[str]:
     ]
 
 
-def _told(choice: Choice, shares: Mapping[str, float | None]) -> dict[str, Any]:
-    """Return a choice with the measured share of its own items, where it has any, for the expected one."""
-    told = choice.told()
-    return told | {"share": shares.get(choice.name, told["share"])}
-
-
 def _open_ledger(result: SolidResult) -> str:
     share = result.worst / result.E_0
     if share <= RESIDUAL_LIMIT:
@@ -117,95 +115,95 @@ def _open_ledger(result: SolidResult) -> str:
     return f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
 
 
-def _motion(scene: Scene, result: SolidResult) -> Values:
+def _motion(scene: Scene, result: SolidResult) -> RodMotion:
     """Return velocities before and after; gravity's share of the fall since time 0 is taken out."""
-    alpha, motion = scene.impact.angle, result.motion
+    alpha, m = scene.impact.angle, result.motion
     fall = rigid.GRAVITY * result.time if "gravity" in scene.active else 0.0
-    V_n, V_t = motion.V_n + fall * np.cos(alpha), motion.V_t + fall * np.sin(alpha)
-    return motion_keys(scene, V_n, V_t, motion.Omega, motion.mass, motion.inertia / motion.mass)
+    V_n, V_t = m.V_n + fall * np.cos(alpha), m.V_t + fall * np.sin(alpha)
+    return motion(scene, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
 
 
-def _energies(result: SolidResult, values: Values) -> Values:
-    a, E_0 = result.accounts, result.E_0
-    V_n, V_t, Omega = (values[k] for k in ("V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s"))
-    kept = rigid.kinetic_energy(V_n, V_t, Omega, mass=values["mass_kg"], k2=values["k_squared_m2"])
-    vibration, floor = result.flight.energy, result.worst
+def _energy(result: SolidResult, moved: RodMotion) -> Energy:
+    a, E_0, active = result.accounts, result.E_0, result.scene.active
+    kept = float(rigid.kinetic_energy(moved.V_n, moved.V_t, moved.Omega, mass=moved.mass, k2=moved.k_squared))
+    stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
     check = result.vibration_check
-    shares = {
-        "E_r": float(kept),
-        "E_vib": vibration,
-        "E_vib_floor": floor,
-        "W_friction": a["friction"],
-        "W_skin": a["friction"] + result.skin_share * a["plastic_barrier"],
-        "E_plastic_rod": a["plastic_rod"],
-        "E_plastic_barrier": a["plastic_barrier"],
-        "E_locked_rod": a["strain_rod"] - (check[1] if check else result.flight.strain),
-        "E_locked_barrier": a["strain_barrier"] + a["kinetic_barrier"],
-        "W_radiated": a["radiated"],
-        "W_closing": a["closing"],
-        "residual": a["residual"],
-    }
-    if "material-damping" in result.scene.active:
-        shares["W_damping"] = a["damping"]
-    if "gravity" in result.scene.active:
-        shares["W_gravity"] = float(kept) - result.motion.kinetic - a["gravity"]
-    if result.model.rod_stiffness is None:
-        shares["E_locked_rod"] += a["kinetic_rod"] - result.motion.kinetic  # the nose rings a little
-        del shares["E_vib"], shares["E_vib_floor"]
-    found: Values = {f"{name}_over_E_0": float(value / E_0) for name, value in shares.items()}
-    found["E_vib_check_over_E_0"] = None if check is None else sum(check) / E_0
-    below = None if result.model.rod_stiffness is None else bool(vibration < floor)
-    return found | {"E_0_J": E_0, "E_vib_below_floor": below}
+    locked = a["strain_rod"] - (check[1] if check else result.flight.strain)
+    locked += a["kinetic_rod"] - result.motion.kinetic if stiff else 0.0  # the nose rings a little
+
+    def share(energy: float) -> float:
+        return float(energy / E_0)
+
+    return Energy(
+        E_0=E_0,
+        rigid=share(kept),
+        vibration=STIFF if stiff else share(vibration),
+        vibration_check=share(sum(check)) if check else STIFF if stiff else _unchecked(result),
+        vibration_floor=STIFF if stiff else share(floor),
+        below_floor=STIFF if stiff else bool(vibration < floor),
+        friction=share(a["friction"]),
+        skin=share(a["friction"] + result.skin_share * a["plastic_barrier"]),
+        plastic_rod=share(a["plastic_rod"]),
+        plastic_barrier=share(a["plastic_barrier"]),
+        locked_rod=share(locked),
+        locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"]),
+        radiated=share(a["radiated"]),
+        closing=share(a["closing"]),
+        damping=share(a["damping"])
+        if "material-damping" in active
+        else Unknown("the material-damping effect is off"),
+        gravity=share(kept - result.motion.kinetic - a["gravity"])
+        if "gravity" in active
+        else Unknown("the gravity effect is off"),
+        residual=share(a["residual"]),
+    )
 
 
-def _heat(result: SolidResult, values: Values) -> Values:
+def _unchecked(result: SolidResult) -> Unknown:
+    if result.finished:
+        return Unknown("the strain that the last forces release was not found")
+    return Unknown("the run ended before the last separation was certain")
+
+
+def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     """Return flash temperature and bound, and rigid theory's friction loss less the vibration in it."""
-    watch, vibration = result.heat, values.get("E_vib_over_E_0")
+    watch = result.heat
     if watch is None or not watch.power:
-        return {}
+        return unknown(Heat, "the contact-heating effect is off")
     power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
     flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
     found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.scene))
-    keys = heat_keys(result.scene, found, float(power.max()), float(flux.max()), float(patch.max()))
-    share = None if vibration is None else values["E_lt_edge_over_E_0"] - vibration
-    return keys | {"E_lt_less_vibration_over_E_0": share}
+    peaks = (float(power.max()), float(flux.max()), float(patch.max()))
+    less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
+    return heat(result.scene, found, *peaks, less)
 
 
-def _markers(result: SolidResult, values: Values) -> Values:
-    marked = replay(result, values["V_n_m_per_s"], values["V_t_m_per_s"])
-    return {
-        "marker_V_n_m_per_s": marked.V_n,
-        "marker_V_t_m_per_s": marked.V_t,
-        "marker_Omega_rad_per_s": marked.Omega,
-        "marker_V_cn_m_per_s": marked.V_cn,
-        "marker_V_ct_m_per_s": marked.V_ct,
-        "contacts": [
-            {
-                "start_s": i.start,
-                "end_s": i.end,
-                "impulse_n_Ns": float(i.impulse_n),
-                "impulse_t_Ns": float(i.impulse_t),
-            }
-            for i in result.model.book.intervals
-        ],
-    }
+def _contact(result: SolidResult, moved: RodMotion) -> Contact:
+    intervals = (
+        ContactInterval(start=i.start, end=i.end, impulse_n=float(i.impulse_n), impulse_t=float(i.impulse_t))
+        for i in result.model.book.intervals
+    )
+    return Contact(
+        intervals=tuple(intervals),
+        peak_force=result.peak_force,
+        markers=replay(result, moved.V_n, moved.V_t),
+    )
 
 
-def _cost(result: SolidResult) -> Values:
+def _cost(result: SolidResult) -> RunCost:
     g, cost = result.model.geometry, result.cost
     rod, barrier = len(g.rod.mesh.cells), len(g.barrier.cells) if g.barrier is not None else 0
-    return {
-        "peak_force_N": result.peak_force,
-        "steps": result.steps,
-        "element_steps": result.steps * (rod + barrier),
-        "elements_rod": rod,
-        "elements_barrier": barrier,
-        "elements_yielding": sum(z.count for z in result.model.zones),
-        "wall_s": cost.wall,
-        "cpu_s": cost.cpu,
-        "setup_wall_s": cost.setup_wall,
-        "setup_cpu_s": cost.setup_cpu,
-        "peak_memory_MB": cost.memory_MB,
-        "min_step_s": cost.smallest_step,
-        "tip_size_m": g.tip_size,
-    }
+    return RunCost(
+        steps=result.steps,
+        element_steps=result.steps * (rod + barrier),
+        elements_rod=rod,
+        elements_barrier=barrier,
+        elements_yielding=sum(z.count for z in result.model.zones),
+        wall=cost.wall,
+        cpu=cost.cpu,
+        setup_wall=cost.setup_wall,
+        setup_cpu=cost.setup_cpu,
+        peak_memory=cost.memory_MB,
+        min_step=cost.smallest_step,
+        tip_size=g.tip_size,
+    )

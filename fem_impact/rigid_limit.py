@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 from functools import partial
 from math import isinf
 from typing import TYPE_CHECKING
 
 import rigid
-from fem_impact.contact_law import contact_law, restitution
+from fem_impact.contact_law import contact_law
+from fem_impact.contact_law import restitution as thornton
 from fem_impact.estimates import approach, arms, effective_mass, projectile
 from fem_impact.heating import closed_form
-from fem_impact.outcome import KEYS, Outcome
-from fem_impact.outcome_keys import NO_TARGET, Values, coefficient_keys, motion_keys, plastic_keys, provenance
+from fem_impact.outcome import Contact, Energy, Heat, Markers, Outcome, RunCost, Unknown, unknown
+from fem_impact.outcome_keys import heat, motion, plastic_shares, provenance, restitution, validity
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -31,7 +33,7 @@ def rigid_outcome(scene: Scene) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what it cannot know is null with a reason."""
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = arms(scene)
-    e, source = _restitution(scene, approach(scene))
+    e, source = _normal_restitution(scene, approach(scene))
     f = scene.surface.friction if "friction" in scene.active else 0.0
     impulse = partial(
         rigid.sliding_path,
@@ -47,41 +49,54 @@ def rigid_outcome(scene: Scene) -> Outcome:
     wall, cpu = time.perf_counter(), time.process_time()
     path = impulse()
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    over = "A rigid impact is over at once."
-    values = provenance(scene, "rigid", True, over, (source, *ASSUMPTIONS), without=WITHOUT)
-    V_n, V_t, Omega = path.motion
-    values |= motion_keys(scene, float(V_n), float(V_t), float(Omega), rod.mass, rod.k2)
-    coefficients, reasons = coefficient_keys(scene, values)
-    values |= coefficients | _energies(scene, path, rod) | {"wall_s": wall, "cpu_s": cpu}
-    if "contact-heating" in scene.active:
-        values |= closed_form(scene, values["W_friction_over_E_0"] * values["E_0_J"])
-    unknown = {key.name: UNKNOWN for key in KEYS if key.nullable and values.get(key.name) is None}
-    return Outcome(values, unknown | NO_TARGET | reasons)
+    V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
+    moved, energy = motion(scene, V_n, V_t, Omega, rod.mass, rod.k2), _energy(scene, path, rod)
+    return Outcome(
+        provenance=provenance(scene, "rigid", Unknown(UNKNOWN), WITHOUT),
+        validity=validity(scene, True, "A rigid impact is over at once.", UNKNOWN, (source, *ASSUMPTIONS)),
+        motion=moved,
+        restitution=restitution(scene, moved),
+        energy=energy,
+        contact=Contact(
+            intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
+        ),
+        heat=_heat(scene, energy.friction * energy.E_0),
+        cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
+    )
 
 
-def _restitution(scene: Scene, speed: float) -> tuple[float, str]:
+def _heat(scene: Scene, friction_work: float) -> Heat:
+    if "contact-heating" not in scene.active:
+        return unknown(Heat, UNKNOWN)
+    return heat(scene, *closed_form(scene, friction_work), Unknown(UNKNOWN))
+
+
+def _normal_restitution(scene: Scene, speed: float) -> tuple[float, str]:
     """Return the energetic restitution and the sentence that names its source."""
     if scene.restitution is not None:
         return scene.restitution, f"Restitution {scene.restitution:g} (energetic) is the scene's own."
     law = contact_law(scene)
     if isinf(law.limit):
         return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
-    e = restitution(law, effective_mass(scene), speed)
+    e = thornton(law, effective_mass(scene), speed)
     return e, (
         f"Restitution {e:.3f} (energetic) by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
         f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress."
     )
 
 
-def _energies(scene: Scene, path: rigid.SlidingPath, rod: rigid.Projectile) -> Values:
+def _energy(scene: Scene, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
     impact = scene.impact
     start = rigid.kinetic_energy(impact.v_n, impact.v_t, impact.omega, mass=rod.mass, k2=rod.k2)
     kept = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
     normal, tangential = (rod.mass * sum(w) for w in (path.normal_work, path.tangential_work))
-    return {
-        "E_0_J": float(start),
-        "E_r_over_E_0": float(kept / start),
-        "W_friction_over_E_0": float(-tangential / start),
-        "residual_over_E_0": float((start + normal + tangential - kept) / start),
-        **plastic_keys(scene, float(-normal / start)),
-    }
+    plastic_rod, plastic_barrier = plastic_shares(scene, float(-normal / start))
+    return replace(
+        unknown(Energy, UNKNOWN),
+        E_0=float(start),
+        rigid=float(kept / start),
+        friction=float(-tangential / start),
+        plastic_rod=plastic_rod,
+        plastic_barrier=plastic_barrier,
+        residual=float((start + normal + tangential - kept) / start),
+    )

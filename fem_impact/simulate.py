@@ -137,7 +137,8 @@ def _compute(
 def _write(outcome: Outcome, out: Path) -> None:
     from fem_impact.output import CONTACTS, write_table
 
-    if outcome["contacts"] is not None:
-        write_table(out / "contacts.csv", CONTACTS, outcome["contacts"])
+    contacts = outcome.to_dict()["contacts"]
+    if contacts is not None:
+        write_table(out / "contacts.csv", CONTACTS, contacts)
     outcome.write(out / "outcome.json")
     (out / CHECKPOINT).unlink(missing_ok=True)

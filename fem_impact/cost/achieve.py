@@ -7,15 +7,14 @@ from dataclasses import replace
 from functools import partial
 from itertools import islice, zip_longest
 from pathlib import Path
-from statistics import fmean
 from typing import TYPE_CHECKING
 
-from fem_impact.cost.judge import seconds
-from fem_impact.cost.limits import Placed, pair_limit, truths
-from fem_impact.cost.quantities import QUANTITIES, TARGETED
+from fem_impact.cost.judge import wall_seconds
+from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
+from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import placed
 from fem_impact.cost.stored import Plan, plan
-from fem_impact.outcome import KEYS, Outcome
+from fem_impact.outcome import Outcome, Unknown
 from fem_impact.scale import LocalProcesses
 from fem_impact.simulate import simulate
 from fem_impact.solid.checkpoint import INTERVAL
@@ -29,7 +28,7 @@ __all__ = ["simulate_to_target"]
 Run = Callable[[], Outcome]
 Report = Callable[["Progress"], None]
 
-ALONE = "one mesh alone cannot estimate its own error"
+ALONE = Unknown("one mesh alone cannot estimate its own error")
 
 
 def simulate_to_target(
@@ -44,7 +43,7 @@ def simulate_to_target(
     """Run the setting that the measured costs choose.
 
     Every mesh is run at its places of the barrier's grid. What comes back is the finer mesh's outcome at the
-    first, with the limits of two meshes, or the means of one, under ``extrapolated``. The other runs are
+    first, with the limits of two meshes, or the means of one, in its ``validity``. The other runs are
     kept below ``out``; with two ``workers`` or more a process beside takes every other run.
 
     Raises
@@ -55,14 +54,14 @@ def simulate_to_target(
     chosen = plan(scene, fidelity, workers)
     if not chosen.meshes:
         alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
-        return _kept(_stated(alone, chosen, seconds(alone, "wall_s")), out)
+        return _kept(_stated(alone, chosen, wall_seconds(alone)), out)
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
     work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
     lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
     done = _side_by_side(lanes)
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
     meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
-    wall_s = max(sum(seconds(run, "wall_s") for run in lane) for lane in done)
+    wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
     return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), out)
 
 
@@ -102,30 +101,22 @@ def _plain(scene: Scene) -> Scene:
 
 def _stated(outcome: Outcome, chosen: Plan, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
     """Return the outcome with what was asked, expected and achieved."""
-    return outcome.replace(
-        reasons={"achieved_error": ALONE, "extrapolated": ALONE},
+    limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
+    means = mesh_means(meshes[0]) if meshes else ALONE
+    stated = replace(
+        outcome.validity,
         accuracy_target=chosen.target,
         accuracy_setting=chosen.setting.name,
         expected_error=chosen.expected_error,
-        expected_wall_s=chosen.expected_wall_s,
-        achieved_wall_s=wall_s,
-        achieved_error=_left_open(meshes) if len(meshes) == 2 else None,
-        extrapolated=_limits(meshes) if meshes else None,
+        expected_wall=chosen.expected_wall_s,
+        achieved_wall=wall_s,
+        achieved_error=_left_open(meshes) if len(meshes) == 2 else ALONE,
+        mesh_limit=limits or means,
+        mesh_band=bands or ALONE,
     )
+    return replace(outcome, validity=stated)
 
 
 def _left_open(meshes: Sequence[Placed]) -> float:
     found = truths(meshes)
     return max(found[name].uncertainty / found[name].scale for name in TARGETED)
-
-
-def _limits(meshes: Sequence[Placed]) -> dict[str, float]:
-    """Return the limits, or the means on one mesh, of the quantities of interest, key by key."""
-    kinds = {key.name: key.kind for key in KEYS}
-    keys = [key for quantity in QUANTITIES for key in quantity.keys if kinds[key] == "number"]
-    means = [{key: fmean(run[key] for run in runs) for key in keys} for runs in meshes]
-    if len(means) == 1:
-        return means[0]
-    fine, coarse = means
-    ratio = meshes[1][0]["tip_size_m"] / meshes[0][0]["tip_size_m"]
-    return {key: pair_limit(fine[key], coarse[key], ratio)[0] for key in keys}

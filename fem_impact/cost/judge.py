@@ -5,14 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from math import inf
+from statistics import fmean
 from typing import Any
 
-from fem_impact.cost.limits import Placed, Truth, known_mean, mean, standard_error, truths
+from fem_impact.cost.limits import Placed, Truth, mean, standard_error, truths, values_of
 from fem_impact.cost.quantities import QUANTITIES, Quantity
 from fem_impact.cost.settings import Setting
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, or_none
 
-__all__ = ["Judged", "front", "judge", "seconds", "worst"]
+__all__ = ["Judged", "front", "judge", "wall_seconds", "worst"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,32 +73,37 @@ def judge(
     value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
     if len(runs) == 1 and setting.meshes and whole is None:
-        scatter = {q.name: standard_error(q, runs[0]) for q in QUANTITIES if q.name in truth}
+        scatter = {q.name: standard_error(values_of(q, runs[0])) for q in QUANTITIES if q.name in truth}
     return Judged(
         name=setting.name,
         kind=setting.kind,
         fidelity=setting.fidelity,
         meshes=[asdict(mesh) for mesh in setting.meshes],
-        tip_size_m=every[0]["tip_size_m"],
+        tip_size_m=or_none(every[0].cost.tip_size),
         value=value,
         error={name: _error(number, truth.get(name), own.get(name)) for name, number in value.items()},
         scatter={name: number / truth[name].scale for name, number in scatter.items()},
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
-        wall_s=sum(seconds(run, "wall_s") for run in every),
-        cpu_s=sum(seconds(run, "cpu_s") for run in every),
-        two_cores_s=max(sum(seconds(run, "cpu_s") for run in lane) for lane in (every[0::2], every[1::2])),
-        element_steps=_total(run["element_steps"] for run in every),
-        peak_memory_MB=max((run["peak_memory_MB"] or 0.0 for run in every), default=0.0) or None,
+        wall_s=sum(wall_seconds(run) for run in every),
+        cpu_s=sum(cpu_seconds(run) for run in every),
+        two_cores_s=max(sum(cpu_seconds(run) for run in lane) for lane in (every[0::2], every[1::2])),
+        element_steps=_total(or_none(run.cost.element_steps) for run in every),
+        peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in every), default=0.0) or None,
     )
 
 
-def seconds(run: Outcome, key: str) -> float:
-    """Return the time of a run under a key such as ``wall_s``, s, with that of its set-up."""
-    return float(run[key] + (run[f"setup_{key}"] or 0.0))
+def wall_seconds(run: Outcome) -> float:
+    """Return the wall time of a run with that of its set-up, s."""
+    return run.cost.wall + (or_none(run.cost.setup_wall) or 0.0)
+
+
+def cpu_seconds(run: Outcome) -> float:
+    """Return the processor time of a run with that of its set-up, s."""
+    return run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)
 
 
 def _on_mesh(quantity: Quantity, whole: Placed, truth: Truth) -> Truth:
-    return replace(truth, value=known_mean(quantity, whole), uncertainty=0.0)
+    return replace(truth, value=fmean(values_of(quantity, whole)), uncertainty=0.0)
 
 
 def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:

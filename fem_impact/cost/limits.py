@@ -1,19 +1,36 @@
-"""Limits for vanishing elements from the means of several runs on each mesh, with their uncertainty."""
+"""Limits for vanishing elements from the means of several runs on each mesh, with their uncertainty.
+
+Two meshes, one rule. Richardson's extrapolation asks for the order of convergence, and two meshes tell none:
+first order, which contact and yielding often show, is a guess that puts the limit far away where a smooth
+quantity converges faster, and gives no band but the whole of that distance. What is known is the range of
+orders that such meshes show, so the band holds what every order from `LOWEST` up would give, from the finer
+mesh itself (infinite order) to the farthest limit, and the limit is its middle. How often such bands hold the
+limit of all meshes was counted, see `LOWEST`. Three meshes or more are fitted: `fem_impact.study.richardson`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from math import sqrt
 from statistics import fmean, stdev
-from typing import Any
 
 from fem_impact.cost.quantities import QUANTITIES, Quantity
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import KEYS, Outcome, Unknown, known
 from fem_impact.study.richardson import limit
 
-__all__ = ["Placed", "Truth", "known_mean", "mean", "pair_limit", "standard_error", "truths"]
+__all__ = [
+    "Placed",
+    "Truth",
+    "mean",
+    "mesh_limits",
+    "mesh_means",
+    "pair_limit",
+    "standard_error",
+    "truths",
+    "values_of",
+]
 
 # order of convergence: bands from here up held 91 of 100 limits of all meshes, taken as exact, and all within
 # those limits' own bands (twelve sets, nine quantities)
@@ -48,18 +65,17 @@ class Truth:
 
 def mean(quantity: Quantity, runs: Placed) -> float | None:
     """Return the mean of a quantity over the runs on a mesh, None where the fidelity does not know it."""
-    values = [quantity.value(run) for run in runs]
-    return None if None in values else fmean(v for v in values if v is not None)
+    values = values_of(quantity, runs)
+    return fmean(values) if len(values) == len(runs) else None
 
 
-def known_mean(quantity: Quantity, runs: Placed) -> float:
-    """Return the mean of a quantity over runs that know it."""
-    return fmean(_known(quantity, run) for run in runs)
+def values_of(quantity: Quantity, runs: Placed) -> list[float]:
+    """Return the values of a quantity in the runs on a mesh that know it."""
+    return [value for run in runs if (value := quantity.value(run)) is not None]
 
 
-def standard_error(quantity: Quantity, runs: Placed) -> float:
-    """Return the standard error of that mean over two or four even places; 0 for one run alone."""
-    values = [_known(quantity, run) for run in runs]
+def standard_error(values: Sequence[float]) -> float:
+    """Return the standard error of the mean over two or four even places; 0 for one value alone."""
     return EVEN[len(values)] * stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
 
 
@@ -85,24 +101,56 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
     The uncertainty of a limit is what Eca and Hoekstra's band leaves beyond the finest mesh's own
     distance from it, or the band of a pair, and the scatter of the means.
     """
-    sizes = [float(runs[0]["tip_size_m"]) for runs in meshes]
+    sizes = _sizes(meshes)
     finest = sizes.index(min(sizes))
-    known = [q for q in QUANTITIES if all(mean(q, runs) is not None for runs in meshes)]
-    return {q.name: _truth(q, sizes, meshes, finest) for q in known}
+    shared = [q for q in QUANTITIES if all(mean(q, runs) is not None for runs in meshes)]
+    return {q.name: _truth(q, sizes, meshes, finest) for q in shared}
 
 
-def _known(quantity: Quantity, outcome: Mapping[str, Any]) -> float:
-    value = quantity.value(outcome)
-    assert value is not None  # the caller has looked
-    return value
+def mesh_limits(fine: Placed, coarse: Placed) -> tuple[dict[str, float], dict[str, float]]:
+    """Return limit and half-width of two meshes, by key, of every number that all their runs know."""
+    fine_values, coarse_values = _banded(fine), _banded(coarse)
+    found = {
+        name: _limit_of(_sizes((fine, coarse)), (fine_values[name], coarse_values[name]))
+        for name in fine_values
+        if name in coarse_values
+    }
+    return (
+        {name: value for name, (value, _, _, _) in found.items()},
+        {name: left_open + scatter for name, (_, _, left_open, scatter) in found.items()},
+    )
+
+
+def mesh_means(runs: Placed) -> dict[str, float]:
+    """Return the means over the places of one mesh, by key, of every number that meshes give a limit."""
+    return {name: fmean(values) for name, values in _banded(runs).items()}
+
+
+def _banded(runs: Placed) -> dict[str, list[float]]:
+    """Return the values of the banded keys that all runs know."""
+    values = {key.name: [key.of(run) for run in runs] for key in KEYS if key.banded}
+    return {name: held for name, held in values.items() if not any(isinstance(v, Unknown) for v in held)}
+
+
+def _sizes(meshes: Sequence[Placed]) -> list[float]:
+    return [known(runs[0].cost.tip_size) for runs in meshes]
 
 
 def _truth(quantity: Quantity, sizes: list[float], meshes: Sequence[Placed], finest: int) -> Truth:
-    values = [known_mean(quantity, runs) for runs in meshes]
-    value, order, left_open = _limit(sizes, values)
-    scatter = _carried(sizes, values, [standard_error(quantity, runs) for runs in meshes])
-    size = max(abs(value), abs(values[finest]))  # an extrapolation to zero must not inflate every error
+    values = [values_of(quantity, runs) for runs in meshes]
+    value, order, left_open, scatter = _limit_of(sizes, values)
+    # an extrapolation to zero must not inflate every error
+    size = max(abs(value), abs(fmean(values[finest])))
     return Truth(value, order, left_open + scatter, quantity.scale(size, meshes[finest][0]), scatter)
+
+
+def _limit_of(
+    sizes: list[float], values: Sequence[Sequence[float]]
+) -> tuple[float, float | None, float, float]:
+    """Return limit, order, what the means leave open, and the limit's standard error."""
+    means = [fmean(held) for held in values]
+    scatter = _carried(sizes, means, [standard_error(held) for held in values])
+    return *_limit(sizes, means), scatter
 
 
 def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None, float]:

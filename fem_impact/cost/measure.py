@@ -166,7 +166,7 @@ def _failure(result: Outcome | Failure) -> str | None:
     """Return why a run cannot be judged."""
     if isinstance(result, Failure):
         return result.reason
-    return None if result["finished"] else str(result["stopped_because"])
+    return None if result.validity.finished else result.validity.stopped_because
 
 
 def _runs(setting: Setting, results: Results) -> list[Placed]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import hypot, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.outcome import KEY_TABLE, Key, Num, Outcome, or_none
 
 if TYPE_CHECKING:
     from fem_impact.scene import Scene
@@ -29,34 +30,39 @@ class Quantity:
 
     name: str
     unit: str
-    keys: tuple[str, ...]
+    keys: tuple[Key, ...]
     floor: float
 
-    def value(self, outcome: Mapping[str, Any]) -> float | None:
+    def value(self, outcome: Outcome) -> float | None:
         """Return the value, None where the fidelity does not know it."""
-        parts = [outcome[key] for key in self.keys]
-        return None if None in parts else float(sum(parts))
+        values: list[Num] = [key.of(outcome) for key in self.keys]
+        parts = [part for value in values if (part := or_none(value)) is not None]
+        return float(sum(parts)) if len(parts) == len(values) else None
 
-    def scale(self, value: float, outcome: Mapping[str, Any]) -> float:
+    def scale(self, value: float, outcome: Outcome) -> float:
         """Return what an error is divided by."""
-        unit = 1.0
+        m, unit = outcome.motion, 1.0
         if self.unit == "rad/s":
-            unit = hypot(outcome["v_n_m_per_s"], outcome["v_t_m_per_s"]) / sqrt(outcome["k_squared_m2"])
+            unit = hypot(m.v_n, m.v_t) / sqrt(m.k_squared)
         return max(abs(value), self.floor * unit)
+
+
+def _quantity(name: str, unit: str, floor: float, *keys: str) -> Quantity:
+    return Quantity(name, unit, tuple(KEY_TABLE[key] for key in keys), floor)
 
 
 # 2 % of the floor of a share is 1e-4 of E_0, as far as vibration is asked for
 SHARE = 0.005
 QUANTITIES = (
-    Quantity("e", "-", ("e_edge",), 0.05),
-    Quantity("mu", "-", ("mu",), 0.05),
-    Quantity("Omega", "rad/s", ("Omega_rad_per_s",), 0.1),
-    Quantity("E_vib", "E_0", ("E_vib_over_E_0",), SHARE),
-    Quantity("E_lt", "E_0", ("E_lt_edge_over_E_0",), SHARE),
-    Quantity("E_ln", "E_0", ("E_ln_edge_over_E_0",), SHARE),
-    Quantity("plastic", "E_0", ("E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0"), SHARE),
-    Quantity("friction", "E_0", ("W_friction_over_E_0",), SHARE),
-    Quantity("peak force", "N", ("peak_force_N",), 0.0),
+    _quantity("e", "-", 0.05, "e_edge"),
+    _quantity("mu", "-", 0.05, "mu"),
+    _quantity("Omega", "rad/s", 0.1, "Omega_rad_per_s"),
+    _quantity("E_vib", "E_0", SHARE, "E_vib_over_E_0"),
+    _quantity("E_lt", "E_0", SHARE, "E_lt_edge_over_E_0"),
+    _quantity("E_ln", "E_0", SHARE, "E_ln_edge_over_E_0"),
+    _quantity("plastic", "E_0", SHARE, "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0"),
+    _quantity("friction", "E_0", SHARE, "W_friction_over_E_0"),
+    _quantity("peak force", "N", 0.0, "peak_force_N"),
 )
 TARGETED = ("e", "E_vib")
 """What a target means unless other quantities are named."""

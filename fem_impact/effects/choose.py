@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cache
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fem_impact.effects.catalogue import EFFECTS
 from fem_impact.effects.harm import left_out
 from fem_impact.effects.share import expected_shares
 from fem_impact.effects.spec import Harm
+from fem_impact.outcome import EffectChoice
 from fem_impact.scene.effect_names import AUTO, BARRIERS, NAMES, grounded
 
 if TYPE_CHECKING:
@@ -41,23 +42,23 @@ class Choice:
     harm: Harm
     share: float | None
 
-    def told(self) -> dict[str, Any]:
-        """Return the choice as a flat record with its measure, threshold and sentence."""
+    def told(self, share: float | None) -> EffectChoice:
+        """Return the choice as an outcome holds it, with its share of the run time."""
         effect = EFFECTS[self.name]
-        return {
-            "name": self.name,
-            "on": self.on,
-            "forced": self.forced,
-            "needed": self.needed,
-            "measure": effect.measure,
-            "number": self.number if isfinite(self.number) else None,
-            "threshold": effect.threshold,
-            "source": effect.source,
-            "change_of_e": self.harm.e,
-            "change_of_E_vib_over_E_0": self.harm.E_vib,
-            "sentence": effect.sentence if self.on else effect.absence,
-            "share": self.share,
-        }
+        return EffectChoice(
+            name=self.name,
+            on=self.on,
+            forced=self.forced,
+            needed=self.needed,
+            measure=effect.measure,
+            number=self.number if isfinite(self.number) else None,
+            threshold=effect.threshold,
+            source=effect.source,
+            change_of_e=self.harm.e,
+            change_of_vibration=self.harm.E_vib,
+            sentence=effect.sentence if self.on else effect.absence,
+            share=share,
+        )
 
 
 def active(scene: Scene) -> tuple[str, ...]:

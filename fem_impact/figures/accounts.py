@@ -1,4 +1,4 @@
-"""Names and colours of the energy accounts, the same in every figure."""
+"""Names and colours of the energy accounts over time."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from fem_impact.figures.style import PALETTE
 
-__all__ = ["FINAL", "RUNNING", "Account"]
+__all__ = ["RUNNING", "Account"]
 
 
 @dataclass(frozen=True, slots=True)
 class Account:
-    """One share of the energy: its key in the table or record, its label and its colour."""
+    """One column of history.csv, its label and its colour."""
 
     key: str
     label: str
@@ -31,17 +31,3 @@ RUNNING = (
     Account("W_closing_J", "contact closing", PALETTE["grey"]),
 )
 """Accounts of history.csv, bottom to top; gravity and the residual are not areas."""
-
-FINAL = (
-    Account("E_r_over_E_0", "rigid motion", PALETTE["blue"]),
-    Account("E_vib_over_E_0", "vibration", PALETTE["night"]),
-    Account("E_locked_rod_over_E_0", "locked in, rod", PALETTE["sky"]),
-    Account("E_plastic_rod_over_E_0", "plastic, rod", PALETTE["purple"]),
-    Account("W_friction_over_E_0", "friction", PALETTE["green"]),
-    Account("E_plastic_barrier_over_E_0", "plastic, barrier", PALETTE["vermilion"]),
-    Account("E_locked_barrier_over_E_0", "locked in, barrier", PALETTE["orange"]),
-    Account("W_radiated_over_E_0", "radiated", PALETTE["yellow"]),
-    Account("W_damping_over_E_0", "damping", PALETTE["sand"]),
-    Account("W_closing_over_E_0", "contact closing", PALETTE["grey"]),
-)
-"""Accounts of an outcome: where E_0 is after the last separation."""

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_impact.figures.style import PALETTE, QUIET, Shape, figure
+from fem_impact.outcome import ContactInterval
 from fem_impact.output import Table, write_table
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ COLUMNS = ("time_s", "force_n_N", "force_t_N")
 
 
 def force_figure(
-    history: Table, contacts: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide"
+    history: Table, contacts: Sequence[ContactInterval], path: str | Path, shape: Shape = "wide"
 ) -> Path:
     """Draw normal and tangential contact force on the whole rod, contact intervals shaded.
 
@@ -28,8 +29,7 @@ def force_figure(
     ----------
     history : Table
         history.csv, forces in N.
-    contacts : sequence of mappings
-        Contact intervals of the outcome: start_s, end_s, impulse_n_Ns, impulse_t_Ns.
+    contacts : sequence of ContactInterval
     path : path
         The picture; the data go to the same name with ``.csv``.
     shape : "wide" or "narrow"
@@ -59,14 +59,14 @@ def _dashed(axes: Axes, time: np.ndarray, force: np.ndarray) -> None:
     axes.plot(time, force, color=PALETTE["vermilion"], linestyle=dashes, label="tangential (up the slope)")
 
 
-def _shade(axes: Axes, contacts: Sequence[Mapping[str, Any]]) -> None:
+def _shade(axes: Axes, contacts: Sequence[ContactInterval]) -> None:
     for contact in contacts:
-        start, end = contact["start_s"] * 1e6, contact["end_s"] * 1e6
+        start, end = contact.start * 1e6, contact.end * 1e6
         axes.axvspan(start, end, color="#eef2f6", zorder=0)
         axes.text(
             (start + end) / 2,
             1.005,
-            f"{contact['impulse_n_Ns']:.3g} N s",
+            f"{contact.impulse_n:.3g} N s",
             transform=axes.get_xaxis_transform(),
             ha="center",
             va="bottom",

@@ -1,13 +1,11 @@
-"""Where E_0 went, one bar an account."""
+"""Where E_0 went, one bar a share."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
-from fem_impact.figures.accounts import FINAL, Account
-from fem_impact.figures.style import QUIET, Shape, figure, percent
+from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent
+from fem_impact.outcome import EnergyShare, Outcome, Unknown, known, or_none, shares
 from fem_impact.output import write_table
 
 __all__ = ["partition_figure"]
@@ -15,28 +13,30 @@ __all__ = ["partition_figure"]
 UNSEEN = 1e-5  # of E_0
 
 
-def partition_figure(outcome: Mapping[str, Any], path: str | Path, shape: Shape = "wide") -> Path:
-    """Draw the known shares of E_0 after the last separation.
+def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") -> Path:
+    """Draw the known shares of E_0 after the last separation, of two meshes their limits and bands.
 
     Parameters
     ----------
-    outcome : mapping
-        An Outcome or one row of a study; null shares are left out (the record holds the reasons).
+    outcome : Outcome
+        Shares that are not known are left out (the record holds the reasons).
     path : path
         The picture; the data go to the same name with ``.csv``.
     shape : "wide" or "narrow"
     """
     path = Path(path)
-    known = [account for account in FINAL if outcome[account.key] is not None]
-    write_table(path.with_suffix(".csv"), ("account", "fraction_of_E_0"), _rows(known, outcome))
-    with figure(path, shape, 0.9 + 0.27 * max(len(known), 1)) as drawn:
+    listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
+    values = [known(outcome.estimate(share.key)[0]) for share in listed]
+    names = [share.key.name.removesuffix("_over_E_0") for share in listed]
+    write_table(path.with_suffix(".csv"), ("account", "fraction_of_E_0"), zip(names, values, strict=True))
+    with figure(path, shape, 0.9 + 0.27 * max(len(listed), 1)) as drawn:
         axes = drawn.add_subplot()
         # a bar too thin to be seen is none: one below 0 would have its number on its name
-        values = [100.0 * share if abs(share := outcome[account.key]) > UNSEEN else 0.0 for account in known]
-        bars = axes.barh([account.label for account in known], values, height=0.68)
-        for bar, account in zip(bars, known, strict=True):
-            bar.set_color(account.colour)
-        axes.bar_label(bars, [_label(account, outcome) for account in known], padding=4, fontsize=8.5)
+        widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
+        bars = axes.barh([share.label for share in listed], widths, height=0.68)
+        for bar, share in zip(bars, listed, strict=True):
+            bar.set_color(PALETTE[share.colour])
+        axes.bar_label(bars, [_label(share, outcome) for share in listed], padding=4, fontsize=8.5)
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
         axes.margins(x=0.22)
@@ -45,12 +45,9 @@ def partition_figure(outcome: Mapping[str, Any], path: str | Path, shape: Shape 
     return path
 
 
-def _rows(known: list[Account], outcome: Mapping[str, Any]) -> list[tuple[str, float]]:
-    return [(account.key.removesuffix("_over_E_0"), outcome[account.key]) for account in known]
-
-
-def _label(account: Account, outcome: Mapping[str, Any]) -> str:
-    if account.key == "E_vib_over_E_0" and outcome.get("E_vib_below_floor"):
-        return f"below floor ({percent(outcome['E_vib_floor_over_E_0'] or 0.0)})"
-    width = (outcome.get("bands") or {}).get(account.key)
-    return percent(outcome[account.key], width)
+def _label(share: EnergyShare, outcome: Outcome) -> str:
+    energy = outcome.energy
+    if share.key.path[-1] == "vibration" and or_none(energy.below_floor):
+        return f"below floor ({percent(or_none(energy.vibration_floor) or 0.0)})"
+    value, width = outcome.estimate(share.key)
+    return percent(known(value), width)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.figures.accounts import FINAL
-from fem_impact.figures.style import Shape, figure
+from fem_impact.figures.style import PALETTE, Shape, figure
+from fem_impact.outcome import Outcome, or_none, shares
 from fem_impact.output import write_table
 
 if TYPE_CHECKING:
@@ -18,22 +18,20 @@ if TYPE_CHECKING:
 __all__ = ["study_partition_figure"]
 
 
-def study_partition_figure(
-    rows: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide"
-) -> Path:
-    """Draw one stacked bar a run, null shares left white.
+def study_partition_figure(rows: Sequence[Outcome], path: str | Path, shape: Shape = "wide") -> Path:
+    """Draw one stacked bar a run, shares that are not known left white.
 
     Parameters
     ----------
-    rows : sequence of mappings
-        Outcomes or rows of study.json.
+    rows : sequence of Outcome
     path : path
         The picture; the data go to the same name with ``.csv``.
     shape : "wide" or "narrow"
     """
     path = Path(path)
-    columns = ("scene_id", *(account.key for account in FINAL))
-    write_table(path.with_suffix(".csv"), columns, [[row[name] for name in columns] for row in rows])
+    listed = shares("figure")
+    data = [[row.provenance.scene_id, *(or_none(share.of(row.energy)) for share in listed)] for row in rows]
+    write_table(path.with_suffix(".csv"), ("scene_id", *(share.key.name for share in listed)), data)
     with figure(path, shape, 1.6 + 0.3 * len(rows) + (0.0 if shape == "wide" else 0.6)) as drawn:
         axes = drawn.add_subplot()
         _stack(axes, rows)
@@ -45,11 +43,12 @@ def study_partition_figure(
     return path
 
 
-def _stack(axes: Axes, rows: Sequence[Mapping[str, Any]]) -> None:
-    names, left = [row["scene_id"] for row in rows], np.zeros(len(rows))
-    for account in FINAL:
-        widths = np.array([100.0 * (row[account.key] or 0.0) for row in rows])
-        bars = axes.barh(names, widths, left=left, color=account.colour, label=account.label, height=0.72)
+def _stack(axes: Axes, rows: Sequence[Outcome]) -> None:
+    names, left = [row.provenance.scene_id for row in rows], np.zeros(len(rows))
+    for share in shares("figure"):
+        widths = np.array([100.0 * (or_none(share.of(row.energy)) or 0.0) for row in rows])
+        colour = PALETTE[share.colour]
+        bars = axes.barh(names, widths, left=left, color=colour, label=share.label, height=0.72)
         for bar in bars:
             bar.set(edgecolor="white", linewidth=0.4)
         left += widths

@@ -1,68 +1,56 @@
-"""From a modal impact to the flat Outcome record."""
+"""From a modal impact to the outcome."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from fem_impact.modal.assumptions import ASSUMPTIONS
 from fem_impact.modal.beside import beside_solid
 from fem_impact.modal.impact import ModalResult
-from fem_impact.outcome import KEYS, Outcome
-from fem_impact.outcome.keys import HEATING
-from fem_impact.outcome_keys import (
-    NO_TARGET,
-    Values,
-    coefficient_keys,
-    explained,
-    motion_keys,
-    plastic_keys,
-    provenance,
+from fem_impact.outcome import (
+    Contact,
+    ContactInterval,
+    Energy,
+    Heat,
+    Markers,
+    Outcome,
+    RunCost,
+    Unknown,
+    unknown,
 )
+from fem_impact.outcome_keys import motion, plastic_shares, provenance, restitution, validity
 from fem_impact.scene import Scene
 
 __all__ = ["reduce"]
 
 WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
-NOT_MESHED = "the reduced model has no elements"
-REASONS = {
-    "E_vib_check_over_E_0": "the free flight is exact in modes, so there is nothing to check it against",
-    "E_locked_rod_over_E_0": "a local contact law knows no residual stress",
-    "E_locked_barrier_over_E_0": "a local contact law knows no residual stress",
-    "W_radiated_over_E_0": "a local contact law sends no waves into the barrier",
-    "W_skin_over_E_0": "a local contact law does not say how deep it flows",
-    "W_closing_over_E_0": "no contact nodes close",
-    "effect_choices": "effects are weighed for the finite elements; `fem-impact check` lists them",
-    "W_gravity_over_E_0": "the gravity effect is off",
-    "W_damping_over_E_0": "the reduced model has no material damping",
-    "E_hourglass_over_E_0": NOT_MESHED,
-    **dict.fromkeys(
-        (key.name for key in KEYS if key.name.startswith("marker_")),
-        "the camera's markers are followed on the finite elements only",
-    ),
-    **dict.fromkeys((key.name for key in HEATING), "heat is followed on the finite elements only"),
-    "bands": "the reduced model has no second mesh",
-    **dict.fromkeys(
-        ("element_steps", "elements_rod", "elements_barrier", "elements_yielding", "tip_size_m"), NOT_MESHED
-    ),
-    **dict.fromkeys(("setup_wall_s", "setup_cpu_s"), "the modes of a rod are computed once and kept"),
-    "peak_memory_MB": "the march holds a few vectors; the process is larger than it",
-}  # fmt: skip
+CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
+NOT_MESHED = Unknown("the reduced model has no elements")
+NO_STRESS = Unknown("a local contact law knows no residual stress")
+KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
 def reduce(scene: Scene, result: ModalResult) -> Outcome:
-    """Return the Outcome of a modal impact; what it cannot know is null with its reason."""
-    warnings = [] if result.finished else ["The impact was not over at max_time."]
-    assumed = (*ASSUMPTIONS, *beside_solid(scene))
-    values = provenance(scene, "modal", result.finished, _end(result), assumed, warnings, WITHOUT)
+    """Return the Outcome of a modal impact."""
     rod = result.rod
-    values |= motion_keys(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
-    coefficients, reasons = coefficient_keys(scene, values)
-    values |= coefficients | _energies(scene, result) | _contact(result)
-    values |= {
-        "steps": result.steps,
-        "wall_s": result.wall,
-        "cpu_s": result.cpu,
-        "min_step_s": result.step,
-    }
-    return explained(values, NO_TARGET | REASONS | reasons)
+    moved = motion(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
+    return Outcome(
+        provenance=provenance(scene, "modal", CHOICES, WITHOUT),
+        validity=validity(
+            scene,
+            result.finished,
+            _end(result),
+            "the reduced model has no second mesh",
+            (*ASSUMPTIONS, *beside_solid(scene)),
+            [] if result.finished else ["The impact was not over at max_time."],
+        ),
+        motion=moved,
+        restitution=restitution(scene, moved),
+        energy=_energy(scene, result),
+        contact=_contact(result),
+        heat=unknown(Heat, "heat is followed on the finite elements only"),
+        cost=_cost(result),
+    )
 
 
 def _end(result: ModalResult) -> str:
@@ -71,24 +59,51 @@ def _end(result: ModalResult) -> str:
     return "Reached max_time before the last separation."
 
 
-def _energies(scene: Scene, result: ModalResult) -> Values:
-    kept = result.kinetic / result.E_0
-    floor = abs(result.residual) / result.E_0
-    vibration = result.vibration / result.E_0
-    return {
-        "E_0_J": result.E_0,
-        "E_r_over_E_0": kept,
-        "E_vib_over_E_0": vibration,
-        "E_vib_floor_over_E_0": floor,
-        "E_vib_below_floor": vibration < floor,
-        "W_friction_over_E_0": result.friction / result.E_0,
-        "residual_over_E_0": result.residual / result.E_0,
-        "W_gravity_over_E_0": result.fallen / result.E_0 if "gravity" in scene.active else None,
-        **plastic_keys(scene, result.plastic / result.E_0),
-    }
+def _energy(scene: Scene, result: ModalResult) -> Energy:
+    E_0, vibration = result.E_0, result.vibration / result.E_0
+    floor = abs(result.residual) / E_0
+    plastic_rod, plastic_barrier = plastic_shares(scene, result.plastic / E_0)
+    return Energy(
+        E_0=E_0,
+        rigid=result.kinetic / E_0,
+        vibration=vibration,
+        vibration_check=Unknown("the free flight is exact in modes, so there is nothing to check it against"),
+        vibration_floor=floor,
+        below_floor=vibration < floor,
+        friction=result.friction / E_0,
+        skin=Unknown("a local contact law does not say how deep it flows"),
+        plastic_rod=plastic_rod,
+        plastic_barrier=plastic_barrier,
+        locked_rod=NO_STRESS,
+        locked_barrier=NO_STRESS,
+        radiated=Unknown("a local contact law sends no waves into the barrier"),
+        closing=Unknown("no contact nodes close"),
+        damping=Unknown("the reduced model has no material damping"),
+        gravity=result.fallen / E_0 if "gravity" in scene.active else Unknown("the gravity effect is off"),
+        residual=result.residual / E_0,
+    )
 
 
-def _contact(result: ModalResult) -> Values:
-    names = ("start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns")
-    rows = [dict(zip(names, map(float, row), strict=True)) for row in result.contacts]
-    return {"contacts": rows, "peak_force_N": result.force}
+def _contact(result: ModalResult) -> Contact:
+    rows = (map(float, row) for row in result.contacts)
+    return Contact(
+        intervals=tuple(
+            ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
+            for start, end, normal, tangential in rows
+        ),
+        peak_force=result.force,
+        markers=unknown(Markers, "the camera's markers are followed on the finite elements only"),
+    )
+
+
+def _cost(result: ModalResult) -> RunCost:
+    return replace(
+        unknown(RunCost, NOT_MESHED.reason),
+        steps=result.steps,
+        wall=result.wall,
+        cpu=result.cpu,
+        setup_wall=KEPT,
+        setup_cpu=KEPT,
+        peak_memory=Unknown("the march holds a few vectors; the process is larger than it"),
+        min_step=result.step,
+    )

@@ -1,31 +1,89 @@
-"""Every key of an outcome, with its kind, unit and meaning: the table that tests and documents read."""
+"""A field of an outcome declares its key once: name in the JSON file, unit and meaning.
+
+The table of keys, the checks of a file, its text and the attributes in docstrings follow from it.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, is_dataclass
+from functools import reduce
+from types import UnionType
+from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_args, get_type_hints
 
-__all__ = ["ARMS", "KEYS", "SCHEMA_VERSION", "Key", "Kind"]
+from fem_impact.errors import ResultError
 
-SCHEMA_VERSION = 2
-"""Raised whenever a key is renamed, removed or changes its meaning; added keys raise it too."""
-
-ARMS = ("paper", "edge", "impulse")
-"""The three sets of contact arms that every coefficient is given with."""
-
-Kind = Literal[
-    "number",
-    "count",
-    "flag",
-    "text",
-    "texts",
-    "versions",
-    "contacts",
-    "choices",
-    "bands",
-    "values",
-    "reasons",
+__all__ = [
+    "Key",
+    "Kind",
+    "Num",
+    "Unknown",
+    "group",
+    "key",
+    "keys_of",
+    "known",
+    "markdown_table",
+    "or_none",
+    "part",
+    "unknown",
 ]
+
+T = TypeVar("T")
+Kind = Literal["number", "count", "flag", "text", "texts", "named texts", "named numbers", "entries"]
+KINDS: Mapping[Any, Kind] = {
+    float: "number",
+    int: "count",
+    bool: "flag",
+    str: "text",
+    tuple[str, ...]: "texts",
+    Mapping[str, str]: "named texts",
+    Mapping[str, float]: "named numbers",
+}
+"""Kind of a value by the annotation of its field."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """A value that a run does not give.
+
+    It cannot be computed with: test for it, or call `known`. In JSON it is null and an entry in ``reasons``.
+
+    Parameters
+    ----------
+    reason : str
+        The sentence that says why.
+
+    Examples
+    --------
+    >>> known(Unknown("no contact took place"))
+    Traceback (most recent call last):
+    ...
+    fem_impact.errors.ResultError: Not known: no contact took place.
+    """
+
+    reason: str
+
+    def __bool__(self) -> NoReturn:
+        raise self.error()
+
+    def error(self) -> ResultError:
+        """Return what is raised where the value is asked for all the same."""
+        return ResultError(f"Not known: {self.reason.rstrip('.')}.")
+
+
+Num = float | Unknown
+
+
+def known(value: T | Unknown) -> T:
+    """Return a value, or raise ResultError with the reason why it is not known."""
+    if isinstance(value, Unknown):
+        raise value.error()
+    return value
+
+
+def or_none(value: T | Unknown) -> T | None:
+    """Return a value, None where it is not known: for tables and JSON."""
+    return None if isinstance(value, Unknown) else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,13 +95,21 @@ class Key:
     name : str
         The key in the JSON file.
     kind : str
-        What its value is: number, count (whole, >= 0), flag, text, list of texts, or a named structure.
+        What its value is; a count is a whole number, zero or more.
     unit : str
         SI unit; ``-`` for a pure number and the empty string where a unit makes no sense.
     meaning : str
         One sentence for the reader of the file.
     nullable : bool
-        Whether ``null`` is allowed; then ``reasons`` says why it is null.
+        Whether the value may be unknown: ``null``, and ``reasons`` says why.
+    banded : bool
+        Whether two meshes give it a limit and a band.
+    path : tuple of str
+        Attributes that lead from the outcome to the value.
+    entries : tuple of Key
+        Of each entry, where the value is a list of entries.
+    entry : type
+        What makes such an entry.
     """
 
     name: str
@@ -51,164 +117,110 @@ class Key:
     unit: str
     meaning: str
     nullable: bool = False
+    banded: bool = False
+    path: tuple[str, ...] = ()
+    entries: tuple[Key, ...] = ()
+    entry: type = object
+
+    def of(self, outcome: object) -> Any:
+        """Return the value in an outcome."""
+        return reduce(getattr, self.path, outcome)
 
 
-def _text(name: str, meaning: str, kind: Kind = "text") -> Key:
-    return Key(name, kind, "", meaning)
+def key(name: str, unit: str, meaning: str, banded: bool = False) -> Any:
+    """Declare a field with its key in the JSON file.
+
+    In a group that stands in an outcome more than once, ``{}`` in name and meaning is what `part` says.
+    """
+    return field(metadata={"key": (name, unit, meaning, banded)})
 
 
-def _number(name: str, unit: str, meaning: str) -> Key:
-    return Key(name, "number", unit, meaning, nullable=True)
+def part(name: str, meaning: str) -> Any:
+    """Declare a field that holds a group of keys: what ``{}`` in their names and meanings stands for."""
+    return field(metadata={"part": (name, meaning)})
 
 
-def _count(name: str, meaning: str) -> Key:
-    return Key(name, "count", "-", meaning, nullable=True)
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, part))
+def group(cls: type[T]) -> type[T]:
+    """Make a frozen dataclass whose docstring names unit and meaning of every field."""
+    made = dataclass(frozen=True, slots=True, kw_only=True, repr=False)(cls)
+    made.__repr__ = _shown  # type: ignore[method-assign]
+    lines = [f"{key.path[-1]} : {key.unit or key.kind}\n    {key.meaning}" for key in _own_keys(made)]
+    made.__doc__ = "\n".join([f"{cls.__doc__}\n", "Attributes", "----------", *lines])
+    return made
 
 
-def _fraction(name: str, meaning: str) -> Key:
-    return _number(f"{name}_over_E_0", "-", f"{meaning}, as a fraction of E_0.")
+def unknown(cls: type[T], reason: str) -> T:
+    """Return a group whose every value is unknown for the same reason; `dataclasses.replace` sets others."""
+    return cls(**{one.name: Unknown(reason) for one in fields(cls)})  # type: ignore[arg-type]
 
 
-PROVENANCE = (
-    Key("schema_version", "count", "-", "Version of this table of keys."),
-    _text("fidelity", "Which model computed it: rigid, modal or solid."),
-    _text("scene_id", "Identifier of the scene; a measured set carries the set's id."),
-    _text("scene_title", "The scene in words."),
-    _text("scene_digest", "SHA-256 of the canonical scene, hexadecimal."),
-    _text("created_utc", "When the record was made, ISO 8601, UTC."),
-    _text("versions", "Version of Python and of each package that took part.", "versions"),
-    Key("finished", "flag", "", "True when the stop rule ended the run, false when a limit cut it off."),
-    _text("stopped_because", "Why the run ended, as a sentence."),
-    _text("effects", "Names of the effects that were in the model.", "texts"),
-    _text("assumptions", "Sentences on what the model leaves out or takes from elsewhere.", "texts"),
-    Key("effect_choices", "choices", "", "Each effect: number, threshold, verdict, harm, cost.", True),
-    _text("validity", "Sentences on where the scene leaves the measured range.", "texts"),
-    _text("warnings", "Sentences on what the reader should distrust.", "texts"),
-)
-
-SCENE = (
-    _number("friction_f", "-", "Coulomb coefficient that went in (not the impulse ratio mu that came out)."),
-    _number("alpha_rad", "rad", "Angle between rod axis and barrier normal."),
-    _number("mass_kg", "kg", "Mass of the whole rod as modelled."),
-    _number("k_squared_m2", "m2", "Squared radius of gyration about b through the mass centre."),
-    _number("gamma_per_m0_3815", "m^-0.3815", "Slenderness l / d^1.3815."),
-)
-
-MOTION = (
-    _number("v_n_m_per_s", "m/s", "Normal velocity of the mass centre at first contact, negative inwards."),
-    _number("v_t_m_per_s", "m/s", "Tangential velocity of the mass centre at first contact, up the slope."),
-    _number("V_n_m_per_s", "m/s", "Normal velocity at the last separation, gravity removed."),
-    _number("V_t_m_per_s", "m/s", "Tangential velocity at the last separation, gravity removed."),
-    _number(
-        "Omega_rad_per_s", "rad/s", "Rotation rate at the last separation, n turning towards t positive."
-    ),
-    _number("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17)."),
-    _number("mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 11)."),
-)
+def keys_of(cls: type, path: tuple[str, ...] = (), name: str = "", meaning: str = "") -> Iterator[Key]:
+    """Yield the keys of a group and of the groups in it."""
+    hints = get_type_hints(cls)
+    for one in fields(cls):
+        place = (*path, one.name)
+        if "key" in one.metadata:
+            yield _key(one.metadata["key"], hints[one.name], place, name, meaning)
+        else:
+            yield from keys_of(hints[one.name], place, *one.metadata.get("part", ()))
 
 
-def _arms(name: str) -> tuple[Key, ...]:
-    origin = {
-        "paper": "the paper's arms for this set",
-        "edge": "the arms of a contact on the edge radius",
-        "impulse": "the arms of the centre of the contact impulse, where e_m = -1",
-    }[name]
-    return (
-        _number(f"d_c_{name}_m", "m", f"Arm along t from contact point to mass centre: {origin}."),
-        _number(f"d_d_{name}_m", "m", f"Arm along n from contact point to mass centre: {origin}."),
-        _number(f"e_{name}", "-", f"Coefficient of restitution (Eq 16) with {origin}."),
-        _number(f"e_m_{name}", "-", f"Moment coefficient with {origin}."),
-        _fraction(f"E_ln_{name}", f"Energy lost by normal forces (Eq 20) with {origin}"),
-        _fraction(f"E_lt_{name}", f"Energy lost by tangential forces (Eq 21) with {origin}"),
+def _own_keys(cls: type) -> Iterator[Key]:
+    return (key for key in keys_of(cls, meaning="these arms") if len(key.path) == 1)
+
+
+def _key(
+    declared: tuple[str, str, str, bool],
+    hint: Any,
+    path: tuple[str, ...],
+    group_name: str,
+    group_meaning: str,
+) -> Key:
+    name, unit, meaning, banded = declared
+    options = get_args(hint) if isinstance(hint, UnionType) else (hint,)
+    entry = next(iter(get_args(options[0])), object)
+    entries = tuple(keys_of(entry)) if is_dataclass(entry) else ()
+    kind = "entries" if entries else KINDS[options[0]]
+    return Key(
+        name.replace("{}", group_name),
+        kind,
+        unit,
+        meaning.replace("{}", group_meaning),
+        nullable=len(options) > 1,
+        banded=banded,
+        path=path,
+        entries=entries,
+        entry=entry,
     )
 
 
-ENERGY = (
-    _number("E_0_J", "J", "Kinetic energy of the whole rod at first contact."),
-    _fraction("E_r", "Kinetic energy of the rigid motion after the last separation (Eq 26)"),
-    _fraction("E_vib", "Vibration energy after the last separation, by modal projection"),
-    _fraction("E_vib_check", "Vibration energy without modes, of all shapes that the mesh has"),
-    _fraction("E_vib_floor", "Numerical floor under which a vibration energy means nothing"),
-    Key("E_vib_below_floor", "flag", "", "True when E_vib is below its floor.", nullable=True),
-    _fraction("W_friction", "Work turned to heat by friction at the contact"),
-    _fraction("W_skin", "Friction work and plastic work of the barrier down to 0.1 mm below its surface"),
-    _fraction("E_plastic_rod", "Plastic work in the rod"),
-    _fraction("E_plastic_barrier", "Plastic work in the barrier"),
-    _fraction("E_locked_rod", "Strain energy locked in by residual stress in the rod"),
-    _fraction("E_locked_barrier", "Strain energy locked in by residual stress in the barrier"),
-    _fraction("W_radiated", "Energy radiated through the barrier's outer boundary"),
-    _fraction("W_closing", "Loss at the closing of lumped contact nodes (vanishes with the mesh)"),
-    _fraction("W_damping", "Work of material damping"),
-    _fraction("W_gravity", "What gravity added to the other shares, the speed of the fall itself taken out"),
-    _fraction("E_hourglass", "Hourglass energy"),
-    _fraction("residual", "What the ledger fails to close by"),
-)
+def _shown(held: Any) -> str:
+    """Return a group for the eye: numbers with unit, and the names of what is not known."""
+    values = {one.name: getattr(held, one.name) for one in fields(held)}
+    units = {
+        key.path[-1]: f" {key.unit}" if key.unit not in ("", "-") else "" for key in _own_keys(type(held))
+    }
+    told = [
+        f"{name}={_text(v)}{units.get(name, '')}" for name, v in values.items() if not isinstance(v, Unknown)
+    ]
+    missing = [name for name, value in values.items() if isinstance(value, Unknown)]
+    told += [f"not known: {', '.join(missing)}"] if missing else []
+    return f"{type(held).__name__}({', '.join(told)})"
 
-CONTACT = (
-    Key("contacts", "contacts", "s, N s", "Each contact interval with its impulses on the rod.", True),
-    _number("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us."),
-    _number("marker_V_n_m_per_s", "m/s", "V_n as the camera's two markers would give it."),
-    _number("marker_V_t_m_per_s", "m/s", "V_t as the camera's two markers would give it."),
-    _number("marker_Omega_rad_per_s", "rad/s", "Omega as the camera's two markers would give it."),
-    _number("marker_V_cn_m_per_s", "m/s", "Normal velocity of the lower marker."),
-    _number("marker_V_ct_m_per_s", "m/s", "Tangential velocity of the lower marker."),
-    Key(
-        "extrapolated",
-        "values",
-        "as the key",
-        "Limit of two meshes, or mean of one, of each key that has it.",
-        True,
-    ),
-    Key("bands", "bands", "as the key", "Two-mesh half-width of each key that carries one.", nullable=True),
-)
 
-ACCURACY = (
-    _number("accuracy_target", "-", "Relative error that the scene asked for."),
-    Key("accuracy_setting", "text", "", "Setting that the measured costs chose for it.", nullable=True),
-    _number("expected_error", "-", "Largest relative error of e and E_vib where the costs were measured."),
-    _number("expected_wall_s", "s", "Wall time to be expected, scaled to this machine."),
-    _number("achieved_error", "-", "Largest relative error of e and E_vib that two meshes leave open."),
-    _number("achieved_wall_s", "s", "Wall time of all runs of the setting."),
-)
+def _text(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return f"{len(value)} entries" if isinstance(value, tuple | Mapping) else repr(value)
 
-HEATING = (
-    _number("contact_patch_m2", "m2", "Largest true contact patch, whole contact."),
-    _number("friction_power_W", "W", "Highest friction power, whole contact."),
-    _number("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch."),
-    _number("flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction."),
-    _number("flash_temperature_K", "K", "Highest mean temperature of the patch."),
-    _number("ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."),
-    _number("time_above_ignition_s", "s", "How long the patch is hotter than that."),
-    _number("flash_bound_K", "K", "Temperature that no spot of the contact exceeds, under assumptions."),
-    _fraction("E_lt_less_vibration", "E_lt with the edge's arms less E_vib: what can heat the contact"),
-)
 
-COST = (
-    _count("steps", "Time steps taken."),
-    _count("element_steps", "Elements times steps, summed."),
-    _count("elements_rod", "Elements of the meshed (half) rod."),
-    _count("elements_barrier", "Elements of the meshed (half) barrier."),
-    _count("elements_yielding", "Elements whose material could yield."),
-    _number("wall_s", "s", "Wall time of the time loop, compilation apart."),
-    _number("cpu_s", "s", "Processor time of the time loop, all threads, compilation apart."),
-    _number("setup_wall_s", "s", "Wall time around it: meshes, assembly, modes, check; compilation apart."),
-    _number("setup_cpu_s", "s", "Processor time around the time loop, compilation apart."),
-    _number("peak_memory_MB", "MB", "Largest resident memory, in 10^6 bytes."),
-    _number("min_step_s", "s", "Smallest time step."),
-    _number("tip_size_m", "m", "Element edge asked for at the tip."),
-)
+def markdown_table(keys: Iterable[Key]) -> str:
+    """Return a table of keys in Markdown: key, kind, unit, may be null, meaning."""
+    head = "| key | kind | unit | null | meaning |\n|---|---|---|---|---|"
+    return "\n".join([head, *map(_row, keys)]) + "\n"
 
-REASONS = (_text("reasons", "For every null key, the sentence that says why it is null.", "reasons"),)
 
-KEYS: tuple[Key, ...] = (
-    *PROVENANCE,
-    *SCENE,
-    *MOTION,
-    *(key for name in ARMS for key in _arms(name)),
-    *ENERGY,
-    *CONTACT,
-    *ACCURACY,
-    *HEATING,
-    *COST,
-    *REASONS,
-)
+def _row(key: Key) -> str:
+    null = "with a reason" if key.nullable else "never"
+    return f"| `{key.name}` | {key.kind} | {key.unit} | {null} | {key.meaning} |"

@@ -1,82 +1,105 @@
-"""The record itself."""
+"""The record of a run, and its one written form: flat JSON with a checksum, read back strictly."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+import hashlib
+import json
+import platform
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from datetime import UTC, datetime
+from functools import cache
+from importlib import metadata
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar, get_type_hints
 
 from fem_impact.errors import ResultError
-from fem_impact.outcome.keys import KEYS, SCHEMA_VERSION
-from fem_impact.outcome.text import from_text, plain, to_text
-from fem_impact.outcome.validate import check_record
+from fem_impact.outcome.check import SCHEMA_VERSION, check_record
+from fem_impact.outcome.groups import (
+    Contact,
+    Energy,
+    Heat,
+    Provenance,
+    Restitution,
+    RodMotion,
+    RunCost,
+    Validity,
+)
+from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 from fem_impact.output import read_text, write_text
 
-__all__ = ["Outcome"]
+__all__ = ["KEYS", "KEY_TABLE", "Outcome", "installed_versions", "utc_now"]
+
+CHECKSUM = "checksum_sha256"
+"""Last key of the file: SHA-256 of everything else, so that a damaged file cannot pass for a result."""
+
+PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
 
 
-@dataclass(frozen=True, slots=True, init=False, repr=False)
-class Outcome(Mapping[str, Any]):
-    """One run's result, read like a mapping whose keys are those of ``KEYS``.
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Outcome:
+    """One run's result, the same record for every fidelity.
 
-    Parameters
-    ----------
-    values : mapping
-        Key to value. ``schema_version`` may be left out; a nullable key that is left out counts as null.
-    reasons : mapping, optional
-        For each null key the sentence that says why; merged with ``values["reasons"]``.
-    source : str
-        Named in complaints.
+    A value that a fidelity does not give is `Unknown` with the reason; ``help`` of a group's class names
+    unit and meaning of its values. `dataclasses.replace` makes a changed copy.
 
     Raises
     ------
     ResultError
-        A key is unknown, missing, of the wrong kind, not finite, or null without a reason.
+        A value is of the wrong kind or not finite.
+
+    Examples
+    --------
+    >>> from fem_impact.scene import load
+    >>> from fem_impact.simulate import simulate
+    >>> outcome = simulate(load("t5b"), "rigid")
+    >>> round(outcome.restitution.edge.e, 2)
+    0.3
+    >>> outcome.energy.vibration
+    Unknown(reason='a rigid rod in an impact without duration does not know it')
     """
 
-    values_: Mapping[str, Any]
+    provenance: Provenance
+    validity: Validity
+    motion: RodMotion
+    restitution: Restitution
+    energy: Energy
+    contact: Contact
+    heat: Heat
+    cost: RunCost
 
-    def __init__(
-        self, values: Mapping[str, Any], reasons: Mapping[str, str] | None = None, source: str = "outcome"
-    ) -> None:
-        filled = _filled(plain(values), plain(reasons or {}))
-        check_record(filled, source)
-        object.__setattr__(self, "values_", MappingProxyType(filled))
+    schema_version: ClassVar[int] = SCHEMA_VERSION
 
-    def __getitem__(self, name: str) -> Any:
-        return self.values_[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.values_)
-
-    def __len__(self) -> int:
-        return len(self.values_)
+    def __post_init__(self) -> None:
+        check_record(self.to_dict(), KEY_TABLE, "outcome")
 
     def __repr__(self) -> str:
-        return f"Outcome({self['scene_id']!r}, fidelity={self['fidelity']!r})"
+        e, vibration = (_short(value) for value in (self.restitution.edge.e, self.energy.vibration))
+        return (
+            f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
+            f"mu={self.restitution.mu:.4g}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
+        )
 
-    def reason(self, name: str) -> str | None:
-        """Return why ``name`` is null, or None when it is known."""
-        reason: str | None = self["reasons"].get(name)
-        return reason
+    @property
+    def reasons(self) -> dict[str, str]:
+        """For every key whose value is not known, the sentence that says why."""
+        values = ((key.name, key.of(self)) for key in KEYS if key.nullable)
+        return {name: value.reason for name, value in values if isinstance(value, Unknown)}
 
-    def replace(self, reasons: Mapping[str, str] | None = None, **values: Any) -> Outcome:
-        """Return a copy with some values changed; reasons of keys that are now known go away."""
-        changed = {**self.values_, **values}
-        merged = {**self["reasons"], **(reasons or {})}
-        changed["reasons"] = {name: why for name, why in merged.items() if changed.get(name) is None}
-        return Outcome(changed)
+    def estimate(self, key: Key) -> tuple[Num, float | None]:
+        """Return limit and half-width that two meshes give a number, else its value in this run and None."""
+        limits, bands = (or_none(held) or {} for held in (self.validity.mesh_limit, self.validity.mesh_band))
+        return (limits[key.name], bands[key.name]) if key.name in bands else (key.of(self), None)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return a plain, independent copy, as a study stores it in its rows."""
-        copied: dict[str, Any] = plain(self.values_)
-        return copied
+        """Return the flat keys with plain JSON values."""
+        return {key.name: _plain(key, key.of(self)) for key in KEYS}
 
     def to_json(self) -> str:
         """Return the text that ``write`` writes and ``--json`` prints."""
-        return to_text(self.values_)
+        values = self.to_dict()
+        return json.dumps({**values, CHECKSUM: _checksum(values)}, indent=2, allow_nan=False) + "\n"
 
     def write(self, path: str | Path) -> Path:
         """Write the record as one atomic step; return the path.
@@ -99,24 +122,137 @@ class Outcome(Mapping[str, Any]):
         """
         return cls.from_json(read_text(path), source=str(path))
 
-    def __reduce__(self) -> tuple[Any, tuple[str]]:
-        """Travel between processes as text."""
-        return Outcome.from_json, (self.to_json(),)
-
     @classmethod
     def from_json(cls, text: str, source: str = "JSON text") -> Outcome:
         """Read a record from text, as strictly as from a file."""
-        values = from_text(text, source)
-        missing = [key.name for key in KEYS if key.name not in values]
-        if missing:
-            raise ResultError(f'{source}: key "{missing[0]}" is missing ({len(missing)} in all).')
-        return cls(values, source=source)
+        return cls.from_dict(_unsigned(_parsed(text, source), source), source)
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any], source: str = "outcome") -> Outcome:
+        """Make a record from its flat keys with plain JSON values.
+
+        Raises
+        ------
+        ResultError
+            A key is unknown, missing, of the wrong kind, not finite, or null without a reason.
+        """
+        check_record(values, KEY_TABLE, source)
+        made: Outcome = _made(cls, {key.path: _typed(key, values) for key in KEYS})
+        return made
 
 
-def _filled(values: dict[str, Any], reasons: dict[str, str]) -> dict[str, Any]:
-    blank: dict[str, Any] = {key.name: None for key in KEYS if key.nullable}
-    given = values.get("reasons", {})
-    merged = {**given, **reasons} if isinstance(given, dict) else given
-    joined = {"schema_version": SCHEMA_VERSION, **blank, **values, "reasons": merged}
-    order = [key.name for key in KEYS if key.name in joined]
-    return {name: joined[name] for name in (*order, *(name for name in joined if name not in order))}
+KEYS: tuple[Key, ...] = (
+    Key("schema_version", "count", "-", "Version of this table of keys.", path=("schema_version",)),
+    *keys_of(Outcome),
+    Key(
+        "reasons",
+        "named texts",
+        "",
+        "For every null key, the sentence that says why it is null.",
+        path=("reasons",),
+    ),
+)
+"""Every key of the JSON file."""
+
+KEY_TABLE: Mapping[str, Key] = MappingProxyType({key.name: key for key in KEYS})
+"""The keys by name."""
+
+
+def utc_now() -> str:
+    """Return the present time as ISO 8601 in UTC, to the second."""
+    return datetime.now(UTC).replace(microsecond=0).isoformat()
+
+
+def installed_versions() -> dict[str, str]:
+    """Return the versions of Python and of the packages that shape a result, where they are installed."""
+    return {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}}
+
+
+def _version(name: str) -> str:
+    try:
+        return metadata.version(name)
+    except metadata.PackageNotFoundError:
+        return "not installed"
+
+
+def _short(value: Num) -> str:
+    return "not known" if isinstance(value, Unknown) else f"{value:.4g}"
+
+
+def _plain(key: Key, value: Any) -> Any:
+    """Return a value as plain JSON; NumPy's scalars are unpacked."""
+    if isinstance(value, Unknown):
+        return None
+    if key.kind == "entries":
+        return [{one.name: _plain(one, one.of(entry)) for one in key.entries} for entry in value]
+    if isinstance(value, tuple | Mapping):
+        return dict(value) if isinstance(value, Mapping) else list(value)
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _typed(key: Key, values: Mapping[str, Any]) -> Any:
+    """Return the value of a key as its field holds it."""
+    value = values[key.name]
+    if value is None:
+        return Unknown(values["reasons"][key.name])
+    if key.kind == "entries":
+        names = {one.path[-1]: one.name for one in key.entries}
+        return tuple(key.entry(**{field: entry[name] for field, name in names.items()}) for entry in value)
+    return tuple(value) if key.kind == "texts" else value
+
+
+def _made(cls: Any, values: Mapping[tuple[str, ...], Any], path: tuple[str, ...] = ()) -> Any:
+    """Return a group, and the groups in it, from the values by their paths."""
+    places = {name: (*path, name) for name in _hints(cls)}
+    return cls(
+        **{
+            name: values[place] if place in values else _made(_hints(cls)[name], values, place)
+            for name, place in places.items()
+        }
+    )
+
+
+@cache
+def _hints(cls: Any) -> Mapping[str, Any]:
+    """Return the types of a group's fields."""
+    hints = get_type_hints(cls)
+    return {one.name: hints[one.name] for one in fields(cls)}
+
+
+def _parsed(text: str, source: str) -> dict[str, Any]:
+    try:
+        values = json.loads(text, object_pairs_hook=_unrepeated, parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:
+        raise ResultError(f"{source}: not a readable JSON record ({error}); it may be cut off.") from error
+    if not isinstance(values, dict):
+        raise ResultError(f"{source}: holds a JSON {type(values).__name__}, not a record of keys.")
+    return values
+
+
+def _unsigned(values: dict[str, Any], source: str) -> dict[str, Any]:
+    """Return a record without its checksum, which must be right."""
+    stated = values.pop(CHECKSUM, None)
+    if stated is None:
+        raise ResultError(f'{source}: key "{CHECKSUM}" is missing; this is no complete outcome.')
+    if stated != _checksum(values):
+        raise ResultError(
+            f'{source}: key "{CHECKSUM}" = {str(stated)[:16]}... does not match the contents; '
+            "the file was damaged or edited. Compute the run again or restore a copy."
+        )
+    return values
+
+
+def _checksum(values: Mapping[str, Any]) -> str:
+    canonical = json.dumps(dict(values), sort_keys=True, separators=(",", ":"), ensure_ascii=True)
+    return hashlib.sha256(canonical.encode("ascii")).hexdigest()
+
+
+def _unrepeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    values = dict(pairs)
+    if len(values) != len(pairs):
+        raise ValueError("a key stands twice")
+    return values
+
+
+def _no_constant(name: str) -> float:
+    raise ValueError(f"{name} is no JSON number")

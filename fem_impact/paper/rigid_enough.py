@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known
 from fem_impact.paper.case import Case
 from fem_impact.scene import Barrier, Impact, Projectile, Scene, materials, surface
 from fem_impact.simulate import simulate
@@ -20,13 +20,6 @@ FAIR, POOR = 0.02, 0.05
 """Error of e up to which the answer is yes, and from which it is no."""
 
 EFFECTS = ("friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation")
-SHOWN = {
-    "e": "e_edge",
-    "mu": "mu",
-    "Omega_rad_per_s": "Omega_rad_per_s",
-    "E_r_over_E_0": "E_r_over_E_0",
-    "W_friction_over_E_0": "W_friction_over_E_0",
-}
 
 
 def rigid_enough(case: Case, fidelity: str = "modal") -> dict[str, Any]:
@@ -49,21 +42,35 @@ def rigid_enough(case: Case, fidelity: str = "modal") -> dict[str, Any]:
     free, stiff = _both(case, alpha, fidelity)
     others = (angle for angle in map(float, ANGLES) if angle != alpha)
     pairs = {alpha: (free, stiff)} | {angle: _both(case, angle, "modal") for angle in others}
-    errors = {angle: abs(a["e_edge"] - b["e_edge"]) for angle, (a, b) in pairs.items()}
+    errors = {angle: abs(_e(a) - _e(b)) for angle, (a, b) in pairs.items()}
     worst = max(errors, key=lambda angle: errors[angle])
-    touch = stiff["contacts"][0]
+    touch = known(stiff.contact.intervals)[0]
     return {
         "fidelity": fidelity,
-        "with_vibration": {name: free[key] for name, key in SHOWN.items()},
-        "rigid": {name: stiff[key] for name, key in SHOWN.items()},
-        "E_vib_over_E_0": free["E_vib_over_E_0"],
-        "T1_over_tau": _first_period(case) / (touch["end_s"] - touch["start_s"]),
+        "with_vibration": _shown(free),
+        "rigid": _shown(stiff),
+        "E_vib_over_E_0": known(free.energy.vibration),
+        "T1_over_tau": _first_period(case) / touch.duration,
         "error_of_e": errors[alpha],
         "worst_angle_rad": worst,
         "worst_fidelity": fidelity if worst == alpha else "modal",
         "worst_error_of_e": errors[worst],
         "answer": _answer(errors[alpha]),
         "answer_any_angle": _answer(errors[worst]),
+    }
+
+
+def _e(run: Outcome) -> float:
+    return known(run.restitution.edge.e)
+
+
+def _shown(run: Outcome) -> dict[str, float]:
+    return {
+        "e": _e(run),
+        "mu": run.restitution.mu,
+        "Omega_rad_per_s": run.motion.Omega,
+        "E_r_over_E_0": run.energy.rigid,
+        "W_friction_over_E_0": run.energy.friction,
     }
 
 

@@ -114,7 +114,7 @@ def context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.nda
     """Return title, force curve, and a sentence on each of them that is missing."""
     title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
     try:
-        title = Outcome.read(folder / "outcome.json")["scene_title"]
+        title = Outcome.read(folder / "outcome.json").provenance.scene_title
     except ResultError as error:
         missing.append(f"The film is named after its folder: {error}")
     try:

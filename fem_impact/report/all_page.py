@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -69,7 +70,7 @@ def _sets(results: Path) -> Study | None:
 
 
 def _effects(sets: Study | None) -> set[str]:
-    return {effect for row in sets.rows for effect in row["effects"]} if sets else set()
+    return {effect for row in sets.rows for effect in row.provenance.effects} if sets else set()
 
 
 def _sets_part(sets: Study, figures: Path) -> list[Markup]:
@@ -93,10 +94,14 @@ def _cards(told: dict[Path, dict[str, Any]], sets: Study | None, ledger: str) ->
 
 def _runs(folder: Path, sets: Study) -> list[Outcome]:
     """Return the runs of the measured sets; coarser meshes and changed inputs where their files stand."""
-    shown = {row["scene_id"] for row in sets.rows}
+    shown = {row.provenance.scene_id for row in sets.rows}
     beside = [place for place in _folders(folder) if place.name not in shown]
     found = [(place.name, Outcome.read(place / RECORD)) for place in beside if (place / RECORD).is_file()]
-    return [*sets.rows, *(run.replace(scene_id=name) for name, run in found)]
+    return [*sets.rows, *(_renamed(run, name) for name, run in found)]
+
+
+def _renamed(run: Outcome, name: str) -> Outcome:
+    return replace(run, provenance=replace(run.provenance, scene_id=name))
 
 
 def _ledger(told: Iterable[Path], runs: Iterable[Outcome]) -> str:
@@ -113,7 +118,8 @@ def _ledger(told: Iterable[Path], runs: Iterable[Outcome]) -> str:
     if head is None:
         writer.writerow(names)
     for run in runs:
-        writer.writerow(["sets", run["scene_id"], *(_cell(run, name) for name in names[2:])])
+        values = run.to_dict()
+        writer.writerow(["sets", run.provenance.scene_id, *(_cell(values[name]) for name in names[2:])])
     return lines.getvalue()
 
 
@@ -122,9 +128,9 @@ def _columns(text: str) -> list[str]:
     return (text.partition("\n")[0] or default).split(",")
 
 
-def _cell(run: Any, name: str) -> Any:
-    value = run[name]
-    return len(value) if name == "contacts" and value is not None else value
+def _cell(value: Any) -> Any:
+    """Return a value of a record; of the contacts their number."""
+    return len(value) if isinstance(value, list) else value
 
 
 def _ledger_part(ledger: str) -> Markup:
@@ -161,5 +167,5 @@ def _summary(folder: Path) -> str:
 def _footer(sets: Study | None) -> str:
     if not sets or not sets.rows:
         return "Versions and dates of the runs stand in the ledger."
-    versions = ", ".join(f"{name} {version}" for name, version in sets.rows[0]["versions"].items())
+    versions = ", ".join(f"{name} {version}" for name, version in sets.rows[0].provenance.versions.items())
     return f"Computed with {versions}; dates of the runs stand in the ledger."

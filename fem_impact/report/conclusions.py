@@ -7,7 +7,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, Unknown
 from fem_impact.report.findings import figure_id
 from fem_impact.report.html import Markup, bullets, section
 from fem_impact.report.misses import miss_sentence
@@ -36,7 +36,7 @@ def conclusions(told: Mapping[Path, Mapping[str, Any]], sets: Study | None) -> l
 
 
 def _of_sets(sets: Study) -> list[Conclusion]:
-    rows: Sequence[Outcome] = [row for row in sets.rows if row["marker_V_n_m_per_s"] is not None]
+    rows: Sequence[Outcome] = [row for row in sets.rows if not isinstance(row.contact.markers.V_n, Unknown)]
     judged = [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(sets.rows)]
     more = [marker_sentence(rows), miss_sentence(sets.explanations) if sets.explanations else ""]
     return judged + [Conclusion(sentence) for sentence in more if sentence]

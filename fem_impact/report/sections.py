@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures import force_figure, ledger_figure
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, or_none
 from fem_impact.output import make_directory, read_table
 from fem_impact.report.embed import FILMS, film, picture
 from fem_impact.report.html import Markup, bullets, join, paragraph, section
@@ -25,28 +25,33 @@ def strangers(outcome: Outcome, folder: Path) -> list[str]:
 def _other_scene(outcome: Outcome, folder: Path) -> list[str]:
     path = folder / "scene.toml"
     try:
-        other = path.is_file() and Scene.from_toml(path).digest() != outcome["scene_digest"]
+        other = path.is_file() and Scene.from_toml(path).digest() != outcome.provenance.scene_digest
     except SceneError as error:
         return [str(error)]
     return ["scene.toml was changed after the run: it is not the scene of outcome.json."] if other else []
 
 
 def _short_history(outcome: Outcome, folder: Path) -> list[str]:
-    if outcome["fidelity"] != "solid" or not outcome["contacts"]:
+    intervals = or_none(outcome.contact.intervals)
+    if outcome.provenance.fidelity != "solid" or not intervals:
         return []
     try:
         last = read_table(folder / "history.csv").numbers("time_s")[-1]
     except (ResultError, IndexError):
         return []  # that it is missing or damaged is told where its curves would stand
-    end = outcome["contacts"][-1]["end_s"]
+    end = intervals[-1].end
     told = f"history.csv ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
     return [f"{told}: it is not whole."] if last < end else []
 
 
 def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
     """Return the warnings where they cannot be missed."""
-    warned = sentences(rows, "warnings")
-    cut = [f"{row['scene_id']} was cut off: {row['stopped_because']}" for row in rows if not row["finished"]]
+    warned = sentences(rows, lambda row: row.validity.warnings)
+    cut = [
+        f"{row.provenance.scene_id} was cut off: {row.validity.stopped_because}"
+        for row in rows
+        if not row.validity.finished
+    ]
     listed = bullets([*more, *cut, *warned]).text
     return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
 
@@ -56,16 +61,14 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
 
     Pictures that were drawn after the run are only drawn ``again`` if that is asked for.
     """
-    if outcome["fidelity"] != "solid":
+    if outcome.provenance.fidelity != "solid":
         return section("Over time", paragraph("No curves over time: only the finite elements write them."))
     since = None if again else folder / "history.csv"
     try:
         history = read_table(folder / "history.csv")
-        if outcome["E_0_J"] is None:
-            raise ResultError("E_0 is not known, so no fractions can be drawn.")
         figures = make_directory(folder / "figures")
         ledger = picture(
-            lambda path, shape: ledger_figure(history, outcome["E_0_J"], path, shape),
+            lambda path, shape: ledger_figure(history, outcome.energy.E_0, path, shape),
             figures / "ledger",
             "Stacked areas of the energy accounts over time",
             "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
@@ -73,7 +76,7 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
             since,
         )
         force = picture(
-            lambda path, shape: force_figure(history, outcome["contacts"] or [], path, shape),
+            lambda path, shape: force_figure(history, or_none(outcome.contact.intervals) or (), path, shape),
             figures / "force",
             "Normal and tangential contact force over time",
             "Contact force on the whole rod; contact intervals shaded, with their normal impulse.",

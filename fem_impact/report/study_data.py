@@ -62,7 +62,8 @@ def read_study(path: str | Path) -> Study:
     held = _object(path)
     if held.get("schema") != STUDY_SCHEMA:
         raise ResultError(f'{path}: key "schema" = {held.get("schema")!r} is not {STUDY_SCHEMA!r}.')
-    rows = [Outcome(row, source=f"{path}: rows[{at}]") for at, row in enumerate(_list(held, "rows", path))]
+    listed = enumerate(_list(held, "rows", path))
+    rows = [Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in listed]
     comparison = _list(held, "comparison", path)
     for at, row in enumerate(comparison):
         _check(row, at, path)

@@ -9,21 +9,18 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.figures import comparison_figure, study_partition_figure
-from fem_impact.figures.accounts import FINAL
 from fem_impact.figures.style import percent
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import KEY_TABLE, EnergyShare, Outcome, RunCost, Unknown, or_none, shares
 from fem_impact.output import make_directory
 from fem_impact.report.embed import download, picture
-from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table, with_band
+from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table
 from fem_impact.report.misses import misses_section
 from fem_impact.report.page import page, sources
 from fem_impact.report.sections import has_film, history_figures, notices
 from fem_impact.report.study_data import Study, read_study
-from fem_impact.report.tables import card, sentences, unknown
+from fem_impact.report.tables import card, estimated, sentences, unknown
 
 __all__ = ["comparison_part", "draw_study", "partition_part", "study_page"]
-
-ENERGIES = (*(account.key for account in FINAL), "residual_over_E_0")
 
 
 def draw_study(folder: Path) -> None:
@@ -58,7 +55,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         section("Runs that failed", _failures(study)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
         unknown(rows),
-        section("Range of validity", bullets(sentences(rows, "validity"))),
+        section("Range of validity", bullets(sentences(rows, lambda row: row.validity.outside))),
         section("Cost", _costs(rows)),
         sources(_used(study, folder)),
     )
@@ -68,8 +65,8 @@ def study_page(folder: Path, again: bool = True) -> str:
 def _cards(study: Study) -> Markup:
     measured = [row for row in study.comparison if row["measured_mean"] is not None]
     inside = sum(_is_inside(row["verdict"]) for row in measured)
-    residuals = [abs(row["residual_over_E_0"]) for row in study.rows if row["residual_over_E_0"] is not None]
-    seconds = sum(row["wall_s"] or 0.0 for row in study.rows)
+    residuals = [abs(row.energy.residual) for row in study.rows]
+    seconds = sum(row.cost.wall for row in study.rows)
     cards = [
         card("runs", str(len(study.rows)), f"{len(study.failures)} failed"),
         card("inside 95 % intervals", f"{inside} of {len(measured)}", "measured quantities"),
@@ -152,18 +149,24 @@ def partition_part(study: Study, figures: Path, since: Path | None = None) -> Ma
 
 
 def _energies(rows: Sequence[Outcome]) -> Markup:
-    head = ("run", *(account.label for account in FINAL), "residual")
-    shown = [[row["scene_id"], *(_share(row, key) for key in ENERGIES)] for row in rows]
+    listed = shares("report")
+    head = ("run", *(share.label for share in listed), "residual")
+    shown = [
+        [
+            row.provenance.scene_id,
+            *(_share(row, share) for share in listed),
+            percent(row.energy.residual),
+        ]
+        for row in rows
+    ]
     return table(head, shown, "Shares of E₀.", numbers=range(1, len(head)), compact=True)
 
 
-def _share(row: Outcome, key: str) -> str:
-    if key == "E_vib_over_E_0" and row["E_vib_below_floor"]:
+def _share(row: Outcome, share: EnergyShare) -> str:
+    if share.key.path[-1] == "vibration" and or_none(row.energy.below_floor):
         return "below floor"
-    if row[key] is None:
-        return "–"
-    width = (row["bands"] or {}).get(key)
-    return percent(row[key], width)
+    value, width = row.estimate(share.key)
+    return "–" if isinstance(value, Unknown) else percent(value, width)
 
 
 def _failures(study: Study) -> Markup:
@@ -171,12 +174,11 @@ def _failures(study: Study) -> Markup:
 
 
 def _run(row: Outcome, folder: Path) -> Markup:
-    place = folder / row["scene_id"]
+    place = folder / row.provenance.scene_id
     if not (place / "history.csv").is_file():
         return Markup("")
-    bands = row["bands"] or {}
-    e, mu = with_band(row["e_paper"], bands.get("e_paper")), with_band(row["mu"], bands.get("mu"))
-    title = f"{row['scene_id']}: {row['scene_title']} (e = {e}, µ = {mu})"
+    e, mu = (estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
+    title = f"{row.provenance.scene_id}: {row.provenance.scene_title} (e = {e}, µ = {mu})"
     return details(title, history_figures(row, place, again=False), _own_page(place))
 
 
@@ -188,28 +190,26 @@ def _own_page(place: Path) -> Markup:
 
 
 def _costs(rows: Sequence[Outcome]) -> Markup:
-    keys = (
-        "tip_size_m",
-        "steps",
-        "element_steps",
-        "elements_rod",
-        "elements_barrier",
-        "wall_s",
-        "peak_memory_MB",
-    )
     head = ("run", "tip, mm", "steps", "element-steps", "rod", "barrier", "wall, s", "memory, MB")
-    shown = [[row["scene_id"], *(_cost(row, key) for key in keys)] for row in rows]
+    shown = [[row.provenance.scene_id, *_cost(row.cost)] for row in rows]
     return table(head, shown, numbers=range(1, len(head)), compact=True)
 
 
-def _cost(row: Outcome, key: str) -> str:
-    value = row[key]
-    return number(value * 1e3 if key == "tip_size_m" and value is not None else value)
+def _cost(cost: RunCost) -> list[str]:
+    size = or_none(cost.tip_size)
+    counts = (cost.steps, cost.element_steps, cost.elements_rod, cost.elements_barrier)
+    return [
+        number(None if size is None else 1e3 * size),
+        *(number(or_none(count)) for count in counts),
+        number(cost.wall),
+        number(or_none(cost.peak_memory)),
+    ]
 
 
 def _used(study: Study, folder: Path) -> set[str]:
-    films = any(has_film(folder / row["scene_id"]) for row in study.rows)
-    return {effect for row in study.rows for effect in row["effects"]} | ({"film"} if films else set())
+    origins = [row.provenance for row in study.rows]
+    films = any(has_film(folder / origin.scene_id) for origin in origins)
+    return {effect for origin in origins for effect in origin.effects} | ({"film"} if films else set())
 
 
 def _lead(study: Study) -> str:
@@ -221,5 +221,5 @@ def _lead(study: Study) -> str:
 def _footer(rows: Sequence[Outcome]) -> str:
     if not rows:
         return "No run gave a record."
-    versions = ", ".join(f"{name} {version}" for name, version in rows[0]["versions"].items())
-    return f"Computed up to {max(row['created_utc'] for row in rows)} with {versions}."
+    versions = ", ".join(f"{name} {version}" for name, version in rows[0].provenance.versions.items())
+    return f"Computed up to {max(row.provenance.created_utc for row in rows)} with {versions}."

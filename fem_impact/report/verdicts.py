@@ -10,15 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.figures.lines import Panel, Series, lines_figure
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import KEY_TABLE, Outcome, Unknown, known
 from fem_impact.report.embed import download, picture
 from fem_impact.report.html import Markup, join, number, paragraph, place, section, table
 from rigid.experiments import measured_set
 
 __all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
 
-UNITS = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
-MARKED = {"V_n": "V_n_m_per_s", "V_t": "V_t_m_per_s", "Omega": "Omega_rad_per_s"}
+MOMENTS = (KEY_TABLE["e_m_paper"], KEY_TABLE["e_m_edge"], KEY_TABLE["e_m_impulse"])
+MARKED = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
+"""Unit of what two markers measure, by its attribute of the motion and of the markers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,7 +33,7 @@ class Verdict:
 
 def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
     """Return closure, trend of e_m, mu_c as a bound, and E_lt as heat, from the measured sets as computed."""
-    rows = [row for row in rows if row["e_m_paper"] is not None]
+    rows = [row for row in rows if not isinstance(row.restitution.paper.e_m, Unknown)]
     return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
 
 
@@ -54,9 +55,9 @@ def _draw(panel: Panel, path: Path, shape: str) -> Path:
 
 
 def _closure(rows: Sequence[Outcome]) -> Verdict:
-    lost = [100 * row["E_vib_over_E_0"] for row in rows]
+    lost = [100 * known(row.energy.vibration) for row in rows]
     gap = [100 * (_sum(row) - 1) for row in rows]
-    identity = [100 * _spin(row) * (1 + 1 / row["e_m_paper"]) for row in rows]
+    identity = [100 * _spin(row) * (1 + 1 / known(row.restitution.paper.e_m)) for row in rows]
     sentence = (
         "Does not stand: that losses and retained energy add up to E_0 was read as a sign that they hold all "
         "losses. The sum differs from E_0 by (I Omega^2/2)(1 + 1/e_m) whatever the rod lost: over the "
@@ -78,21 +79,21 @@ def _apart(a: Sequence[float], b: Sequence[float]) -> float:
 
 
 def _sum(row: Outcome) -> float:
-    return float(row["E_ln_paper_over_E_0"] + row["E_lt_paper_over_E_0"] + row["E_r_over_E_0"])
+    paper = row.restitution.paper
+    return known(paper.E_ln) + known(paper.E_lt) + row.energy.rigid
 
 
 def _spin(row: Outcome) -> float:
-    turn = 0.5 * row["mass_kg"] * row["k_squared_m2"] * row["Omega_rad_per_s"] ** 2
-    return float(turn / row["E_0_J"])
+    m = row.motion
+    return 0.5 * m.mass * m.k_squared * m.Omega**2 / row.energy.E_0
 
 
 def _moment(rows: Sequence[Outcome]) -> Verdict:
-    angle = np.degrees([row["alpha_rad"] for row in rows])
-    names = {"paper": "the paper's arms", "edge": "arms of the edge", "impulse": "centre of the impulse"}
-    series = tuple(
-        Series(words, angle, [row[f"e_m_{arms}"] for row in rows], "points") for arms, words in names.items()
-    )
-    spread = [abs(row["e_m_paper"] - row["e_m_edge"]) for row in rows]
+    angle = np.degrees([row.motion.alpha for row in rows])
+    paper, edge, impulse = ([known(key.of(row)) for row in rows] for key in MOMENTS)
+    named = {"the paper's arms": paper, "arms of the edge": edge, "centre of the impulse": impulse}
+    series = tuple(Series(words, angle, e_m, "points") for words, e_m in named.items())
+    spread = [abs(a - b) for a, b in zip(paper, edge, strict=True)]
     sentence = (
         "Does not stand as physics: e_m moves with the contact point that is assumed. The same computed "
         f"motion gives values up to {max(spread):.2g} apart with the paper's arms and those of the edge, and "
@@ -102,15 +103,16 @@ def _moment(rows: Sequence[Outcome]) -> Verdict:
 
 
 def _critical(rows: Sequence[Outcome]) -> Verdict:
-    measured = [measured_set(row["scene_id"]).statistics()["mu"].mean for row in rows]
+    measured = [measured_set(row.provenance.scene_id).statistics()["mu"].mean for row in rows]
     at = range(len(rows))
     series = (
         Series("measured mu", at, measured, "rings"),
-        Series("computed mu", at, [row["mu"] for row in rows], "points"),
-        Series("mu_c", at, [row["mu_c"] for row in rows], "points"),
+        Series("computed mu", at, [row.restitution.mu for row in rows], "points"),
+        Series("mu_c", at, [row.restitution.mu_c for row in rows], "points"),
     )
-    most = [max(mu, row["mu"]) / row["mu_c"] for row, mu in zip(rows, measured, strict=True)]
-    above = [row["scene_id"] for row, ratio in zip(rows, most, strict=True) if ratio > 1.02]
+    ratios = [row.restitution for row in rows]
+    most = [max(mu, r.mu) / r.mu_c for r, mu in zip(ratios, measured, strict=True)]
+    above = [name for name, ratio in zip(_names(rows), most, strict=True) if ratio > 1.02]
     sentence = (
         "Stands with a limit: mu_c is the ratio at which the tip stops without turning back, and no upper "
         f"bound. It is exceeded by more than 2 %, measured or computed, in {', '.join(above) or 'no set'}."
@@ -121,12 +123,12 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
 
 def _heat(rows: Sequence[Outcome]) -> Verdict:
     at = range(len(rows))
-    tangential = [100 * row["E_lt_paper_over_E_0"] for row in rows]
-    rubbed = [100 * row["W_friction_over_E_0"] for row in rows]
+    tangential = [100 * known(row.restitution.paper.E_lt) for row in rows]
+    rubbed = [100 * row.energy.friction for row in rows]
     series = (
         Series("E_lt, rigid theory", at, tangential, "rings"),
         Series("friction work", at, rubbed, "points"),
-        Series("vibration", at, [100 * row["E_vib_over_E_0"] for row in rows], "points"),
+        Series("vibration", at, [100 * known(row.energy.vibration) for row in rows], "points"),
     )
     ratio = [100 * r / t for r, t in zip(rubbed, tangential, strict=True) if t > 0]
     sentence = (
@@ -139,17 +141,16 @@ def _heat(rows: Sequence[Outcome]) -> Verdict:
 
 
 def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
-    return tuple(row["scene_id"] for row in rows)
+    return tuple(row.provenance.scene_id for row in rows)
 
 
 def marker_section(rows: Sequence[Outcome]) -> Markup:
     """Return the camera's two markers, replayed on the computed flight, beside the exact momentum sums."""
-    seen = [row for row in rows if row["marker_V_n_m_per_s"] is not None]
+    seen = [row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)]
     shown = [
-        [row["scene_id"], *(number(row[key]) for name in MARKED.values() for key in (name, f"marker_{name}"))]
-        for row in seen
+        [row.provenance.scene_id, *(number(v) for name in MARKED for v in _pair(row, name))] for row in seen
     ]
-    head = ("set", *(words for name in MARKED for words in (f"{name}, {UNITS[name]}", "by markers")))
+    head = ("set", *(words for name, unit in MARKED.items() for words in (f"{name}, {unit}", "by markers")))
     listed = table(head, shown, numbers=range(1, 7), compact=True)
     return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)
 
@@ -158,12 +159,13 @@ def marker_sentence(seen: Sequence[Outcome]) -> str:
     """Say how far the markers lie from the exact sums, nothing where no run has them."""
     if not seen:
         return ""
-    away = {words: _apart(*_pairs(seen, key)) for words, key in MARKED.items()}
+    away = {name: _apart(*zip(*(_pair(row, name) for row in seen), strict=True)) for name in MARKED}
     return (
         "Two markers over 40 frames at 10 kHz, replayed on the computed flight, give the exact momentum sums "
         f"within {away['V_n']:.2g} m/s along n, {away['V_t']:.2g} m/s along t and {away['Omega']:.2g} rad/s."
     )
 
 
-def _pairs(rows: Sequence[Outcome], key: str) -> tuple[list[float], list[float]]:
-    return [row[key] for row in rows], [row[f"marker_{key}"] for row in rows]
+def _pair(row: Outcome, name: str) -> tuple[float, float]:
+    """Return a velocity by the momentum sums and by the markers."""
+    return getattr(row.motion, name), known(getattr(row.contact.markers, name))

@@ -122,5 +122,12 @@ def read_outcome(job: Job, text: str) -> Outcome | None:
         beside = Outcome.read(job.out / "outcome.json")
     except FemImpactError:
         return None
-    same = all(beside[key] == found[key] for key in ("scene_digest", "created_utc", "wall_s"))
-    return found if same else None
+    return found if _same_run(found, beside) else None
+
+
+def _same_run(one: Outcome, other: Outcome) -> bool:
+    return (one.provenance.scene_digest, one.provenance.created_utc, one.cost.wall) == (
+        other.provenance.scene_digest,
+        other.provenance.created_utc,
+        other.cost.wall,
+    )

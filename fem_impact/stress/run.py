@@ -119,6 +119,7 @@ def _model(case: Case, scene: Scene) -> Model:
 
 
 def _judged(case: Case, result: SolidResult, out: Path) -> Row:
+    from fem_impact.outcome import known
     from fem_impact.reduce import reduce
     from fem_impact.run_files import CHECKPOINT
     from fem_impact.stress.judge import balance
@@ -128,7 +129,7 @@ def _judged(case: Case, result: SolidResult, out: Path) -> Row:
     outcome.write(out / "outcome.json")
     found = balance(result, out / "history.csv")
     faults = found.faults()
-    elements = outcome["elements_rod"] + outcome["elements_barrier"]
+    elements = known(outcome.cost.elements_rod) + known(outcome.cost.elements_barrier)
     stopped = "max_time" not in result.reason and not result.finished
     verdict = "detected" if stopped else "FAILED" if faults else "closed"
     reason = result.reason if stopped else "; ".join(faults)

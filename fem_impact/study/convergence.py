@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.settings import FAMILY, placed
 from fem_impact.figures.lines import Panel, Series
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import KEY_TABLE, Key, Outcome, known
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Job, Results
 from fem_impact.scene import load, replace_all
@@ -29,15 +29,15 @@ DEFAULT = 0.019 / 8 / 2**3  # m, tip of the measured sets at their own accuracy
 TOLD = ("e", "mu", "vibration/E_0")
 CAPTION = "Each quantity against the size of the elements; rings: limits for vanishing elements."
 QUANTITIES = {
-    "e": "e_paper",
-    "mu": "mu",
-    "Omega, rad/s": "Omega_rad_per_s",
-    "E_r/E_0": "E_r_over_E_0",
-    "vibration/E_0": "E_vib_over_E_0",
-    "friction/E_0": "W_friction_over_E_0",
-    "friction and skin/E_0": "W_skin_over_E_0",
-    "plastic rod/E_0": "E_plastic_rod_over_E_0",
-    "plastic barrier/E_0": "E_plastic_barrier_over_E_0",
+    "e": KEY_TABLE["e_paper"],
+    "mu": KEY_TABLE["mu"],
+    "Omega, rad/s": KEY_TABLE["Omega_rad_per_s"],
+    "E_r/E_0": KEY_TABLE["E_r_over_E_0"],
+    "vibration/E_0": KEY_TABLE["E_vib_over_E_0"],
+    "friction/E_0": KEY_TABLE["W_friction_over_E_0"],
+    "friction and skin/E_0": KEY_TABLE["W_skin_over_E_0"],
+    "plastic rod/E_0": KEY_TABLE["E_plastic_rod_over_E_0"],
+    "plastic barrier/E_0": KEY_TABLE["E_plastic_barrier_over_E_0"],
 }
 
 
@@ -88,14 +88,24 @@ def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row
     """
     if len(meshes) < 3:
         return []
-    sizes = [runs[0]["tip_size_m"] for runs in meshes]
-    costs = [sum(run["cpu_s"] for run in runs) for runs in meshes]
+    sizes = [known(runs[0].cost.tip_size) for runs in meshes]
+    costs = [sum(run.cost.cpu for run in runs) for runs in meshes]
     return [
         {"set": name, "quantity": words, "tip_size_m": sizes, "cpu_s": costs}
-        | _limit(sizes, [fmean(run[key] for run in runs) for runs in meshes])
-        | {"apart": [max(run[key] for run in runs) - min(run[key] for run in runs) for runs in meshes]}
+        | _values_row(sizes, [_known(key, runs) for runs in meshes])
         for words, key in QUANTITIES.items()
     ]
+
+
+def _known(key: Key, runs: Sequence[Outcome]) -> list[float]:
+    """Return a number in every run of a mesh."""
+    return [known(key.of(run)) for run in runs]
+
+
+def _values_row(sizes: list[float], values: list[list[float]]) -> Row:
+    """Return the limit of the means on each mesh, and how far the places of each are apart."""
+    apart = {"apart": [max(held) - min(held) for held in values]}
+    return _limit(sizes, [fmean(held) for held in values]) | apart
 
 
 def _limit(sizes: list[float], values: list[float]) -> Row:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from fem_impact.contact_law import contact_law
 from fem_impact.estimates import projectile
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known
 from fem_impact.scale import Results
 from fem_impact.study.contact_time import contact_time
 from fem_impact.study.linear_spring import spring_drop
@@ -108,9 +108,9 @@ def _rod(each: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
     return Rod(
         drop,
         np.array([drop.angle for drop, _, _ in each]),
-        np.array([run["e_edge"] for _, run, _ in each]),
-        np.array([stiff["e_edge"] for _, _, stiff in each]),
-        np.array([T1 / (s["contacts"][0]["end_s"] - s["contacts"][0]["start_s"]) for _, _, s in each]),
+        np.array([known(run.restitution.edge.e) for _, run, _ in each]),
+        np.array([known(stiff.restitution.edge.e) for _, _, stiff in each]),
+        np.array([T1 / known(stiff.contact.intervals)[0].duration for _, _, stiff in each]),
         T1 / contact_time(contact_law(level), projectile(level).mass, drop.speed),
     )
 

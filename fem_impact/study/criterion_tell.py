@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fem_impact.figures.lines import Mark, Panel, Series
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Results
 from fem_impact.study.criterion_measure import (
@@ -93,10 +93,10 @@ def _onset(found: Found) -> Picture:
 
 
 def _master(found: Found) -> Picture:
-    known = Series("independent reference", *KNOWN, "rings", 6)
+    independent = Series("independent reference", *KNOWN, "rings", 6)
     groups: tuple[tuple[str, str, Measure, tuple[Series, ...]], ...] = (
         ("by T1/tau, tau of the inclined rod", "T1/tau", lambda r: r.group, ()),
-        ("by T1/tau, tau of the whole mass", "T1/tau", lambda r: r.whole, (known,)),
+        ("by T1/tau, tau of the whole mass", "T1/tau", lambda r: r.whole, (independent,)),
         ("by gamma", "gamma, m^-0.3815", lambda r: r.drop.gamma, ()),
     )
     panels = []
@@ -124,8 +124,8 @@ def _blind(blind: Sequence[Drop], results: Results) -> Picture:
 
 def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> tuple[list[float], list[float]]:
     runs = [(d.friction, results[d.name]) for d in blind if d.length == length]
-    known = [(f, run["E_vib_over_E_0"]) for f, run in runs if isinstance(run, Outcome)]
-    return [f for f, _ in known], [share for _, share in known]
+    shares = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
+    return [f for f, _ in shares], [share for _, share in shares]
 
 
 def _origin(found: Found) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.figures.lines import Panel, lines_figure
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, or_none
 from fem_impact.output import make_directory, write_table, write_text
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Results
@@ -102,10 +102,11 @@ def _sheet(sheet: Sheet) -> dict[str, Any]:
     return {"name": sheet.name, "caption": sheet.caption, "columns": list(sheet.columns), "rows": rows}
 
 
-def _ledger_row(name: str, run: Mapping[str, Any]) -> list[Cell]:
-    contacts = None if run["contacts"] is None else len(run["contacts"])
-    found = {**run, "run": name, "contacts": contacts}
-    return [found[column] for column in LEDGER]
+def _ledger_row(name: str, run: Outcome) -> list[Cell]:
+    intervals = or_none(run.contact.intervals)
+    contacts = None if intervals is None else len(intervals)
+    values = {**run.to_dict(), "run": name, "contacts": contacts}
+    return [values[column] for column in LEDGER]
 
 
 def _draw(picture: Picture, place: Path) -> None:

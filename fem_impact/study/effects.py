@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.effects import EFFECTS, Harm, choices, everything
 from fem_impact.effects.strike import Strike, strike
 from fem_impact.estimates import widest_tip_size
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known, or_none
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Job, Results
 from fem_impact.scene import BARRIERS, MEASURED_SETS, NAMES, load, replace_all
@@ -101,13 +101,14 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
     return publish(_paper(rows, costs, beside), request, results)
 
 
-def row(name: str, auto: Mapping[str, Any], whole: Mapping[str, Any]) -> list[Cell]:
+def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:
     """Return one line of the ablation table: what auto changes; vibration that is off counts as none."""
-    e, e_all = auto["e_edge"], whole["e_edge"]
-    vib, vib_all = (run["E_vib_over_E_0"] or 0.0 for run in (auto, whole))
+    e, e_all = (known(run.restitution.edge.e) for run in (auto, whole))
+    vib, vib_all = _vibration(auto), _vibration(whole)
     same = abs(e - e_all) <= WITHIN_E * abs(e_all) and _near(vib, vib_all)
-    off = [effect for effect in NAMES if effect in whole["effects"] and effect not in auto["effects"]]
-    cost = auto["cpu_s"] / whole["cpu_s"] if whole["cpu_s"] else None
+    on, on_all = auto.provenance.effects, whole.provenance.effects
+    off = [effect for effect in NAMES if effect in on_all and effect not in on]
+    cost = auto.cost.cpu / whole.cost.cpu if whole.cost.cpu else None
     changes = [e_all, e - e_all, vib_all, vib - vib_all, cost]
     return [name, ", ".join(off) or "none", *changes, "within" if same else "beyond"]
 
@@ -124,21 +125,26 @@ def told(scene: Scene, effects: Sequence[str]) -> Harm:
     return Harm(after.e - before.e, after.E_vib - before.E_vib)
 
 
-def expected_row(name: str, whole: Mapping[str, Any], told: Strike) -> list[Cell]:
+def expected_row(name: str, whole: Outcome, told: Strike) -> list[Cell]:
     """Return e and E_vib of a run beside those of a strike; vibration as found over expected."""
-    vib = whole["E_vib_over_E_0"]
-    return [name, whole["e_edge"], told.e, vib, told.E_vib, vib / told.E_vib if told.E_vib else None]
+    e, vib = known(whole.restitution.edge.e), known(whole.energy.vibration)
+    return [name, e, told.e, vib, told.E_vib, vib / told.E_vib if told.E_vib else None]
 
 
-def cost_row(name: str, run: Mapping[str, Any], base: Mapping[str, Any], harm: Harm) -> list[Cell]:
+def cost_row(name: str, run: Outcome, base: Outcome, harm: Harm) -> list[Cell]:
     """Return one line of the cost table: times over those of auto, changes of e and E_vib, those expected."""
-    changed = (run["E_vib_over_E_0"] or 0.0) - (base["E_vib_over_E_0"] or 0.0)
-    times = [r["cpu_s"] / r["steps"] if r["steps"] else 0.0 for r in (run, base)]
+    e, e_base = (known(r.restitution.edge.e) for r in (run, base))
+    times = [r.cost.cpu / steps if (steps := known(r.cost.steps)) else 0.0 for r in (run, base)]
     return [
-        *(name, run["cpu_s"] / base["cpu_s"] if base["cpu_s"] else None),
+        *(name, run.cost.cpu / base.cost.cpu if base.cost.cpu else None),
         times[0] / times[1] if times[1] else None,
-        *(run["e_edge"] - base["e_edge"], harm.e, changed, harm.E_vib),
+        *(e - e_base, harm.e, _vibration(run) - _vibration(base), harm.E_vib),
     ]
+
+
+def _vibration(run: Outcome) -> float:
+    """Return E_vib over E_0; that of a rod that cannot vibrate is 0."""
+    return or_none(run.energy.vibration) or 0.0
 
 
 def _near(vib: float, vib_all: float) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known
 from fem_impact.scale import Failure, Job, Results
 from fem_impact.study.document import publish
 from fem_impact.study.gamma_tell import Maps, first_only, paper
@@ -79,12 +79,12 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 
 def _touches_again(run: Outcome | Failure | None) -> bool:
-    return isinstance(run, Outcome) and len(run["contacts"]) > 1
+    return isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1
 
 
 def _cut(job: Job, run: Outcome | Failure) -> Job:
     assert isinstance(run, Outcome)
-    accuracy = replace(job.scene.accuracy, max_time=run["contacts"][0]["end_s"] + SLACK)
+    accuracy = replace(job.scene.accuracy, max_time=known(run.contact.intervals)[0].end + SLACK)
     return Job(first_only(job.name), replace(job.scene, accuracy=accuracy), "modal")
 
 

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from fem_impact.figures.lines import Mark, Panel, Series
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Num, Outcome, known, or_none
 from fem_impact.output.tables import Cell
 from fem_impact.scale import Results
 from fem_impact.study.document import Paper, Picture, Sheet
@@ -22,19 +22,32 @@ MARKS = (
     *(Mark(float(slenderness(l, BODY)), w) for w, l in PAPER_RODS.items()),
     Mark(LIMIT, "limit of Eq 29"),
 )
-QUANTITIES = {
-    "vibration, % of E_0": "E_vib_over_E_0",
-    "e": "e_edge",
-    "contacts": "contacts",
-    "friction, % of E_0": "W_friction_over_E_0",
-    "plastic work, % of E_0": "plastic",
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A number of an outcome: its name in tables, and what it is multiplied by in figures."""
+
+    name: str
+    of: Callable[[Outcome], Num]
+    factor: float = 1.0
+
+
+VIBRATION = Measure("E_vib_over_E_0", lambda run: run.energy.vibration, 100.0)
+RESTITUTION = Measure("e_edge", lambda run: run.restitution.edge.e)
+MU = Measure("mu", lambda run: run.restitution.mu)
+CONTACTS = Measure("contacts", lambda run: float(len(known(run.contact.intervals))))
+FRICTION = Measure("W_friction_over_E_0", lambda run: run.energy.friction, 100.0)
+PLASTIC = Measure("plastic", lambda run: run.energy.plastic_rod + run.energy.plastic_barrier, 100.0)
+
+DRAWN = {
+    "vibration, % of E_0": VIBRATION,
+    "e": RESTITUTION,
+    "contacts": CONTACTS,
+    "friction, % of E_0": FRICTION,
+    "plastic work, % of E_0": PLASTIC,
 }
-COMPARED = {
-    "e": "e_edge",
-    "mu": "mu",
-    "vibration/E_0": "E_vib_over_E_0",
-    "friction/E_0": "W_friction_over_E_0",
-}
+COMPARED = {"e": RESTITUTION, "mu": MU, "vibration/E_0": VIBRATION, "friction/E_0": FRICTION}
 Curve = tuple[list[float], list[float]]
 KINDS = {False: "elastic", True: "yielding"}
 
@@ -48,10 +61,10 @@ class Maps:
     anchors: Sequence[Drop]
     results: Results
 
-    def value(self, drop: Drop, quantity: str, prefix: str = "") -> float | None:
-        """Return a quantity of a drop, None where its run failed."""
+    def value(self, drop: Drop, measure: Measure, prefix: str = "") -> float | None:
+        """Return a number of a drop, None where its run failed or does not know it."""
         run = self.results.get(f"{prefix}{drop.name}")
-        return _value(run, quantity) if isinstance(run, Outcome) else None
+        return or_none(measure.of(run)) if isinstance(run, Outcome) else None
 
     def worst(self) -> list[Drop]:
         """Return, for each rod, speed, surface and kind of the map, the angle that vibrates most."""
@@ -59,21 +72,12 @@ class Maps:
         for drop in self.grid:
             key = (drop.length, drop.diameter, drop.speed, drop.friction, drop.yields)
             groups.setdefault(key, []).append(drop)
-        return [max(group, key=lambda d: self.value(d, "E_vib_over_E_0") or 0.0) for group in groups.values()]
+        return [max(group, key=lambda d: self.value(d, VIBRATION) or 0.0) for group in groups.values()]
 
 
 def first_only(name: str) -> str:
     """Return the name of the job that stops at a drop's second contact."""
     return f"first-{name}"
-
-
-def _value(run: Outcome, quantity: str) -> float | None:
-    if quantity == "contacts":
-        return float(len(run["contacts"]))
-    if quantity == "plastic":
-        return float((run["E_plastic_rod_over_E_0"] or 0.0) + (run["E_plastic_barrier_over_E_0"] or 0.0))
-    found: float | None = run[quantity]
-    return found
 
 
 def paper(maps: Maps, tip: float) -> Paper:
@@ -100,20 +104,19 @@ def paper(maps: Maps, tip: float) -> Paper:
 
 
 def _curve(
-    maps: Maps, drops: Iterable[Drop], quantity: str, prefix: str = ""
+    maps: Maps, drops: Iterable[Drop], measure: Measure, prefix: str = ""
 ) -> tuple[list[float], list[float]]:
-    """Return gamma and a quantity, fractions of E_0 in per cent, of the drops that have it."""
-    found = [(drop.gamma, maps.value(drop, quantity, prefix)) for drop in drops]
-    factor = 100.0 if "E_0" in quantity or quantity == "plastic" else 1.0
-    known = [(gamma, factor * value) for gamma, value in found if value is not None]
-    return [gamma for gamma, _ in known], [value for _, value in known]
+    """Return gamma and a number, fractions of E_0 in per cent, of the drops that have it."""
+    found = [(drop.gamma, maps.value(drop, measure, prefix)) for drop in drops]
+    points = [(gamma, measure.factor * value) for gamma, value in found if value is not None]
+    return [gamma for gamma, _ in points], [value for _, value in points]
 
 
 def _line_pictures(maps: Maps) -> list[Picture]:
     made = []
     for yields, kind in KINDS.items():
-        shown = {w: q for w, q in QUANTITIES.items() if yields or q != "plastic"}
-        panels = tuple(_line_panel(maps, yields, words, key) for words, key in shown.items())
+        shown = {w: m for w, m in DRAWN.items() if yields or m is not PLASTIC}
+        panels = tuple(_line_panel(maps, yields, words, measure) for words, measure in shown.items())
         caption = (
             f"{kind.capitalize()} contact, 19 mm rods at 45 degrees and 2.1 m/s: modes (lines) and finite "
             "elements (rings); the paper's rods are marked."
@@ -122,13 +125,13 @@ def _line_pictures(maps: Maps) -> list[Picture]:
     return made
 
 
-def _line_panel(maps: Maps, yields: bool, words: str, quantity: str) -> Panel:
+def _line_panel(maps: Maps, yields: bool, words: str, measure: Measure) -> Panel:
     series = []
     for at, (state, f) in enumerate(STATES.items()):
         same = [d for d in maps.line if d.friction == f and d.yields == yields]
-        series.append(Series(f"{state}, f = {f:g}", *_curve(maps, same, quantity), "line", at))
+        series.append(Series(f"{state}, f = {f:g}", *_curve(maps, same, measure), "line", at))
         anchored = [d for d in maps.anchors if (d.friction, d.yields, d.angle) == (f, yields, 45.0)]
-        gamma, value = _curve(maps, anchored, quantity, "solid-")
+        gamma, value = _curve(maps, anchored, measure, "solid-")
         if gamma:
             series.append(Series(f"{state}, finite elements", gamma, value, "rings", at))
     return Panel(words.split(",")[0], X, words, tuple(series), MARKS)
@@ -138,7 +141,7 @@ def _second_picture(maps: Maps) -> Picture:
     panels = []
     for yields, kind in KINDS.items():
         same = [d for d in maps.line if d.friction == 0.0 and d.yields == yields]
-        end = Series("after the last contact", *_curve(maps, same, "E_vib_over_E_0"))
+        end = Series("after the last contact", *_curve(maps, same, VIBRATION))
         first = [(d.gamma, 100 * _after_first(maps, d)) for d in same]
         before = Series("after the first contact", [g for g, _ in first], [v for _, v in first], "dashed")
         panels.append(Panel(f"{kind}, frictionless", X, "vibration, % of E_0", (before, end), MARKS))
@@ -147,8 +150,8 @@ def _second_picture(maps: Maps) -> Picture:
 
 def _after_first(maps: Maps, drop: Drop) -> float:
     """Return the vibration after the first contact; a rod that touches once has no other."""
-    cut = maps.value(drop, "E_vib_over_E_0", "first-")
-    end = maps.value(drop, "E_vib_over_E_0")
+    cut = maps.value(drop, VIBRATION, "first-")
+    end = maps.value(drop, VIBRATION)
     return cut if cut is not None else end if end is not None else float("nan")
 
 
@@ -158,7 +161,7 @@ def _worst_picture(maps: Maps) -> Picture:
         series = []
         for at, (state, f) in enumerate(STATES.items()):
             chosen = [d for d in maps.worst() if _main(d) and (d.friction, d.yields) == (f, yields)]
-            series.append(Series(state, *_curve(maps, chosen, "E_vib_over_E_0"), "line", at))
+            series.append(Series(state, *_curve(maps, chosen, VIBRATION), "line", at))
         panels.append(Panel(f"{kind}, worst angle", X, "vibration, % of E_0", tuple(series), MARKS))
     return Picture(
         "worst-angle", "At the angle of the map that vibrates most, 19 mm, 2.1 m/s.", tuple(panels)
@@ -181,7 +184,7 @@ def _by(maps: Maps, name: str, scale: float, unit: str) -> Picture:
         same = [d for d in maps.grid if (d.angle, d.friction, d.yields) == (45.0, STATES[state], yields)]
         same = [d for d in same if getattr(d, other) == (BODY if other == "diameter" else 2.1)]
         series = [
-            Series(f"{value * scale:g} {unit}", *_curve(maps, drops, "E_vib_over_E_0"))
+            Series(f"{value * scale:g} {unit}", *_curve(maps, drops, VIBRATION))
             for value, drops in _grouped(same, name).items()
         ]
         title = f"{KINDS[yields]}, {state}"
@@ -201,7 +204,7 @@ def _peaks(maps: Maps) -> list[str]:
     for yields, kind in KINDS.items():
         for state, f in STATES.items():
             same = [d for d in maps.line if d.friction == f and d.yields == yields]
-            gamma, share = _curve(maps, same, "E_vib_over_E_0")
+            gamma, share = _curve(maps, same, VIBRATION)
             if gamma:
                 top = int(np.argmax(share))
                 last = f", and {share[-1]:.2g} % at gamma {gamma[-1]:.0f}" if gamma[top] < gamma[-1] else ""
@@ -213,10 +216,10 @@ def _peaks(maps: Maps) -> list[str]:
 
 
 def _given_back(maps: Maps) -> list[str]:
-    twice = [d for d in maps.line if maps.value(d, "E_vib_over_E_0", "first-") is not None]
+    twice = [d for d in maps.line if maps.value(d, VIBRATION, "first-") is not None]
     if not twice:
         return []
-    back = [(_after_first(maps, d) - (maps.value(d, "E_vib_over_E_0") or 0.0), d) for d in twice]
+    back = [(_after_first(maps, d) - (maps.value(d, VIBRATION) or 0.0), d) for d in twice]
     most, drop = max(back, key=lambda pair: pair[0])
     giving = sum(value > 0 for value, _ in back)
     return [
@@ -228,8 +231,8 @@ def _given_back(maps: Maps) -> list[str]:
 
 def _differences(maps: Maps) -> list[str]:
     told = []
-    for words, key in COMPARED.items():
-        pairs = [(maps.value(d, key), maps.value(d, key, "solid-")) for d in maps.anchors]
+    for words, measure in COMPARED.items():
+        pairs = [(maps.value(d, measure), maps.value(d, measure, "solid-")) for d in maps.anchors]
         away = [m - s for m, s in pairs if m is not None and s is not None]
         if away:
             told.append(
@@ -243,8 +246,8 @@ def _differences(maps: Maps) -> list[str]:
 def _anchor_sheet(maps: Maps) -> Sheet:
     rows: list[list[Cell]] = []
     for drop in maps.anchors:
-        pairs = [maps.value(drop, key, p) for key in COMPARED.values() for p in ("", "solid-")]
-        counts = [maps.value(drop, "contacts", p) for p in ("", "solid-")]
+        pairs = [maps.value(drop, measure, p) for measure in COMPARED.values() for p in ("", "solid-")]
+        counts = [maps.value(drop, CONTACTS, p) for p in ("", "solid-")]
         rows.append([drop.gamma, KINDS[drop.yields], drop.friction, drop.angle, *pairs, *counts])
     pairs_head = [f"{w}_{p}" for w in COMPARED for p in ("modal", "solid")]
     head = ("gamma", "contact", "f", "angle_deg", *pairs_head, "contacts_modal", "contacts_solid")
@@ -268,9 +271,10 @@ def _map_sheet(maps: Maps) -> Sheet:
 
 
 def _rows(maps: Maps, drops: Iterable[Drop]) -> tuple[tuple[str, ...], list[list[Cell]]]:
-    keys = ("E_vib_over_E_0", "e_edge", "mu", "contacts", "W_friction_over_E_0", "plastic")
-    head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact", *keys)
-    return head, [_row(d, [maps.value(d, key) for key in keys]) for d in drops]
+    listed = (VIBRATION, RESTITUTION, MU, CONTACTS, FRICTION, PLASTIC)
+    head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact")
+    rows = [_row(d, [maps.value(d, measure) for measure in listed]) for d in drops]
+    return (*head, *(measure.name for measure in listed)), rows
 
 
 def _row(d: Drop, values: list[float | None]) -> list[Cell]:

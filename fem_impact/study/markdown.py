@@ -2,28 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
 
 from fem_impact.compare import Row
+from fem_impact.outcome import Key, Outcome, known, or_none, shares
 from fem_impact.study.sensitivity import WORDS
 
 COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
-SHARES = (
-    ("rigid motion", "E_r_over_E_0"),
-    ("vibration", "E_vib_over_E_0"),
-    ("friction", "W_friction_over_E_0"),
-    ("plastic rod", "E_plastic_rod_over_E_0"),
-    ("plastic barrier", "E_plastic_barrier_over_E_0"),
-    ("locked in rod", "E_locked_rod_over_E_0"),
-    ("locked in barrier", "E_locked_barrier_over_E_0"),
-    ("radiated", "W_radiated_over_E_0"),
-)
 
 
-def summary(rows: list[Row], comparison: list[Row], changed: list[Row], explained: list[Row]) -> str:
+def summary(
+    outcomes: Sequence[Outcome], comparison: list[Row], changed: list[Row], explained: list[Row]
+) -> str:
     """Return the tables, with those of the changed inputs if they were computed."""
-    tables = [_beside(comparison), _shares(rows), *_limits(rows)]
+    tables = [_beside(comparison), _shares(outcomes), *_limits(outcomes)]
     if changed:
         words = "\n".join(f"- `{name}`: {meaning}" for name, meaning in WORDS.items())
         tables += [_changes(changed), _explanations(explained), words]
@@ -53,35 +45,42 @@ def _cell(row: Row) -> str:
     return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"
 
 
-def _shares(outcomes: list[dict[str, Any]]) -> str:
-    head = ["set", *(f"{words}, %" for words, _ in SHARES), "residual", "steps", "CPU s"]
-    body = []
-    for o in outcomes:
-        shares = [_percent(o, key) for _, key in SHARES]
-        body.append(
-            [o["scene_id"], *shares, f"{o['residual_over_E_0']:.0e}", f"{o['steps']}", f"{o['cpu_s']:.0f}"]
-        )
+def _shares(outcomes: Sequence[Outcome]) -> str:
+    listed = shares("report")
+    head = ["set", *(f"{share.label}, %" for share in listed), "residual", "steps", "CPU s"]
+    body = [
+        [
+            o.provenance.scene_id,
+            *(_percent(o, share.key) for share in listed),
+            f"{o.energy.residual:.0e}",
+            f"{known(o.cost.steps)}",
+            f"{o.cost.cpu:.0f}",
+        ]
+        for o in outcomes
+    ]
     return table(head, body)
 
 
-def _limits(outcomes: list[dict[str, Any]]) -> list[str]:
-    """Return a row a set with two meshes: e and E_vib extrapolated, how uncertain, what the finer took."""
-    head = ["set", "e, extrapolated", "of e, %", "E_vib / E_0, %, extrapolated", "of E_vib, %", "CPU s"]
+def _limits(outcomes: Sequence[Outcome]) -> list[str]:
+    """Return a row a set with two meshes: limits of e and E_vib, how uncertain, what the finer took."""
+    head = ["set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s"]
     body = []
-    for o in (o for o in outcomes if o.get("extrapolated")):
-        e, e_band, vib, vib_band = (
-            o[kind][key] for key in ("e_edge", "E_vib_over_E_0") for kind in ("extrapolated", "bands")
-        )
-        shares = [f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band))]
-        cells = [f"{e:.3f} ± {e_band:.3f}", shares[0], f"{100 * vib:.3f} ± {100 * vib_band:.3f}", shares[1]]
-        body.append([o["scene_id"], *cells, f"{o['cpu_s']:.0f}"])
+    for o in (o for o in outcomes if or_none(o.validity.mesh_band)):
+        limits, bands = known(o.validity.mesh_limit), known(o.validity.mesh_band)
+        (e, e_band), (vib, vib_band) = ((limits[k], bands[k]) for k in ("e_edge", "E_vib_over_E_0"))
+        of = [f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band))]
+        cells = [f"{e:.3f} ± {e_band:.3f}", of[0], f"{100 * vib:.3f} ± {100 * vib_band:.3f}", of[1]]
+        body.append([o.provenance.scene_id, *cells, f"{o.cost.cpu:.0f}"])
     return [table(head, body)] if body else []
 
 
-def _percent(outcome: Mapping[str, Any], key: str) -> str:
-    value, band = 100 * outcome[key], (outcome["bands"] or {}).get(key)
-    digits = 2 if abs(value) < 10 else 1
-    return f"{value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+def _percent(outcome: Outcome, key: Key) -> str:
+    value, band = outcome.estimate(key)
+    share = or_none(value)
+    if share is None:
+        return "–"
+    digits = 2 if abs(100 * share) < 10 else 1
+    return f"{100 * share:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
 
 
 def _changes(changed: list[Row]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import qmc, sobol_indices
 
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import Outcome, known
 from fem_impact.scale import Job, Results
 from fem_impact.scene import MEASURED_SETS, load, replace_all
 from fem_impact.study.document import publish
@@ -113,11 +113,10 @@ def _outputs(runs: list[Any], arms: Any) -> Array:
     return np.array([_output(run, arms) if isinstance(run, Outcome) else [np.nan] * 4 for run in runs])
 
 
-def _output(run: Mapping[str, Any], arms: Any) -> list[float]:
-    v_n, v_t, V_n, V_t = (run[f"{name}_m_per_s"] for name in ("v_n", "v_t", "V_n", "V_t"))
-    body = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": run["k_squared_m2"]}
-    found = coefficients(v_n, v_t, V_n, V_t, run["Omega_rad_per_s"], **body)
-    return [float(found.e), float(found.mu), run["Omega_rad_per_s"], run["E_vib_over_E_0"]]
+def _output(run: Outcome, arms: Any) -> list[float]:
+    m = run.motion
+    found = coefficients(m.v_n, m.v_t, m.V_n, m.V_t, m.Omega, d_c=arms.d_c, d_d=arms.d_d, k2=m.k_squared)
+    return [float(found.e), float(found.mu), m.Omega, known(run.energy.vibration)]
 
 
 def _indices(parts: Mapping[str, Array]) -> dict[str, Array] | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.compare import Row
-from fem_impact.outcome import Outcome
+from fem_impact.outcome import KEY_TABLE, Num, Outcome, known
 from fem_impact.scale import Failure, Job
 from fem_impact.scene import replace_all
 
@@ -16,14 +16,14 @@ if TYPE_CHECKING:
     from fem_impact.scene import Scene
 
 SHOWN = {
-    "e": "e_paper",
-    "mu": "mu",
-    "Omega": "Omega_rad_per_s",
-    "E_ln/E_0": "E_ln_paper_over_E_0",
-    "E_lt/E_0": "E_lt_paper_over_E_0",
-    "E_r/E_0": "E_r_over_E_0",
-    "vibration/E_0": "E_vib_over_E_0",
-    "friction/E_0": "W_friction_over_E_0",
+    "e": KEY_TABLE["e_paper"],
+    "mu": KEY_TABLE["mu"],
+    "Omega": KEY_TABLE["Omega_rad_per_s"],
+    "E_ln/E_0": KEY_TABLE["E_ln_paper_over_E_0"],
+    "E_lt/E_0": KEY_TABLE["E_lt_paper_over_E_0"],
+    "E_r/E_0": KEY_TABLE["E_r_over_E_0"],
+    "vibration/E_0": KEY_TABLE["E_vib_over_E_0"],
+    "friction/E_0": KEY_TABLE["W_friction_over_E_0"],
 }
 STRONGER = 1.5  # hardness and tensile test of the two steels bound the yield stress within this factor
 WIDER = 1.5
@@ -74,11 +74,8 @@ INPUTS = (
     ),
 )
 # the same run read with other lever arms of the impulse: no run of its own
-ARMS = {
-    "arms-edge": ("edge", "arms of the tip's edge radius"),
-    "arms-impulse": ("impulse", "arms of the impulse"),
-}
-WORDS = {i.name: i.words for i in INPUTS} | {name: words for name, (_, words) in ARMS.items()}
+ARMS = {"arms-edge": "arms of the tip's edge radius", "arms-impulse": "arms of the impulse"}
+WORDS = {i.name: i.words for i in INPUTS} | ARMS
 
 
 def sensitivity_jobs(coarse: Job, out: Path) -> dict[str, Job]:
@@ -93,22 +90,24 @@ def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | 
     if not isinstance(coarse, Outcome):
         return []
     runs = {name: run for name, run in changed.items() if isinstance(run, Outcome)}
-    rows = [_row(coarse, name, words, run[key]) for name, run in runs.items() for words, key in SHOWN.items()]
+    rows = [
+        _row(coarse, name, words, key.of(run)) for name, run in runs.items() for words, key in SHOWN.items()
+    ]
+    arms = {"arms-edge": coarse.restitution.edge, "arms-impulse": coarse.restitution.impulse}
     return rows + [
-        _row(coarse, name, words, coarse[SHOWN[words].replace("paper", arms)])
-        for name, (arms, _) in ARMS.items()
-        for words in ("e", "E_ln/E_0", "E_lt/E_0")
+        _row(coarse, name, words, value)
+        for name, read in arms.items()
+        for words, value in (("e", read.e), ("E_ln/E_0", read.E_ln), ("E_lt/E_0", read.E_lt))
     ]
 
 
-def _row(coarse: Outcome, name: str, quantity: str, changed: float) -> Row:
-    base = coarse[SHOWN[quantity]]
+def _row(coarse: Outcome, name: str, quantity: str, changed: Num) -> Row:
     return {
-        "set": coarse["scene_id"],
+        "set": coarse.provenance.scene_id,
         "input": name,
         "quantity": quantity,
-        "base": base,
-        "changed": changed,
+        "base": known(SHOWN[quantity].of(coarse)),
+        "changed": known(changed),
     }
 
 

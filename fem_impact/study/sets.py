@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.compare import Row, compare, text_table
-from fem_impact.outcome import Outcome
+from fem_impact.cost.limits import mesh_limits
+from fem_impact.outcome import Outcome, Unknown, known
 from fem_impact.output import COMPARISON, write_table, write_text
 from fem_impact.scale import Failure, Job, Results
 from fem_impact.scene import MEASURED_SETS, load, replace_all
-from fem_impact.study.bands import bands, limits
 from fem_impact.study.markdown import summary
 from fem_impact.study.present import present
 from fem_impact.study.request import Request, StudyResult, failures_of
@@ -60,24 +61,29 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
     for name in chosen(request):
         found = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
         if isinstance(found["fine"], Outcome):
-            outcomes.append(with_bands(found["fine"], found["coarse"], out / name))
+            outcomes.append(with_limits(found["fine"], found["coarse"], out / name))
         if not request.quick:
             changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUTS})
     document, text = write_study(outcomes, failures_of(results), changed, out)
-    return StudyResult(document, text, present([out / o["scene_id"] for o in outcomes], out, progress))
+    folders = [out / outcome.provenance.scene_id for outcome in outcomes]
+    return StudyResult(document, text, present(folders, out, progress))
 
 
-def with_bands(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
-    """Return the outcome with its two-mesh bands, and store it."""
+def with_limits(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
+    """Return the outcome with the limits of two meshes and their bands, and store it."""
     if isinstance(coarse, Failure):
-        return fine.replace(reasons={"bands": f"the coarser mesh failed: {coarse.reason}"})
-    if coarse["tip_size_m"] <= fine["tip_size_m"]:
-        return fine.replace(
-            reasons={"bands": "the second mesh is not coarser: give a smaller accuracy.tip_size"}
-        )
-    banded = fine.replace(bands=bands(fine, coarse), extrapolated=limits(fine, coarse))
-    banded.write(out / "outcome.json")
-    return banded
+        return _without_limits(fine, f"the coarser mesh failed: {coarse.reason}")
+    if known(coarse.cost.tip_size) <= known(fine.cost.tip_size):
+        return _without_limits(fine, "the second mesh is not coarser: give a smaller accuracy.tip_size")
+    limits, bands = mesh_limits([fine], [coarse])
+    limited = replace(fine, validity=replace(fine.validity, mesh_limit=limits, mesh_band=bands))
+    limited.write(out / "outcome.json")
+    return limited
+
+
+def _without_limits(fine: Outcome, reason: str) -> Outcome:
+    missing = Unknown(reason)
+    return replace(fine, validity=replace(fine.validity, mesh_limit=missing, mesh_band=missing))
 
 
 def write_study(
@@ -86,10 +92,9 @@ def write_study(
     """Write study.json, comparison.csv and summary.md; return the document and its text table."""
     comparison: list[Row] = [row for outcome in outcomes for row in compare(outcome)]
     explained = explanations(comparison, changed)
-    rows = [outcome.to_dict() for outcome in outcomes]
     document = {
         "schema": SCHEMA,
-        "rows": rows,
+        "rows": [outcome.to_dict() for outcome in outcomes],
         "comparison": comparison,
         "sensitivity": changed,
         "explanations": explained,
@@ -98,6 +103,6 @@ def write_study(
     }
     write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     write_table(out / "comparison.csv", COMPARISON, comparison)
-    write_text(out / "summary.md", summary(rows, comparison, changed, explained))
+    write_text(out / "summary.md", summary(outcomes, comparison, changed, explained))
     failed = (f"failed: {f['scene_id']}: {f['error']}" for f in failures)
     return document, "\n".join([text_table(comparison), *failed])

@@ -1,0 +1,307 @@
+"""What an outcome holds, group by group."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from fem_impact.outcome.keys import Num, Unknown, group, key, part
+
+__all__ = [
+    "ARMS",
+    "ArmCoefficients",
+    "Contact",
+    "ContactInterval",
+    "EffectChoice",
+    "Energy",
+    "Heat",
+    "Markers",
+    "Provenance",
+    "Restitution",
+    "RodMotion",
+    "RunCost",
+    "Validity",
+]
+
+ARMS = ("paper", "edge", "impulse")
+"""The three sets of contact arms that every coefficient is given with."""
+
+SHARE = ", as a fraction of E_0."
+
+
+@group
+class EffectChoice:
+    """What was decided about one effect; the changes are those of leaving it out."""
+
+    name: str = key("name", "", "The effect.")
+    on: bool = key("on", "", "It is in the model.")
+    forced: bool = key("forced", "", "Because the scene says so, or out of it for that reason.")
+    needed: bool = key("needed", "", "Its number is above its threshold, and what it needs is there.")
+    measure: str = key("measure", "", "The dimensionless number that decides, in words.")
+    number: float | None = key("number", "-", "That number; null where it is not finite.")
+    threshold: float = key("threshold", "-", "Above it the effect is needed.")
+    source: str = key("source", "", "Where the threshold comes from.")
+    change_of_e: float = key("change_of_e", "-", "Of e, about.")
+    change_of_vibration: float = key("change_of_E_vib_over_E_0", "-", "Of E_vib over E_0, about.")
+    sentence: str = key("sentence", "", "What the effect is, or what is left out with it.")
+    share: float | None = key("share", "-", "Share of the run time; null where it is off.")
+
+
+@group
+class Provenance:
+    """Where a record comes from."""
+
+    fidelity: str = key("fidelity", "", "Which model computed it: rigid, modal or solid.")
+    scene_id: str = key("scene_id", "", "Identifier of the scene; a measured set carries the set's id.")
+    scene_title: str = key("scene_title", "", "The scene in words.")
+    scene_digest: str = key("scene_digest", "", "SHA-256 of the canonical scene, hexadecimal.")
+    created_utc: str = key("created_utc", "", "When the record was made, ISO 8601, UTC.")
+    versions: Mapping[str, str] = key("versions", "", "Version of Python and of each package that took part.")
+    effects: tuple[str, ...] = key("effects", "", "Names of the effects that were in the model.")
+    effect_choices: tuple[EffectChoice, ...] | Unknown = key(
+        "effect_choices", "", "Each effect: number, threshold, verdict, harm, cost."
+    )
+
+
+@group
+class Validity:
+    """How far to trust a record: its end, what it leaves out, the error that was asked for and reached."""
+
+    finished: bool = key(
+        "finished", "", "True when the stop rule ended the run, false when a limit cut it off."
+    )
+    stopped_because: str = key("stopped_because", "", "Why the run ended, as a sentence.")
+    assumptions: tuple[str, ...] = key(
+        "assumptions", "", "Sentences on what the model leaves out or takes from elsewhere."
+    )
+    outside: tuple[str, ...] = key("validity", "", "Sentences on where the scene leaves the measured range.")
+    warnings: tuple[str, ...] = key("warnings", "", "Sentences on what the reader should distrust.")
+    accuracy_target: Num = key("accuracy_target", "-", "Relative error that the scene asked for.")
+    accuracy_setting: str | Unknown = key(
+        "accuracy_setting", "", "Setting that the measured costs chose for it."
+    )
+    expected_error: Num = key(
+        "expected_error", "-", "Largest relative error of e and E_vib where the costs were measured."
+    )
+    expected_wall: Num = key("expected_wall_s", "s", "Wall time to be expected, scaled to this machine.")
+    achieved_error: Num = key(
+        "achieved_error", "-", "Largest relative error of e and E_vib that two meshes leave open."
+    )
+    achieved_wall: Num = key("achieved_wall_s", "s", "Wall time of all runs of the setting.")
+    mesh_limit: Mapping[str, float] | Unknown = key(
+        "mesh_limit",
+        "as the key",
+        "Limit for vanishing elements that two meshes give a key: the middle of what every order of "
+        "convergence from 3/4 up gives; of one mesh at several places of the barrier's grid their mean.",
+    )
+    mesh_band: Mapping[str, float] | Unknown = key(
+        "mesh_band",
+        "as the key",
+        "Half-width about the limit of two meshes that holds those of all orders from 3/4 up, and the "
+        "standard error of means over places of the barrier's grid.",
+    )
+
+
+@group
+class RodMotion:
+    """The rod and its motion at first contact and after the last separation, gravity removed."""
+
+    friction: float = key(
+        "friction_f", "-", "Coulomb coefficient that went in (not the impulse ratio mu that came out)."
+    )
+    alpha: float = key("alpha_rad", "rad", "Angle between rod axis and barrier normal.")
+    mass: float = key("mass_kg", "kg", "Mass of the whole rod as modelled.")
+    k_squared: float = key(
+        "k_squared_m2", "m2", "Squared radius of gyration about b through the mass centre."
+    )
+    gamma: float = key("gamma_per_m0_3815", "m^-0.3815", "Slenderness l / d^1.3815.")
+    v_n: float = key(
+        "v_n_m_per_s", "m/s", "Normal velocity of the mass centre at first contact, negative inwards."
+    )
+    v_t: float = key(
+        "v_t_m_per_s", "m/s", "Tangential velocity of the mass centre at first contact, up the slope."
+    )
+    V_n: float = key("V_n_m_per_s", "m/s", "Normal velocity at the last separation, gravity removed.", True)
+    V_t: float = key(
+        "V_t_m_per_s", "m/s", "Tangential velocity at the last separation, gravity removed.", True
+    )
+    Omega: float = key(
+        "Omega_rad_per_s",
+        "rad/s",
+        "Rotation rate at the last separation, n turning towards t positive.",
+        True,
+    )
+
+
+@group
+class ArmCoefficients:
+    """Coefficients and losses by rigid impulse-momentum theory with one set of contact arms."""
+
+    d_c: Num = key("d_c_{}_m", "m", "Arm along t from contact point to mass centre: {}.")
+    d_d: Num = key("d_d_{}_m", "m", "Arm along n from contact point to mass centre: {}.")
+    e: Num = key("e_{}", "-", "Coefficient of restitution (Eq 16) with {}.", True)
+    e_m: Num = key("e_m_{}", "-", "Moment coefficient with {}.")
+    E_ln: Num = key("E_ln_{}_over_E_0", "-", "Energy lost by normal forces (Eq 20) with {}" + SHARE, True)
+    E_lt: Num = key("E_lt_{}_over_E_0", "-", "Energy lost by tangential forces (Eq 21) with {}" + SHARE, True)
+
+
+@group
+class Restitution:
+    """Impulse ratio, and the coefficients with three sets of contact arms."""
+
+    mu: float = key("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17).", True)
+    mu_c: float = key(
+        "mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 11)."
+    )
+    paper: ArmCoefficients = part("paper", "the paper's arms for this set")
+    edge: ArmCoefficients = part("edge", "the arms of a contact on the edge radius")
+    impulse: ArmCoefficients = part(
+        "impulse", "the arms of the centre of the contact impulse, where e_m = -1"
+    )
+
+
+@group
+class Energy:
+    """Where the energy at first contact is after the last separation: E_0 in J, the rest as shares of it."""
+
+    E_0: float = key("E_0_J", "J", "Kinetic energy of the whole rod at first contact.")
+    rigid: float = key(
+        "E_r_over_E_0",
+        "-",
+        "Kinetic energy of the rigid motion after the last separation (Eq 26)" + SHARE,
+        True,
+    )
+    vibration: Num = key(
+        "E_vib_over_E_0",
+        "-",
+        "Vibration energy after the last separation, by modal projection" + SHARE,
+        True,
+    )
+    vibration_check: Num = key(
+        "E_vib_check_over_E_0",
+        "-",
+        "Vibration energy without modes, of all shapes that the mesh has" + SHARE,
+        True,
+    )
+    vibration_floor: Num = key(
+        "E_vib_floor_over_E_0", "-", "Numerical floor under which a vibration energy means nothing" + SHARE
+    )
+    below_floor: bool | Unknown = key("E_vib_below_floor", "", "True when E_vib is below its floor.")
+    friction: float = key(
+        "W_friction_over_E_0", "-", "Work turned to heat by friction at the contact" + SHARE, True
+    )
+    skin: Num = key(
+        "W_skin_over_E_0",
+        "-",
+        "Friction work and plastic work of the barrier down to 0.1 mm below its surface" + SHARE,
+        True,
+    )
+    plastic_rod: float = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
+    plastic_barrier: float = key(
+        "E_plastic_barrier_over_E_0", "-", "Plastic work in the barrier" + SHARE, True
+    )
+    locked_rod: Num = key(
+        "E_locked_rod_over_E_0", "-", "Strain energy locked in by residual stress in the rod" + SHARE, True
+    )
+    locked_barrier: Num = key(
+        "E_locked_barrier_over_E_0",
+        "-",
+        "Strain energy locked in by residual stress in the barrier" + SHARE,
+        True,
+    )
+    radiated: Num = key(
+        "W_radiated_over_E_0", "-", "Energy radiated through the barrier's outer boundary" + SHARE, True
+    )
+    closing: Num = key(
+        "W_closing_over_E_0",
+        "-",
+        "Loss at the closing of lumped contact nodes (vanishes with the mesh)" + SHARE,
+        True,
+    )
+    damping: Num = key("W_damping_over_E_0", "-", "Work of material damping" + SHARE, True)
+    gravity: Num = key(
+        "W_gravity_over_E_0",
+        "-",
+        "What gravity added to the other shares, the speed of the fall itself taken out" + SHARE,
+        True,
+    )
+    residual: float = key("residual_over_E_0", "-", "What the ledger fails to close by" + SHARE)
+
+
+@group
+class ContactInterval:
+    """One interval of contact, with its impulses on the whole rod."""
+
+    start: float = key("start_s", "s", "First touch.")
+    end: float = key("end_s", "s", "Separation.")
+    impulse_n: float = key("impulse_n_Ns", "N s", "Normal impulse.")
+    impulse_t: float = key("impulse_t_Ns", "N s", "Tangential impulse, up the slope.")
+
+    @property
+    def duration(self) -> float:
+        """Length of the interval, s."""
+        return self.end - self.start
+
+
+@group
+class Markers:
+    """Motion after the impact as the camera's two markers would give it."""
+
+    V_n: Num = key("marker_V_n_m_per_s", "m/s", "V_n as the camera's two markers would give it.")
+    V_t: Num = key("marker_V_t_m_per_s", "m/s", "V_t as the camera's two markers would give it.")
+    Omega: Num = key("marker_Omega_rad_per_s", "rad/s", "Omega as the camera's two markers would give it.")
+    V_cn: Num = key("marker_V_cn_m_per_s", "m/s", "Normal velocity of the lower marker.")
+    V_ct: Num = key("marker_V_ct_m_per_s", "m/s", "Tangential velocity of the lower marker.")
+
+
+@group
+class Contact:
+    """The contact over time, and what a camera would have seen of the motion that it leaves."""
+
+    intervals: tuple[ContactInterval, ...] | Unknown = key(
+        "contacts", "s, N s", "Each contact interval with its impulses on the rod."
+    )
+    peak_force: Num = key("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us.", True)
+    markers: Markers
+
+
+@group
+class Heat:
+    """What friction heats the contact to."""
+
+    patch: Num = key("contact_patch_m2", "m2", "Largest true contact patch, whole contact.")
+    power: Num = key("friction_power_W", "W", "Highest friction power, whole contact.")
+    flux: Num = key("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch.")
+    rise: Num = key("flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction.")
+    temperature: Num = key("flash_temperature_K", "K", "Highest mean temperature of the patch.")
+    ignition: Num = key(
+        "ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."
+    )
+    time_above_ignition: Num = key("time_above_ignition_s", "s", "How long the patch is hotter than that.")
+    bound: Num = key(
+        "flash_bound_K", "K", "Temperature that no spot of the contact exceeds, under assumptions."
+    )
+    less_vibration: Num = key(
+        "E_lt_less_vibration_over_E_0",
+        "-",
+        "E_lt with the edge's arms less E_vib: what can heat the contact" + SHARE,
+    )
+
+
+@group
+class RunCost:
+    """What the run took."""
+
+    steps: int | Unknown = key("steps", "-", "Time steps taken.")
+    element_steps: int | Unknown = key("element_steps", "-", "Elements times steps, summed.")
+    elements_rod: int | Unknown = key("elements_rod", "-", "Elements of the meshed (half) rod.")
+    elements_barrier: int | Unknown = key("elements_barrier", "-", "Elements of the meshed (half) barrier.")
+    elements_yielding: int | Unknown = key("elements_yielding", "-", "Elements whose material could yield.")
+    wall: float = key("wall_s", "s", "Wall time of the time loop, compilation apart.")
+    cpu: float = key("cpu_s", "s", "Processor time of the time loop, all threads, compilation apart.")
+    setup_wall: Num = key(
+        "setup_wall_s", "s", "Wall time around it: meshes, assembly, modes, check; compilation apart."
+    )
+    setup_cpu: Num = key("setup_cpu_s", "s", "Processor time around the time loop, compilation apart.")
+    peak_memory: Num = key("peak_memory_MB", "MB", "Largest resident memory, in 10^6 bytes.")
+    min_step: Num = key("min_step_s", "s", "Smallest time step.")
+    tip_size: Num = key("tip_size_m", "m", "Element edge asked for at the tip.")
