@@ -1,7 +1,9 @@
 """Run the command line as ``python -m fem_impact``."""
 
+from __future__ import annotations
+
 import sys
 
-from fem_impact.cli import main
+from fem_impact.commands.main import main
 
 sys.exit(main())

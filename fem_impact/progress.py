@@ -10,9 +10,9 @@ from typing import Protocol, TextIO
 __all__ = [
     "CaseProgress",
     "LineMeter",
-    "Meter",
     "NullMeter",
     "Progress",
+    "ProgressMeter",
     "TerminalMeter",
     "clock_text",
     "compiling",
@@ -52,7 +52,7 @@ class CaseProgress:
     eta_s: float
 
 
-class Meter(Protocol):
+class ProgressMeter(Protocol):
     """Anything that takes progress, and may be closed when the work is over or interrupted."""
 
     def __call__(self, progress: Progress | CaseProgress) -> None:
@@ -118,7 +118,7 @@ class LineMeter:
         """Do nothing: every line is complete."""
 
 
-def meter_for(stream: TextIO, width: int = 100) -> Meter:
+def meter_for(stream: TextIO, width: int = 100) -> ProgressMeter:
     """Return a live line on a terminal and plain lines everywhere else."""
     return TerminalMeter(stream, width=width) if stream.isatty() else LineMeter(stream)
 

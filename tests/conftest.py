@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.cli import main
+from fem_impact.commands.main import main
 
 
 @pytest.fixture

@@ -7,14 +7,21 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
-from fem_impact.cost.judge import Judged
-from fem_impact.cost.measure import Cost
-from fem_impact.cost.plot import work_precision
-from fem_impact.cost.quantities import QUANTITIES
-from fem_impact.output import write_table, write_text
+from fem_impact.cost.judge import Judged, best_pair, front
+from fem_impact.cost.measure import CostStudy
+from fem_impact.cost.quantities import QUANTITIES, TARGETED
+from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.files.atomic import write_text
+from fem_impact.tables.csv import write_table
+from fem_impact.tables.markdown import table
 
-__all__ = ["text_table", "write_cost"]
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["summary_markdown", "text_table", "work_precision", "write_cost"]
+
 
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 SCALARS = ("name", "kind", "fidelity", "tip_size_m")
@@ -30,7 +37,7 @@ COLUMNS = (
 )
 
 
-def write_cost(cost: Cost, out: Path, names: tuple[str, ...]) -> None:
+def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
     """Write cost.json, cost.csv, cost.txt and the plot of the targeted quantities, cost.svg."""
     write_text(out / "cost.json", json.dumps(cost.to_dict(), indent=1, allow_nan=False) + "\n")
     write_table(out / "cost.csv", COLUMNS, [_row(setting) for setting in cost.settings])
@@ -46,7 +53,7 @@ def _row(setting: Judged) -> list[str | float | int | None]:
     return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
 
 
-def text_table(cost: Cost, names: Sequence[str] = NAMES) -> str:
+def text_table(cost: CostStudy, names: Sequence[str] = NAMES) -> str:
     """Return limits and orders, then one line a setting: times, and the error of quantities in per cent.
 
     An asterisk marks the Pareto front of that quantity. What the places of the barrier's grid tell of each
@@ -97,3 +104,144 @@ def _line(setting: Judged, width: int, names: Sequence[str]) -> str:
 def _cell(setting: Judged, name: str) -> str:
     error = setting.error[name]
     return "-" if error is None else f"{100 * error:.3g}{'*' if name in setting.front else ''}"
+
+
+LOOKS = {
+    "rigid": ("rigid", "s", "purple"),
+    "modal": ("modal", "D", "orange"),
+    "mesh": ("one mesh", "o", "blue"),
+    "pair": ("two meshes, extrapolated", "^", "green"),
+    "numerics": ("other elements or step", "x", "vermilion"),
+}
+"""Words, marker and colour of each kind of setting."""
+
+
+def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path) -> None:
+    """Draw relative error against CPU time, both logarithmic, of some quantities."""
+    rows = (len(names) + 1) // 2
+    with figure(path, "wide", 0.6 + 2.7 * rows) as drawn:
+        panels = drawn.subplots(rows, min(2, len(names)), squeeze=False, sharex=True).ravel()
+        for panel, name in zip(panels, names, strict=False):
+            _panel(panel, [one for one in settings if one.error[name] and one.kind in LOOKS], name)
+        for panel in panels[len(names) :]:
+            panel.set_visible(False)
+        drawn.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(LOOKS) + 1)
+
+
+def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
+    best = front(settings, [name])
+    axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
+    for kind, (words, marker, colour) in LOOKS.items():
+        of = [one for one in settings if one.kind == kind]
+        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=words, markersize=5)
+    axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
+    axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
+    _plain(axes)
+    axes.grid(alpha=0.5)
+
+
+def _plain(axes: Axes) -> None:
+    """Write plain numbers at the ticks, and within one decade at round steps instead of powers of ten."""
+    from matplotlib.ticker import MaxNLocator, NullFormatter
+
+    low, high = axes.get_ylim()
+    if high < 10 * low:
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
+    return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
+
+
+WANTED = 0.02
+Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]  # limits of the quantities, and settings
+
+
+def summary_markdown(document: dict[str, Any]) -> str:
+    """Return two tables of one row a scene: what its best pair of meshes gives, and what every setting costs.
+
+    A cell of the second reads: errors of the targeted quantities with their scatter in per cent, CPU time
+    in s.
+    """
+    scenes = {
+        name: (cost["quantities"], [Judged(**setting) for setting in cost["settings"]])
+        for name, cost in document["scenes"].items()
+    }
+    columns = _columns([settings for _, settings in scenes.values()])
+    head = ["set", *(f"{name}, limit" for name in TARGETED), *columns]
+    body = [
+        [name, *_limits(q), *(_markdown_cell(s, column) for column in columns)]
+        for name, (q, s) in scenes.items()
+    ]
+    machine = document["machine"]
+    note = (
+        f"Measured {document['created_utc'][:10]}, CPU times in s on a machine with a triad of "
+        f"{machine['triad_GB_per_s']:.3g} GB/s and a CSR product of "
+        f"{machine['csr_ns_per_element_step']:.3g} ns an element-step."
+    )
+    return f"{_pairs(scenes)}\n\n{table(head, body)}\n\n{note}\n"
+
+
+def _pairs(scenes: Scenes) -> str:
+    """Return the table of each scene's best pair for each quantity, and how many meet `WANTED`."""
+    ran = {
+        scene: (q, settings) for scene, (q, settings) in scenes.items() if any(one.band for one in settings)
+    }
+    columns = [[_best(name, *of) for of in ran.values()] for name in TARGETED]
+    head = ["set", *(words for name in TARGETED for words in (name, "% (scatter)", "meshes, mm", "off", "s"))]
+    body = [
+        [scene, *(cell for told, _ in row for cell in told)]
+        for scene, *row in zip(ran, *columns, strict=True)
+    ]
+    words = " and ".join(
+        f"{name} in {sum(met for _, met in column)}" for name, column in zip(TARGETED, columns, strict=True)
+    )
+    return f"{table(head, body)}\n\nTo {100 * WANTED:g} % by its own band: {words} of {len(ran)} sets."
+
+
+def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tuple[list[str], bool]:
+    """Return cells of the best pair for a quantity, and whether it meets `WANTED`: then its band is bold."""
+    pair = best_pair(settings, (name,), WANTED)
+    assert pair is not None  # scenes without a pair are left out
+    limit, scale = quantities[name], quantities[name]["scale"]
+    both = pair.band[name] * scale + limit["uncertainty"]
+    off = abs((pair.value[name] or 0.0) - limit["limit"]) / both if both else 0.0
+    found = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * scale:.4f}"
+    met = pair.band[name] <= WANTED
+    band = f"**{_percent(pair.band[name])}**" if met else _percent(pair.band[name])
+    sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
+    scatter = f"({_percent(pair.scatter[name])})"
+    return [found, f"{band} {scatter}", sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"], met
+
+
+def _columns(groups: list[list[Judged]]) -> list[str]:
+    """Return names of settings from cheap to dear, without pairs and those that leave an effect out."""
+    kinds = ("rigid", "modal", "mesh", "numerics")
+    named = {one.name: one for settings in groups for one in settings if one.kind in kinds}
+    return sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
+
+
+def _limits(quantities: dict[str, Any]) -> list[str]:
+    return [f"{quantities[name]['limit']:.3g} ± {quantities[name]['uncertainty']:.1g}" for name in TARGETED]
+
+
+def _markdown_cell(settings: list[Judged], name: str) -> str:
+    found = [one for one in settings if one.name == name]
+    if not found:
+        return ""
+    words = " / ".join(_off(found[0], quantity) for quantity in TARGETED)
+    return f"{words}, {found[0].cpu_s:.2g} s"
+
+
+def _off(setting: Judged, quantity: str) -> str:
+    """Return the error, and the scatter that is known."""
+    error, scatter = setting.error[quantity], setting.scatter.get(quantity)
+    words = "-" if error is None else _percent(error)
+    return words if scatter is None else f"{words} ± {_percent(scatter)}"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"

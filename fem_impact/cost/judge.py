@@ -9,11 +9,24 @@ from statistics import fmean
 from typing import Any
 
 from fem_impact.cost.limits import Placed, Truth, mean, standard_error, truths, values_of
-from fem_impact.cost.quantities import QUANTITIES, Quantity
+from fem_impact.cost.quantities import QUANTITIES, TargetQuantity
 from fem_impact.cost.settings import Setting
-from fem_impact.outcome import Outcome, or_none
+from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.record import Outcome
 
-__all__ = ["Judged", "front", "judge", "wall_seconds", "worst"]
+__all__ = [
+    "Judged",
+    "advice",
+    "best_pair",
+    "best_within",
+    "cheapest",
+    "front",
+    "judge",
+    "pair_sentence",
+    "verdict",
+    "wall_seconds",
+    "worst",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +115,7 @@ def cpu_seconds(run: Outcome) -> float:
     return run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)
 
 
-def _on_mesh(quantity: Quantity, whole: Placed, truth: Truth) -> Truth:
+def _on_mesh(quantity: TargetQuantity, whole: Placed, truth: Truth) -> Truth:
     return replace(truth, value=fmean(values_of(quantity, whole)), uncertainty=0.0)
 
 
@@ -138,3 +151,85 @@ def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
             best = worst(one, names)
             found.append(one)
     return found
+
+
+def cheapest(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
+    """Return the quickest setting whose worst error is at most the target, None if there is none."""
+    good = [one for one in front(settings, names) if worst(one, names) <= target]
+    return min(good, key=lambda one: one.cpu_s, default=None)
+
+
+def best_within(settings: Sequence[Judged], names: Sequence[str], budget: float) -> Judged | None:
+    """Return the most accurate setting that takes at most ``budget`` s, None if there is none."""
+    quick = [one for one in front(settings, names) if one.cpu_s <= budget]
+    return min(quick, key=lambda one: worst(one, names), default=None)
+
+
+def advice(
+    settings: Sequence[Judged], names: Sequence[str], target: float | None, budget: float | None
+) -> list[str]:
+    """Return the answer in sentences."""
+    of = " and ".join(names)
+    lines = []
+    if target is not None:
+        found = cheapest(settings, names, target)
+        best = front(settings, names)[-1]
+        lines.append(
+            f"Cheapest within {100 * target:.3g} % of {of}: {_words(found, names)}."
+            if found
+            else f"No setting brings {of} within {100 * target:.3g} %; best: {_words(best, names)}."
+        )
+    if budget is not None:
+        within = best_within(settings, names, budget)
+        lines.append(
+            f"Best within {budget:.3g} s: {_words(within, names)}."
+            if within
+            else f"No setting takes only {budget:.3g} s."
+        )
+    return lines
+
+
+def _words(setting: Judged, names: Sequence[str]) -> str:
+    return f"{setting.name}, error {100 * worst(setting, names):.2g} % in {setting.cpu_s:.3g} s"
+
+
+Quantities = Mapping[str, Mapping[str, float]]  # with the scale of each
+
+
+def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
+    """Return the quickest pair on two cores whose bands meet the target.
+
+    If none does, that of meshes widest apart, the finer if there are two: scatter of the values moves its
+    limit least, and a choice by the smallest band would choose agreement by chance.
+    """
+    pairs = [one for one in settings if one.band]
+    good = [one for one in pairs if all(one.band[name] <= target for name in names)]
+    if good:
+        return min(good, key=lambda one: one.two_cores_s)
+    return max(pairs, key=_apart, default=None)
+
+
+def _apart(pair: Judged) -> tuple[float, int]:
+    """Return the ratio of the meshes of a pair, and how fine the finer is."""
+    fine, coarse = (mesh["across"] * 2 ** mesh["levels"] for mesh in pair.meshes)
+    return fine / coarse, fine
+
+
+def pair_sentence(
+    settings: Sequence[Judged], quantities: Quantities, names: Sequence[str], target: float
+) -> str:
+    """Say what the best pair gives for every quantity that is asked for."""
+    pair = best_pair(settings, names, target)
+    if pair is None:
+        return "No two meshes gave a result."
+    found = "; ".join(f"{name} {verdict(pair, quantities, name, target)}" for name in names)
+    took = f"{pair.two_cores_s:.3g} s on two cores"
+    return f"Two meshes against {100 * target:.3g} %, {pair.name}: {found}; {took}."
+
+
+def verdict(pair: Judged, quantities: Quantities, name: str, target: float) -> str:
+    """Return value, band, how much of it is scatter, and whether the band meets the target."""
+    value, band, scale = pair.value[name] or 0.0, pair.band[name], quantities[name]["scale"]
+    words = "reached" if band <= target else "not reached"
+    scatter = f"{pair.scatter[name] * scale:.4f} of it scatter"
+    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {words}: {100 * band:.2g} %"

@@ -14,24 +14,25 @@ from fem_impact.cost.limits import Placed, Truth, truths
 from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
 from fem_impact.errors import RunError
-from fem_impact.outcome import Outcome, installed_versions, utc_now
-from fem_impact.scale import STORE, Failure, Job, Results, Store, run_jobs
-from fem_impact.scale.job import compute
-from fem_impact.scale.run import stored
-from fem_impact.solid.kernels import compiled_before
+from fem_impact.fem.kernels import compiled_before
+from fem_impact.jobs.job import Failure, Job, compute
+from fem_impact.jobs.run import Results, run_jobs, stored
+from fem_impact.jobs.store import STORE, Store
+from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
-    from fem_impact.scene import Scene
+    from fem_impact.progress import ProgressMeter
+    from fem_impact.scene.types import Scene
 
-__all__ = ["SCHEMA", "Cost", "judge_stored", "measure"]
+__all__ = ["SCHEMA", "CostStudy", "judge_stored", "measure"]
+
 
 SCHEMA = "fem-impact/cost/2"
 BRIEF = 5e-6  # s: into the first contact
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class CostStudy:
     """What accuracy costs for one scene.
 
     Attributes
@@ -55,7 +56,7 @@ class Cost:
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
-        from fem_impact.cost.yardsticks import yardsticks
+        from fem_impact.plan.measured import yardsticks
 
         return {
             "schema": SCHEMA,
@@ -82,10 +83,10 @@ def _plain(truth: Truth) -> dict[str, float | None]:
 def measure(
     scene: Scene,
     out: Path,
-    progress: Meter,
+    progress: ProgressMeter,
     family: Sequence[Mesh] = FAMILY,
     executor: Executor | None = None,
-) -> Cost:
+) -> CostStudy:
     """Run what is not stored in ``out`` yet, one run at a time so that times are times.
 
     Raises
@@ -106,7 +107,7 @@ def measure(
     return conclude(scene, settings, results)
 
 
-def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> Cost:
+def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> CostStudy:
     """Judge what `measure` has stored in ``out`` so far, and run nothing.
 
     Raises
@@ -140,7 +141,7 @@ def _compile(scene: Scene, executor: Executor) -> None:
         executor.submit(compute, Job("compilation", brief)).result()
 
 
-def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cost:
+def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> CostStudy:
     """Judge the runs of a ladder; settings that lack one are left out."""
     runs = {setting.name: _runs(setting, results) for setting in settings}
     failures = [
@@ -159,7 +160,7 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
             judged += [judge(setting, given, truth, whole)] if given and whole else []
         elif given:
             judged.append(judge(setting, given, truth))
-    return Cost(scene, truth, _marked(judged), failures)
+    return CostStudy(scene, truth, _marked(judged), failures)
 
 
 def _failure(result: Outcome | Failure) -> str | None:

@@ -8,16 +8,17 @@ from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.outcome import KEY_TABLE, Key, Num, Outcome, or_none
+from fem_impact.outcome.keys import Key, Num, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
-__all__ = ["QUANTITIES", "TARGETED", "Quantity", "chosen"]
+__all__ = ["QUANTITIES", "TARGETED", "TargetQuantity", "chosen"]
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
+class TargetQuantity:
     """A number of an outcome.
 
     Attributes
@@ -47,8 +48,8 @@ class Quantity:
         return max(abs(value), self.floor * unit)
 
 
-def _quantity(name: str, unit: str, floor: float, *keys: str) -> Quantity:
-    return Quantity(name, unit, tuple(KEY_TABLE[key] for key in keys), floor)
+def _quantity(name: str, unit: str, floor: float, *keys: str) -> TargetQuantity:
+    return TargetQuantity(name, unit, tuple(KEY_TABLE[key] for key in keys), floor)
 
 
 # 2 % of the floor of a share is 1e-4 of E_0, as far as vibration is asked for

@@ -7,15 +7,16 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal
 
-from fem_impact.scale import Job
-from fem_impact.scene import replace_all
-from fem_impact.scene.effect_names import BARRIERS, grounded
+from fem_impact.effects.registry import BARRIERS, grounded
+from fem_impact.jobs.job import Job
+from fem_impact.scene.shipped import replace_all
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
     from fem_impact.scene.fields import Element
+    from fem_impact.scene.types import Scene
 
 __all__ = ["FAMILY", "PLAIN", "Mesh", "Setting", "ladder", "on_mesh", "placed"]
+
 
 Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
 

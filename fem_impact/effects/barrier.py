@@ -8,10 +8,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.plasticity import SOURCE, first_yield_ratio, hardening_of
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
+from fem_impact.effects.slots import Effect, Harm, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
+
 
 LEAST_SHARE = 0.02
 COMPLIANCE = (

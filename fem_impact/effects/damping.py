@@ -5,13 +5,14 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.beam import bending_period
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.strike import strike
-from fem_impact.estimates import contact_estimate, normal_share
+from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.beam_impact import strike
+from fem_impact.physics.contact import contact_estimate, normal_share
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
+
 
 # upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005, doi:10.1007/b137728 (read as quoted in
 # manuals of engineering programs, halved to viscous ratios)

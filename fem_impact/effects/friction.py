@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, ModelSpec
+from fem_impact.effects.slots import Effect, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:

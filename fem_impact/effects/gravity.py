@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import hypot
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.beam import bending_period
-from fem_impact.effects.spec import Effect, ModelSpec
-from fem_impact.estimates import contact_estimate
+from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.contact import contact_estimate
 from rigid import GRAVITY
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:

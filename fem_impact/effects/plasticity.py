@@ -6,13 +6,14 @@ from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, ModelSpec
+from fem_impact.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.estimates import LIMIT_PRESSURE, contact_estimate
+from fem_impact.physics.contact import LIMIT_PRESSURE, contact_estimate
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Material, Scene
-    from fem_impact.solid.hardening import Hardening
+    from fem_impact.physics.hardening import Hardening
+    from fem_impact.scene.types import Material, Scene
+
 
 DEEP = 1.6  # peak pressure over yield stress at first yield, which is below the surface
 SOURCE = (
@@ -38,7 +39,7 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
 def hardening_of(material: Material) -> Hardening:
     """Return the hardening law of a material; SceneError if no power law reaches its ultimate stress."""
-    from fem_impact.solid.hardening import power_hardening
+    from fem_impact.physics.hardening import power_hardening
 
     try:
         return power_hardening(material.E, material.yield_stress, material.ultimate_stress)

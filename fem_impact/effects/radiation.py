@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.estimates import approach
+from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.physics.contact import approach
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:

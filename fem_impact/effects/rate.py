@@ -14,12 +14,13 @@ from dataclasses import replace
 from math import log, sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.spec import Effect, ModelSpec
-from fem_impact.estimates import contact_estimate, principal_radii
+from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.physics.contact import contact_estimate, principal_radii
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
-    from fem_impact.solid.hardening import Hardening
+    from fem_impact.physics.hardening import Hardening
+    from fem_impact.scene.types import Scene
+
 
 C, SLOWEST = 0.022, 1.0  # -, 1/s
 
@@ -41,7 +42,7 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
 
 
 def _hardened(law: Hardening | None) -> Hardening | None:
-    from fem_impact.solid.hardening import RateFactor
+    from fem_impact.physics.hardening import RateFactor
 
     return replace(law, rate=RateFactor(C, SLOWEST)) if law else None
 

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.beam import bending_period
-from fem_impact.effects.spec import Effect, Harm, ModelSpec
-from fem_impact.effects.strike import strike
-from fem_impact.estimates import contact_estimate, normal_share
+from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.beam_impact import strike
+from fem_impact.physics.contact import contact_estimate, normal_share
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.beam import bending_period, stretching_period
-from fem_impact.effects.spec import Effect, ModelSpec
-from fem_impact.estimates import contact_estimate
+from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.physics.beam import bending_period, stretching_period
+from fem_impact.physics.contact import contact_estimate
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:

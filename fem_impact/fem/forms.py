@@ -16,7 +16,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import (
     Basis,
     BilinearForm,
@@ -30,10 +29,8 @@ from skfem import (
 )
 from skfem.helpers import ddot, div, dot, inner, mul, sym_grad
 
+from fem_impact.arrays import Array, Ints
 from meshes.hexmesh import face_keys
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 NORMAL_SPRING, TANGENTIAL_SPRING = 4 / 3, 2 / 3  # of G / r, for a point source (Liu et al. 2006)
 

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure
-from fem_impact.output import write_table
-from fem_impact.output.tables import Cell
+from fem_impact.tables.csv import Cell, write_table
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -21,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["Mark", "Panel", "Series", "lines_figure"]
+
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
 LETTERS = {"wide": 110, "narrow": 52}

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.errors import MissingLibraryError
-from fem_impact.output import atomic_path
+from fem_impact.files.atomic import atomic_path
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 __all__ = ["INK", "PALETTE", "QUIET", "Shape", "figure", "new_figure", "percent", "save"]
+
 
 Shape = Literal["wide", "narrow"]
 """Wide for paper and desktop, narrow for a phone."""

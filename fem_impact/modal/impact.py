@@ -8,21 +8,20 @@ from dataclasses import dataclass
 from math import cos, inf, sin
 
 import numpy as np
-from numpy.typing import NDArray
 
 import rigid
-from fem_impact.contact_law import ContactLaw, contact_law
-from fem_impact.estimates import contact_estimate
+from fem_impact.arrays import Array
+from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
 from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.physics.contact import contact_estimate
+from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.progress import Progress, compiling
-from fem_impact.scene import Scene
-from fem_impact.solid.kernels import compiled_before
+from fem_impact.scene.types import Scene
 from fem_impact.solid.separation import horizon
 
 __all__ = ["ModalResult", "plastic_work", "reach", "solve"]
 
-Array = NDArray[np.float64]
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once

@@ -10,15 +10,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.contact_law import ContactLaw
+from fem_impact.arrays import Array
+from fem_impact.fem.kernels import allocating_kernel, inlined
+from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.solid.contact.book import FAINT, MERGE_GAP
-from fem_impact.solid.kernels import allocating_kernel, inlined
 
 __all__ = ["MOST_CONTACTS", "Bounds", "Start", "drop"]
 
-Array = NDArray[np.float64]
 
 MOST_CONTACTS = 200
 SPRINGS = 100

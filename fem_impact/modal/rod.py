@@ -7,18 +7,17 @@ from functools import lru_cache
 from math import cos, sin, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.effects import specify
-from fem_impact.estimates import arms, principal_radii, projectile, section_frequency, touch_point
-from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Scene, Surface
+from fem_impact.arrays import Array
+from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
+from fem_impact.plan.plan import specify
 from fem_impact.scene.fields import ACCURACY
+from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Scene, Surface
 from fem_impact.solid.build import build
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.rodview import RodState
 
 __all__ = ["ModalRod", "modal_rod"]
 
-Array = NDArray[np.float64]
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
@@ -70,14 +69,14 @@ def _touch(scene: Scene) -> tuple[Array, Array, Array]:
     return omega[kept], x, z
 
 
-def _elastic(rod: Projectile) -> Projectile:
+def _elastic(rod: ProjectileSpec) -> ProjectileSpec:
     """Return the rod without what its modes do not depend on, so that they are found again."""
     steel = replace(rod.material, name="elastic", yield_stress=1e9, ultimate_stress=1e9)
     return replace(rod, material=steel)
 
 
 @lru_cache(maxsize=32)
-def _modes(rod: Projectile, across: int) -> tuple[Array, Array, Array]:
+def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
     """Return nodes (n, 3) in the rod frame, mode shapes (n, 3, k) of the whole rod, and omega (k,)."""
     scene = Scene(
         id="modes",
@@ -90,7 +89,7 @@ def _modes(rod: Projectile, across: int) -> tuple[Array, Array, Array]:
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across),
     )
     model = build(scene, specify(scene))
-    view, mesh = RodView.of(model), model.geometry.rod.mesh
+    view, mesh = RodState.of(model), model.geometry.rod.mesh
     # modes are normalised with the mass of the half rod
     shape = view.modes.shape[view.places] / sqrt(2)
     return mesh.points[~mesh.is_hanging], shape, view.modes.omega

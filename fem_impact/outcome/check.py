@@ -11,6 +11,7 @@ from fem_impact.outcome.keys import Key, Kind
 
 __all__ = ["SCHEMA_VERSION", "check_record"]
 
+
 SCHEMA_VERSION = 3
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 

@@ -22,6 +22,7 @@ __all__ = [
     "Validity",
 ]
 
+
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
 

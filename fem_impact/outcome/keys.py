@@ -28,6 +28,7 @@ __all__ = [
     "unknown",
 ]
 
+
 T = TypeVar("T")
 Kind = Literal["number", "count", "flag", "text", "texts", "named texts", "named numbers", "entries"]
 KINDS: Mapping[Any, Kind] = {

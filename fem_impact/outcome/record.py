@@ -15,6 +15,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
 
 from fem_impact.errors import ResultError
+from fem_impact.files.atomic import read_text, write_text
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
 from fem_impact.outcome.groups import (
     Contact,
@@ -27,9 +28,9 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
-from fem_impact.output import read_text, write_text
 
 __all__ = ["KEYS", "KEY_TABLE", "Outcome", "installed_versions", "utc_now"]
+
 
 CHECKSUM = "checksum_sha256"
 """Last key of the file: SHA-256 of everything else, so that a damaged file cannot pass for a result."""
@@ -52,7 +53,7 @@ class Outcome:
     Examples
     --------
     >>> from fem_impact.scene import load
-    >>> from fem_impact.simulate import simulate
+    >>> from fem_impact.run.simulate import simulate
     >>> outcome = simulate(load("t5b"), "rigid")
     >>> round(outcome.restitution.edge.e, 2)
     0.3

@@ -11,6 +11,7 @@ from fem_impact.outcome.record import KEY_TABLE
 
 __all__ = ["SHARES", "EnergyShare", "Place", "shares"]
 
+
 Place = Literal["terminal", "figure", "comparison", "report"]
 """Where shares are listed: the terminal, figures of one or many runs, model beside measurement, pages."""
 

@@ -10,8 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.figures.style import INK, figure
-from fem_impact.output import write_table
-from fem_impact.output.tables import Cell
+from fem_impact.tables.csv import Cell, write_table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

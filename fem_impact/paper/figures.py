@@ -6,12 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from fem_impact.paper.drawn import Drawn
-from fem_impact.paper.figure_4 import figure_4
-from fem_impact.paper.figure_5 import figure_5
-from fem_impact.paper.figure_6 import figure_6
-from fem_impact.paper.figure_7 import figure_7
+from fem_impact.paper.figures_4_5 import figure_4, figure_5
+from fem_impact.paper.figures_6_7 import figure_6, figure_7
 
 __all__ = ["FIGURES", "draw_figure"]
+
 
 FIGURES: dict[int, Callable[[Path], Drawn]] = {4: figure_4, 5: figure_5, 6: figure_6, 7: figure_7}
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-import importlib
+import functools
 import importlib.util
+import os
+import subprocess
+import sys
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -11,12 +14,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.errors import MissingLibraryError, OutputPathError
-from fem_impact.output import atomic_path, make_directory
+from fem_impact.files.atomic import atomic_path, make_directory
 
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-__all__ = ["SUFFIXES", "best_suffix", "encode"]
+__all__ = ["PACKAGES", "SUFFIXES", "best_suffix", "encode", "require_gl"]
+
 
 SUFFIXES = (".mp4", ".webp", ".gif", ".png")
 """Formats that can be asked for; ``.png`` makes a folder of numbered frames."""
@@ -110,3 +114,70 @@ def _write_folder(frames: Iterable[np.ndarray], folder: Path) -> Path:
 def _chain(first: np.ndarray, rest: Iterator[np.ndarray]) -> Iterator[np.ndarray]:
     yield first
     yield from rest
+
+
+WINDOW = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
+PACKAGES = ("libegl1", "libgl1-mesa-dri")
+"""Debian packages that off-screen drawing needs."""
+
+# VTK alone: with pyvista the trial takes three times as long
+_TRIAL = """
+import vtkmodules.vtkRenderingOpenGL2
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkFiltersSources import vtkSphereSource
+from vtkmodules.vtkRenderingCore import (
+    vtkActor, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow, vtkWindowToImageFilter
+)
+mapper, actor, renderer = vtkPolyDataMapper(), vtkActor(), vtkRenderer()
+window, picture, sphere = vtkRenderWindow(), vtkWindowToImageFilter(), vtkSphereSource()
+mapper.SetInputConnection(sphere.GetOutputPort())
+actor.SetMapper(mapper)
+renderer.AddActor(actor)
+window.SetOffScreenRendering(1)
+window.SetSize(32, 32)
+window.AddRenderer(renderer)
+window.Render()
+picture.SetInput(window)
+picture.Update()
+drawn = vtk_to_numpy(picture.GetOutput().GetPointData().GetScalars())
+raise SystemExit(0 if drawn.std() > 0 else 3)
+"""
+
+
+def require_gl() -> None:
+    """Return when a picture can be drawn off screen, and choose VTK's window for this process.
+
+    Raises
+    ------
+    MissingLibraryError
+        A trial picture in a child process failed; the message names the packages to install.
+    """
+    found = _trial(tuple(sorted(WINDOW.items())))
+    if found:
+        raise MissingLibraryError(
+            f"Off-screen drawing does not work here ({found}). Install the packages "
+            f"{' and '.join(PACKAGES)} (apt-get install {' '.join(PACKAGES)}) and render again; "
+            "the computed result is kept."
+        )
+    os.environ.update(WINDOW)
+
+
+@functools.cache
+def _trial(window: tuple[tuple[str, str], ...]) -> str:
+    try:
+        done = subprocess.run(
+            [sys.executable, "-c", _TRIAL],
+            env={**os.environ, **dict(window)},
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=False,
+        )
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"the trial picture could not be drawn: {error}"
+    return "" if done.returncode == 0 else _cause(done.returncode, done.stderr)
+
+
+def _cause(code: int, stderr: str) -> str:
+    last = stderr.strip().splitlines()[-1:] or ["no message"]
+    return f"the trial picture ended with code {code}: {last[0][:160]}"

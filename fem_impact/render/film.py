@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.errors import MissingLibraryError, ResultError
-from fem_impact.outcome import Outcome
-from fem_impact.output import Fields, read_fields, read_table
-from fem_impact.render.encode import best_suffix, encode
-from fem_impact.render.layout import Layout
-from fem_impact.render.motion import Motion, prepare
-from fem_impact.render.probe import require_gl
+from fem_impact.files.fields_read import FieldFile, read_fields
+from fem_impact.outcome.record import Outcome
+from fem_impact.render.encode import best_suffix, encode, require_gl
+from fem_impact.render.layout import FrameLayout
+from fem_impact.render.motion import FilmData, prepare
+from fem_impact.tables.csv import read_table
 
 __all__ = ["RenderResult", "context", "render", "require_libraries", "target"]
 
@@ -80,7 +80,7 @@ def render(
     require_libraries()
     path, notes = target(folder, out)
     title, curve, missing = context(folder, fields)
-    made = encode(_frames(motion, Layout(*size), chosen, title, curve), path, fps)
+    made = encode(_frames(motion, FrameLayout(*size), chosen, title, curve), path, fps)
     return RenderResult(made, (*notes, *missing), len(chosen))
 
 
@@ -110,7 +110,7 @@ def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Pa
     return folder / f"{stem}{suffix}", [] if suffix == ".mp4" else [other]
 
 
-def context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
+def context(folder: Path, fields: FieldFile) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
     """Return title, force curve, and a sentence on each of them that is missing."""
     title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
     try:
@@ -126,14 +126,18 @@ def context(folder: Path, fields: Fields) -> tuple[str, tuple[np.ndarray, np.nda
 
 
 def _frames(
-    motion: Motion, layout: Layout, chosen: Sequence[int], title: str, curve: tuple[np.ndarray, np.ndarray]
+    motion: FilmData,
+    layout: FrameLayout,
+    chosen: Sequence[int],
+    title: str,
+    curve: tuple[np.ndarray, np.ndarray],
 ) -> Iterator[np.ndarray]:
-    from fem_impact.render.board import Board
-    from fem_impact.render.views import CloseView, RodView, needed_height
+    from fem_impact.render.board import FilmBackground
+    from fem_impact.render.views import CloseView, RodPicture, needed_height
 
-    board = Board.make(layout, motion, title, curve)
+    board = FilmBackground.make(layout, motion, title, curve)
     size = layout.rod.size
-    whole = RodView(motion, size, needed_height(motion, size))
+    whole = RodPicture(motion, size, needed_height(motion, size))
     near = CloseView(motion, layout.close.size)
     try:
         for frame in chosen:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Abreast", "Frame", "Layout", "Rectangle"]
+__all__ = ["Abreast", "Frame", "FrameLayout", "Rectangle"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +54,7 @@ class Frame:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout(Frame):
+class FrameLayout(Frame):
     """Two views side by side over a strip with the force curve."""
 
     @property

@@ -9,20 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.output import Fields
-from fem_impact.render.kinematics import (
-    axis_of,
-    magnified,
-    nice_factor,
-    nodal_volumes,
-    rigid_motion,
-    stretch,
-)
+from fem_impact.files.fields_read import FieldFile
+from fem_impact.render.kinematics import axis_of, magnified, nice_factor, nodal_volumes, rigid_motion, stretch
 
-__all__ = ["FIELDS", "Field", "Motion", "prepare"]
+__all__ = ["FIELDS", "FieldStyle", "FilmData", "prepare"]
 
 
-class Field(NamedTuple):
+class FieldStyle(NamedTuple):
     """How a field is shown: label, unit, factor from SI, colour map, whether it has a sign."""
 
     name: str
@@ -33,9 +26,9 @@ class Field(NamedTuple):
 
 
 FIELDS = {
-    "mises": Field("von Mises stress", "MPa", 1e-6),
-    "velocity": Field("speed", "m/s", 1.0),
-    "strain": Field("axial strain", "µm/m", 1e6, "coolwarm", True),
+    "mises": FieldStyle("von Mises stress", "MPa", 1e-6),
+    "velocity": FieldStyle("speed", "m/s", 1.0),
+    "strain": FieldStyle("axial strain", "µm/m", 1e6, "coolwarm", True),
 }
 """The fields that can be shown."""
 
@@ -44,7 +37,7 @@ _VISIBLE = 0.35
 
 
 @dataclass(frozen=True, slots=True)
-class Motion:
+class FilmData:
     """A field file made ready to be drawn.
 
     Parameters
@@ -68,7 +61,7 @@ class Motion:
         Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
     """
 
-    fields: Fields
+    fields: FieldFile
     field: str
     rod_nodes: np.ndarray
     weights: np.ndarray
@@ -98,7 +91,7 @@ class Motion:
         return _colours(self.fields, self.field, frame)
 
 
-def prepare(fields: Fields, field: str, frames: Sequence[int]) -> Motion:
+def prepare(fields: FieldFile, field: str, frames: Sequence[int]) -> FilmData:
     """Look through the frames once and fix magnification and colour ranges.
 
     Raises
@@ -122,7 +115,7 @@ def prepare(fields: Fields, field: str, frames: Sequence[int]) -> Motion:
     peak = _peak(fields, frames, rod, weights, distance, span)
     near, far = _ranges(fields, field, frames, distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
-    return Motion(fields, field, rod, weights, _fade(distance), peak, contact, span, near, far)
+    return FilmData(fields, field, rod, weights, _fade(distance), peak, contact, span, near, far)
 
 
 def _fade(distance: np.ndarray) -> np.ndarray:
@@ -133,7 +126,7 @@ def _fade(distance: np.ndarray) -> np.ndarray:
 
 
 def _peak(
-    fields: Fields,
+    fields: FieldFile,
     frames: Sequence[int],
     rod: np.ndarray,
     weights: np.ndarray,
@@ -148,7 +141,7 @@ def _peak(
     return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
 
 
-def _colours(fields: Fields, field: str, frame: int) -> np.ndarray:
+def _colours(fields: FieldFile, field: str, frame: int) -> np.ndarray:
     scale = FIELDS[field].scale
     if field == "velocity":
         speed: np.ndarray = scale * np.linalg.norm(fields.point_data("velocity", frame), axis=1)
@@ -158,7 +151,7 @@ def _colours(fields: Fields, field: str, frame: int) -> np.ndarray:
     return scale * fields.cell_data(field, frame)
 
 
-def _strain(fields: Fields, frame: int) -> np.ndarray:
+def _strain(fields: FieldFile, frame: int) -> np.ndarray:
     """Return the strain along the rod's axis ``(m,)``; nothing in the barrier."""
     rod = fields.static.get("body", np.zeros(len(fields.cells))) == 0
     cells, found = fields.cells[rod], np.zeros(len(rod))
@@ -169,7 +162,7 @@ def _strain(fields: Fields, frame: int) -> np.ndarray:
 
 
 def _ranges(
-    fields: Fields, field: str, frames: Sequence[int], distance: np.ndarray, rod: np.ndarray
+    fields: FieldFile, field: str, frames: Sequence[int], distance: np.ndarray, rod: np.ndarray
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     in_cells, signed = field != "velocity", FIELDS[field].signed
     place = distance[fields.cells].mean(axis=1) if in_cells else distance

@@ -11,20 +11,31 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.figures.style import INK, QUIET
-from fem_impact.output import read_fields
-from fem_impact.render.board import below, blank, clock, colour_bar, heading, picture, write
+from fem_impact.files.fields_read import read_fields
+from fem_impact.render.board import (
+    Curve,
+    Strip,
+    below,
+    blank,
+    clock,
+    colour_bar,
+    heading,
+    limits_of,
+    picture,
+    write,
+)
 from fem_impact.render.encode import encode
 from fem_impact.render.film import RenderResult, context, require_libraries, target
 from fem_impact.render.layout import Abreast, Rectangle
-from fem_impact.render.motion import Motion, prepare
-from fem_impact.render.strip import Curve, Strip, limits_of
-from fem_impact.render.views import RodView, needed_height
+from fem_impact.render.motion import FilmData, prepare
+from fem_impact.render.views import RodPicture, needed_height
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
 __all__ = ["render_side_by_side"]
+
 
 FRAMES = 120
 TITLE = "Strain along the axis: of one sign over a section in longitudinal waves, of both in bending"
@@ -65,13 +76,13 @@ def render_side_by_side(
     path, notes = target(folders[0], out, "film-side-by-side")
     told = [context(folder, fields) for folder, fields in zip(folders, held, strict=True)]
     times = np.linspace(0.0, max(float(fields.times[-1]) for fields in held), frames)
-    board = Board.make(Abreast(*size, len(folders)), motions, [t[:2] for t in told], times)
+    board = PairBackground.make(Abreast(*size, len(folders)), motions, [t[:2] for t in told], times)
     made = encode(_frames(board, motions, times), path, fps)
     missing = [sentence for *_, sentences in told for sentence in sentences]
     return RenderResult(made, (*notes, *missing), frames)
 
 
-def _alike(motions: Sequence[Motion]) -> list[Motion]:
+def _alike(motions: Sequence[FilmData]) -> list[FilmData]:
     """Give all motions the widest colour range and the smallest magnification."""
     top = max(motion.far[1] for motion in motions)
     peak = min(motion.peak for motion in motions)
@@ -79,7 +90,7 @@ def _alike(motions: Sequence[Motion]) -> list[Motion]:
 
 
 @dataclass(frozen=True, slots=True)
-class Board:
+class PairBackground:
     """What stays the same over the film.
 
     Parameters
@@ -99,8 +110,12 @@ class Board:
 
     @classmethod
     def make(
-        cls, layout: Abreast, motions: Sequence[Motion], told: Sequence[tuple[str, Curve]], times: np.ndarray
-    ) -> Board:
+        cls,
+        layout: Abreast,
+        motions: Sequence[FilmData],
+        told: Sequence[tuple[str, Curve]],
+        times: np.ndarray,
+    ) -> PairBackground:
         """Draw the still parts once; ``told`` holds title and force curve of each run."""
         drawn = blank(layout)
         heading(drawn, layout, TITLE)
@@ -143,10 +158,10 @@ def _scale(drawn: Figure, layout: Abreast, peak: float) -> None:
     below(drawn, layout, layout.views[0], words, QUIET)
 
 
-def _frames(board: Board, motions: Sequence[Motion], times: np.ndarray) -> Iterator[np.ndarray]:
+def _frames(board: PairBackground, motions: Sequence[FilmData], times: np.ndarray) -> Iterator[np.ndarray]:
     sizes = [view.size for view in board.layout.views]
     height = max(needed_height(motion, size) for motion, size in zip(motions, sizes, strict=True))
-    views = [RodView(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]
+    views = [RodPicture(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]
     try:
         for time in times:
             nearest = [int(np.abs(motion.fields.times - time).argmin()) for motion in motions]

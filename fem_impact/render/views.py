@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.render.kinematics import to_points
-from fem_impact.render.motion import FIELDS, Motion
+from fem_impact.render.motion import FIELDS, FilmData
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["CLOSE_WIDTH", "CloseView", "RodView", "needed_height"]
+__all__ = ["CLOSE_WIDTH", "CloseView", "RodPicture", "needed_height"]
+
 
 CLOSE_WIDTH = 0.45
 """Width of the close-up in diameters of the rod."""
@@ -29,7 +30,9 @@ class _View:
     Its far side is never seen and not drawn, which takes a third off the time of a picture.
     """
 
-    def __init__(self, motion: Motion, size: tuple[int, int], span: tuple[float, float], **look: Any) -> None:
+    def __init__(
+        self, motion: FilmData, size: tuple[int, int], span: tuple[float, float], **look: Any
+    ) -> None:
         import pyvista
 
         self.motion = motion
@@ -60,13 +63,13 @@ class _View:
         return picture
 
 
-class RodView(_View):
+class RodPicture(_View):
     """The half model and its mirror image: the whole rod on the barrier, deformation magnified.
 
     ``height`` is that of the picture, m; see `needed_height`.
     """
 
-    def __init__(self, motion: Motion, size: tuple[int, int], height: float) -> None:
+    def __init__(self, motion: FilmData, size: tuple[int, int], height: float) -> None:
         super().__init__(motion, size, motion.far, ambient=0.25, diffuse=0.8)
         self.mirrored = self.surface.copy()
         for mesh, hidden in ((self.surface, "back"), (self.mirrored, "front")):
@@ -95,7 +98,7 @@ class RodView(_View):
 class CloseView(_View):
     """The contact in section on the symmetry plane, true scale, with the mesh."""
 
-    def __init__(self, motion: Motion, size: tuple[int, int]) -> None:
+    def __init__(self, motion: FilmData, size: tuple[int, int]) -> None:
         look = {"show_edges": True, "edge_color": "#30343a", "line_width": 0.5, "edge_opacity": 0.35}
         super().__init__(motion, size, motion.near, lighting=False, **look)
         self._put(self.surface, motion.fields.points, motion.colours(0))
@@ -111,19 +114,19 @@ class CloseView(_View):
         return self._picture()
 
 
-def needed_height(motion: Motion, size: tuple[int, int]) -> float:
+def needed_height(motion: FilmData, size: tuple[int, int]) -> float:
     """Return the height, m, of a picture of ``size`` pixels that shows the whole rod."""
     low, high = _corners(motion)
     across, up = (high - low)[[0, 2]] + 2 * MARGIN * motion.span
     return float(max(up, across * size[1] / size[0]))
 
 
-def _corners(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
+def _corners(motion: FilmData) -> tuple[np.ndarray, np.ndarray]:
     points = motion.fields.points[motion.rod_nodes]
     return points.min(axis=0), points.max(axis=0)
 
 
-def _surface(motion: Motion) -> pyvista.PolyData:
+def _surface(motion: FilmData) -> pyvista.PolyData:
     import pyvista
 
     cells = {pyvista.CellType.HEXAHEDRON: motion.fields.cells}
@@ -131,7 +134,7 @@ def _surface(motion: Motion) -> pyvista.PolyData:
     return grid.extract_surface(pass_pointid=True, pass_cellid=True, algorithm="dataset_surface")
 
 
-def _add_plane(plotter: Any, motion: Motion) -> None:
+def _add_plane(plotter: Any, motion: FilmData) -> None:
     """Draw a rigid barrier as a grey slab; a meshed one is drawn as it is."""
     import pyvista
 

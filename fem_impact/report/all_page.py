@@ -4,26 +4,32 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from html import escape
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from fem_impact.errors import ResultError
-from fem_impact.outcome import Outcome
-from fem_impact.output import make_directory, read_text, write_text
-from fem_impact.report.conclusions import conclusion_section, conclusion_text, conclusions
-from fem_impact.report.embed import data_link
-from fem_impact.report.findings import findings_section, read_findings
-from fem_impact.report.html import Markup, details, join, section, table
-from fem_impact.report.misses import misses_section
-from fem_impact.report.page import page, sources
+from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.report.findings import (
+    figure_id,
+    findings_section,
+    miss_sentence,
+    misses_section,
+    read_findings,
+)
+from fem_impact.report.html import Markup, bullets, details, join, section, table
+from fem_impact.report.page import data_link, page, sources
+from fem_impact.report.sections import card
 from fem_impact.report.study_data import STUDY_SCHEMA, Study, read_study
 from fem_impact.report.study_page import comparison_part, partition_part
-from fem_impact.report.tables import card
-from fem_impact.report.verdicts import marker_section, verdict_section, verdicts
+from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_section, verdicts
 
-__all__ = ["write_all"]
+__all__ = ["Conclusion", "conclusion_section", "conclusion_text", "conclusions", "write_all"]
+
 
 LEDGER, RECORD = "runs.csv", "outcome.json"
 SETS_COMMAND = "<p>Measured sets, and what follows from them below: <code>fem-impact study sets</code></p>"
@@ -169,3 +175,44 @@ def _footer(sets: Study | None) -> str:
         return "Versions and dates of the runs stand in the ledger."
     versions = ", ".join(f"{name} {version}" for name, version in sets.rows[0].provenance.versions.items())
     return f"Computed with {versions}; dates of the runs stand in the ledger."
+
+
+class Conclusion(NamedTuple):
+    """A sentence, and where its figure is: in the page, and as a file beside the report."""
+
+    sentence: str
+    figure: str = ""
+    file: str = ""
+
+
+def conclusions(told: Mapping[Path, Mapping[str, Any]], sets: Study | None) -> list[Conclusion]:
+    """Return what the measured sets come to, then what each study concludes."""
+    found = _of_sets(sets) if sets else []
+    for folder, held in told.items():
+        for entry in held["conclusions"]:
+            file = f"../{folder.name}/figures/{entry['name']}.png"
+            found.append(Conclusion(entry["sentence"], figure_id(held["study"], entry["name"]), file))
+    return found
+
+
+def _of_sets(sets: Study) -> list[Conclusion]:
+    rows: Sequence[Outcome] = [row for row in sets.rows if not isinstance(row.contact.markers.V_n, Unknown)]
+    judged = [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(sets.rows)]
+    more = [marker_sentence(rows), miss_sentence(sets.explanations) if sets.explanations else ""]
+    return judged + [Conclusion(sentence) for sentence in more if sentence]
+
+
+def conclusion_section(found: Sequence[Conclusion]) -> Markup:
+    """Return the page of conclusions, each linked to its figure."""
+    return section("Conclusions", bullets(_linked(one) for one in found))
+
+
+def _linked(one: Conclusion) -> Markup:
+    link = f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else ""
+    return Markup(escape(one.sentence) + link)
+
+
+def conclusion_text(found: Sequence[Conclusion]) -> str:
+    """Return the same as Markdown, nothing when there is none."""
+    lines = [f"- {one.sentence}" + (f" ([figure]({one.file}))" if one.file else "") for one in found]
+    return "\n".join(["## Conclusions", "", *lines]) if lines else ""

@@ -6,26 +6,28 @@ from functools import partial
 from html import escape
 from pathlib import Path
 
-from fem_impact.figures import partition_figure
+from fem_impact.figures.partition import partition_figure
 from fem_impact.figures.style import percent
-from fem_impact.heating import ASSUMPTIONS
-from fem_impact.outcome import KEY_TABLE, KEYS, Key, Outcome, Unknown, or_none
-from fem_impact.output import make_directory, read_text
-from fem_impact.report.effects import effects_section
-from fem_impact.report.embed import picture
-from fem_impact.report.html import (
-    Markup,
-    bullets,
-    details,
-    join,
-    number,
-    paragraph,
-    section,
-    table,
+from fem_impact.files.atomic import make_directory, read_text
+from fem_impact.outcome.keys import Key, Unknown, or_none
+from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
+from fem_impact.physics.flash import ASSUMPTIONS
+from fem_impact.report.html import Markup, bullets, details, join, number, paragraph, section, table
+from fem_impact.report.page import page, picture, sources
+from fem_impact.report.sections import (
+    all_keys,
+    card,
+    contacts_table,
+    effects_section,
+    estimated,
+    film_section,
+    has_film,
+    history_figures,
+    key_table,
+    notices,
+    strangers,
+    unknown,
 )
-from fem_impact.report.page import page, sources
-from fem_impact.report.sections import film_section, has_film, history_figures, notices, strangers
-from fem_impact.report.tables import all_keys, card, contacts_table, estimated, key_table, unknown
 
 __all__ = ["run_page"]
 

@@ -9,10 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import ResultError
-from fem_impact.outcome import Outcome
-from fem_impact.output import COMPARISON, read_text
+from fem_impact.files.atomic import read_text
+from fem_impact.outcome.record import Outcome
+from fem_impact.tables.csv import COMPARISON
 
 __all__ = ["STUDY_SCHEMA", "Study", "read_study"]
+
 
 STUDY_SCHEMA = "fem-impact/study/1"
 TOLD = {
@@ -37,7 +39,7 @@ class Study:
     notes : tuple of str
         Sentences of the study, such as the friction rule.
     explanations : tuple of mappings
-        What could explain a quantity outside its interval (`fem_impact.study.sensitivity.explanations`).
+        What could explain a quantity outside its interval (`fem_impact.study.inputs.explanations`).
     sensitivity : tuple of mappings
         What each changed input does: ``set``, ``quantity``, ``input``, ``base``, ``changed``.
     """

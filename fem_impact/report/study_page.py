@@ -8,17 +8,18 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from fem_impact.figures import comparison_figure, study_partition_figure
+from fem_impact.figures.partition import comparison_figure, study_partition_figure
 from fem_impact.figures.style import percent
-from fem_impact.outcome import KEY_TABLE, EnergyShare, Outcome, RunCost, Unknown, or_none, shares
-from fem_impact.output import make_directory
-from fem_impact.report.embed import download, picture
+from fem_impact.files.atomic import make_directory
+from fem_impact.outcome.groups import RunCost
+from fem_impact.outcome.keys import Unknown, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.shares import EnergyShare, shares
+from fem_impact.report.findings import misses_section
 from fem_impact.report.html import Markup, bullets, cell, details, join, number, section, table
-from fem_impact.report.misses import misses_section
-from fem_impact.report.page import page, sources
-from fem_impact.report.sections import has_film, history_figures, notices
+from fem_impact.report.page import download, page, picture, sources
+from fem_impact.report.sections import card, estimated, has_film, history_figures, notices, sentences, unknown
 from fem_impact.report.study_data import Study, read_study
-from fem_impact.report.tables import card, estimated, sentences, unknown
 
 __all__ = ["comparison_part", "draw_study", "partition_part", "study_page"]
 

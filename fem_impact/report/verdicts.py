@@ -10,12 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.figures.lines import Panel, Series, lines_figure
-from fem_impact.outcome import KEY_TABLE, Outcome, Unknown, known
-from fem_impact.report.embed import download, picture
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.report.html import Markup, join, number, paragraph, place, section, table
+from fem_impact.report.page import download, picture
 from rigid.experiments import measured_set
 
 __all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
+
 
 MOMENTS = (KEY_TABLE["e_m_paper"], KEY_TABLE["e_m_edge"], KEY_TABLE["e_m_impulse"])
 MARKED = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from fem_impact.errors import ResultError
-from fem_impact.output import write_text
+from fem_impact.files.atomic import write_text
 from fem_impact.report.findings import findings_section, read_findings
 from fem_impact.report.page import page, sources
 from fem_impact.report.run_page import run_page

@@ -12,6 +12,7 @@ from fem_impact.scene.units import parse_number
 
 __all__ = ["check_choice", "check_id", "check_numbers", "check_text"]
 
+
 _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
 
 

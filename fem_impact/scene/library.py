@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import tomllib
 from difflib import get_close_matches
 from functools import cache
@@ -10,12 +9,13 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.types import Material, Scene, Surface
+from fem_impact.scene.types import Material, Surface
 from fem_impact.scene.units import parse_quantity
 
-__all__ = ["load", "material", "materials", "proposal", "shipped", "source_of", "surface", "surfaces"]
+__all__ = ["material", "materials", "proposal", "shipped", "source_of", "surface", "surfaces"]
+
 
 _DATA = files("fem_impact.scene").joinpath("data")
 
@@ -23,26 +23,6 @@ _DATA = files("fem_impact.scene").joinpath("data")
 def shipped() -> tuple[str, ...]:
     """Return the ids of the shipped scenes: the measured sets in the paper's order, then the others."""
     return tuple(_table("scenes.toml")["order"])
-
-
-def load(id_or_path: str | Path) -> Scene:
-    """Return a shipped scene by its id, or read a scene file.
-
-    Raises
-    ------
-    UsageError
-        For an unknown id or a missing file.
-    SceneError
-        For any mistake in the file.
-    """
-    name = os.fspath(id_or_path)
-    if name in shipped():
-        return _shipped(name)
-    if not _looks_like_a_file(name):
-        raise UsageError(
-            "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
-        )
-    return Scene.from_toml(name)
 
 
 def stated(name: str) -> dict[str, Any]:
@@ -96,17 +76,6 @@ def proposal(path: Path) -> str:
 
 def _near(name: str) -> str:
     return did_you_mean(name, shipped(), "`fem-impact scenes` lists the shipped scenes.")
-
-
-def _looks_like_a_file(name: str) -> bool:
-    return name.endswith(".toml") or "/" in name or os.sep in name or os.path.lexists(name)
-
-
-@cache
-def _shipped(name: str) -> Scene:
-    from fem_impact.scene.read import read_dict
-
-    return read_dict(stated(name), f"shipped scene {name}")
 
 
 def _material(name: str, table: dict[str, Any]) -> Material:

@@ -3,16 +3,30 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from math import isclose
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from fem_impact.errors import SceneError, UsageError
-from fem_impact.scene import library
-from fem_impact.scene.sections import read_scene
-from fem_impact.scene.types import Scene
+from fem_impact.effects.registry import AUTO, check_effects
+from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.scene import fields, library
+from fem_impact.scene.fields import Field
+from fem_impact.scene.types import (
+    Accuracy,
+    Barrier,
+    Heating,
+    Impact,
+    Material,
+    ProjectileSpec,
+    Save,
+    Scene,
+    Surface,
+)
+from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
-__all__ = ["read_dict", "read_toml"]
+__all__ = ["read_dict", "read_scene", "read_toml"]
+
 
 _LARGEST_FILE = 1_000_000
 _TOML = 'A scene is a TOML file: key = value lines under [section] headings, text in "quotes".'
@@ -56,3 +70,200 @@ def _parse(text: str, source: str) -> dict[str, Any]:
         return tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise SceneError(f"is not readable as TOML: {error}.", source=source, remedy=_TOML) from None
+
+
+ROD = ("length", "diameter", "tip_radius")
+T = TypeVar("T")
+Table = Mapping[str, Any]
+_TOP = (
+    "id",
+    "title",
+    "measured",
+    "restitution",
+    "effects",
+    "projectile",
+    "barrier",
+    "surface",
+    "impact",
+    "accuracy",
+    "save",
+    "heating",
+)
+
+
+def read_scene(data: Table) -> Scene:
+    """Make a scene from its tables; keys in messages are dotted from the top."""
+    if not isinstance(data, Mapping):
+        raise SceneError("a scene must be a table of tables.", value=data)
+    _check_keys(data, _TOP)
+    effects = check_effects(data.get("effects", AUTO))
+    scene = Scene(
+        id=_needed(data, "id"),
+        title=data.get("title", data["id"]),
+        projectile=_within(data, "projectile", _projectile),
+        barrier=_within(data, "barrier", _barrier),
+        surface=_within(data, "surface", _surface) if _touches(data, effects) else _frictionless(),
+        impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
+        effects=effects,
+        accuracy=_within(data, "accuracy", _accuracy, {}),
+        save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
+        heating=_within(data, "heating", lambda t: Heating(**_numbers(t, fields.HEATING)), {}),
+        measured=data.get("measured"),
+        restitution=_restitution(data),
+    )
+    _check_measured(scene)
+    return scene
+
+
+def _check_measured(scene: Scene) -> None:
+    """Refuse the name of a measured set beside another rod or angle: its arms and results are not theirs."""
+    if scene.measured is None:
+        return
+    stated, rod = library.stated(scene.measured), scene.projectile
+    its = _projectile(stated["projectile"])
+    pairs = {f"projectile.{key}": (getattr(rod, key), getattr(its, key)) for key in ROD}
+    angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
+    pairs["impact.angle"] = (scene.impact.angle, angle)
+    other = [key for key, (a, b) in pairs.items() if not isclose(a, b, rel_tol=1e-3)]
+    other += ["projectile.tip"] if rod.tip != its.tip else []
+    if other:
+        raise SceneError(
+            f"names a set that was measured with another {' and '.join(other)}.",
+            key="measured",
+            value=scene.measured,
+            remedy='Leave out "measured".',
+        )
+
+
+def _restitution(data: Table) -> float | None:
+    return parse_number(data["restitution"], "restitution") if "restitution" in data else None
+
+
+def _touches(data: Table, effects: tuple[str, ...]) -> bool:
+    named = "friction" in effects or (AUTO in effects and "-friction" not in effects)
+    return "surface" in data or named
+
+
+def _frictionless() -> Surface:
+    return Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
+
+
+def _projectile(table: Table) -> ProjectileSpec:
+    words = ("tip", "material")
+    plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
+    numbers = _numbers(table, fields.PROJECTILE, words, plain)
+    return ProjectileSpec(
+        tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers
+    )
+
+
+def _barrier(table: Table) -> Barrier:
+    _check_keys(table, ("material",))
+    return Barrier(_within(table, "material", _material))
+
+
+def _accuracy(table: Table | str) -> Accuracy:
+    """Read a mesh, or a wanted error written alone or as the key ``target``."""
+    if isinstance(table, str):
+        return Accuracy(target=parse_share(table, ""))
+    numbers = _numbers(table, fields.ACCURACY, ("element", "target"))
+    if "element" in table:
+        numbers["element"] = table["element"]
+    if "target" not in table:
+        return Accuracy(**numbers)
+    for key in fields.MESH:
+        if key in table:
+            raise SceneError(
+                "stands beside a target, which chooses the mesh.", key=key, remedy="Keep one of the two."
+            )
+    return Accuracy(**numbers, target=parse_share(table["target"], "target"))
+
+
+def _material(table: Table | str) -> Material:
+    if isinstance(table, str):
+        return library.material(table)
+    numbers = _numbers(table, fields.MATERIAL, ("name",))
+    made = Material(name=_needed(table, "name"), **numbers)
+    known = library.materials().get(made.name)
+    if known is not None and known != made:
+        raise SceneError(
+            "is the name of a shipped material with other values.",
+            key="name",
+            value=made.name,
+            remedy="Give a changed material a name of its own.",
+        )
+    return made
+
+
+def _surface(table: Table) -> Surface:
+    state = _needed(table, "state")
+    if state == "custom":
+        return _custom_surface(table)
+    _check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE)))
+    known = library.surface(state)
+    for key, value in table.items():
+        if value != getattr(known, key):
+            raise SceneError(
+                f"is not the value of a {state} surface ({getattr(known, key)}).",
+                key=key,
+                value=value,
+                remedy='Leave it out, or write state = "custom" with your own friction and its source.',
+            )
+    return known
+
+
+def _custom_surface(table: Table) -> Surface:
+    f = _needed(table, "friction")
+    numbers = _numbers(table, fields.SURFACE, ("state", "source"), {"friction_low": f, "friction_high": f})
+    return Surface(state="custom", source=_needed(table, "source"), **numbers)
+
+
+def _numbers(
+    table: Table, wanted: tuple[Field, ...], words: Iterable[str] = (), instead: Table | None = None
+) -> dict[str, Any]:
+    """Read the numbers of one table: each with its unit, as its SI key, or left to its default."""
+    keys = [f.key for f in wanted]
+    _check_keys(table, [*words, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*words, *keys])
+    return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
+
+
+def _number(table: Table, field: Field, default: Any) -> Any:
+    if field.si_key and field.si_key in table:
+        if field.key in table:
+            raise SceneError(
+                f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
+            )
+        return parse_number(table[field.si_key], field.si_key)
+    if field.key not in table:
+        return default if default is not None else _needed(table, field.key)
+    value = table[field.key]
+    if field.dimension:
+        return parse_quantity(value, field.dimension, field.key)
+    parse_number(value, field.key)
+    return value
+
+
+def _within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:
+    """Read one sub-table and place its complaints below its key."""
+    table = data.get(key, default) if default is not None else _needed(data, key)
+    if not isinstance(table, Mapping) and not (key in ("material", "accuracy") and isinstance(table, str)):
+        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
+    try:
+        return read(table)
+    except SceneError as error:
+        raise error.under(key) from None
+
+
+def _needed(table: Table, key: str) -> Any:
+    if key not in table:
+        raise SceneError(
+            "is missing.", key=key, remedy="`fem-impact scenes` lists complete scenes to start from."
+        )
+    return table[key]
+
+
+def _check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) -> None:
+    for key in table:
+        if key not in known:
+            remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
+            raise SceneError("is not a known key.", key=str(key), remedy=remedy)

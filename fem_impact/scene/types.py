@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, get_args
 
+from fem_impact.effects.registry import check_effects
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_id, check_numbers, check_text
-from fem_impact.scene.effect_names import check_effects
 
 __all__ = [
     "MEASURED_SETS",
@@ -23,11 +23,12 @@ __all__ = [
     "Heating",
     "Impact",
     "Material",
-    "Projectile",
+    "ProjectileSpec",
     "Save",
     "Scene",
     "Surface",
 ]
+
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
@@ -59,7 +60,7 @@ class Material:
 
 
 @dataclass(frozen=True, slots=True)
-class Projectile:
+class ProjectileSpec:
     """The rod: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge), plain or added."""
 
     length: float
@@ -188,7 +189,7 @@ class Scene:
 
     id: str
     title: str
-    projectile: Projectile
+    projectile: ProjectileSpec
     barrier: Barrier
     surface: Surface
     impact: Impact
@@ -212,7 +213,7 @@ class Scene:
     @property
     def active(self) -> tuple[str, ...]:
         """Names of the effects in the model: those that are listed, or those that ``auto`` chooses."""
-        from fem_impact.effects import active
+        from fem_impact.plan.choose import active
 
         return active(self)
 
@@ -250,7 +251,7 @@ class Scene:
 
     def replace(self, key: str, value: Any) -> Scene:
         """Return a copy with one dotted key changed, such as ``("accuracy.tip_size", "0.5 mm")``."""
-        from fem_impact.scene.replace import replace
+        from fem_impact.scene.shipped import replace
 
         return replace(self, key, value)
 
@@ -263,7 +264,7 @@ def _check_tip_name(tip: str) -> None:
     check_choice(tip, tuple(SHAPES), "tip")
 
 
-def _check_tip(rod: Projectile) -> None:
+def _check_tip(rod: ProjectileSpec) -> None:
     if rod.tip_radius > rod.diameter / 2:
         raise SceneError(
             f"is larger than the rod's radius ({rod.diameter * 500:g} mm).",

@@ -21,6 +21,7 @@ __all__ = [
     "parse_share",
 ]
 
+
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
 _LONGEST = 64

@@ -10,42 +10,40 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import NDArray
 
-from fem_impact.effects.spec import ModelSpec
+from fem_impact.arrays import Array, Ints
+from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.estimates import projectile
-from fem_impact.modes import MassStiffness, rod_modes
-from fem_impact.solid.body import Body, make_body, nose_and_whole, slices_of, stiffness_of
-from fem_impact.solid.contact import STEEP, PlaneContact, SurfaceContact, make_patch
+from fem_impact.fem.body import MeshedBody, make_body, nose_and_whole, slices_of, stiffness_of
+from fem_impact.fem.eigen import MassStiffness, rod_modes
+from fem_impact.fem.geometry import HEAVY, Geometry, build_geometry, levels_of
+from fem_impact.fem.hexmodes import dummy_element
+from fem_impact.fem.layout import DofLayout, MassPoints, number
+from fem_impact.fem.sparse import Hanging, NodeProduct, assemble_mass, tie_operator
+from fem_impact.fem.stable import stable_step
+from fem_impact.physics.contact import projectile
+from fem_impact.physics.hardening import Hardening
+from fem_impact.solid.contact.patch import STEEP, make_patch
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
-from fem_impact.solid.geometry import HEAVY, Geometry, build_geometry, levels_of
-from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import Force, Impulse
-from fem_impact.solid.layout import Layout, number
-from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble_mass, tie_operator
-from fem_impact.solid.stable import stable_step
 from meshes import SKIN, HexMesh
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
-    from fem_impact.solid.damping import ModalDamping
+    from fem_impact.scene.types import Scene
+    from fem_impact.solid.elastic import ModalDamping
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
     from fem_impact.solid.yielding import YieldingZone
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
 
 START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
 PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 
-def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: Layout) -> list[Body]:
+def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: DofLayout) -> list[MeshedBody]:
     rod, barrier = geometry.rod.mesh, geometry.barrier
     yields = geometry.may_yield["rod"] & (spec.rod_law is not None)
     steel, kind = scene.projectile.material, scene.accuracy.element
@@ -70,7 +68,7 @@ def skin_weight(barrier: HexMesh, h: float) -> Array:
     return np.asarray(np.maximum(1.0, HEAVY * h / np.ptp(z, axis=1)) ** 2)
 
 
-def _complete_mass(rod: Body, geometry: Geometry, scene: Scene, rest: float) -> None:
+def _complete_mass(rod: MeshedBody, geometry: Geometry, scene: Scene, rest: float) -> None:
     """Give the nose's cells what their flat faces cut off the round skin: the true mass of the rod."""
     nose = np.ones(len(rod.mass), dtype=bool)
     nose[geometry.rod.body_cells] = False
@@ -85,13 +83,13 @@ def _rest_mass(scene: Scene, geometry: Geometry) -> float:
     return rest_mass(geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
 
 
-def _place_rest(mass: Array, scene: Scene, geometry: Geometry, layout: Layout) -> None:
+def _place_rest(mass: Array, scene: Scene, geometry: Geometry, layout: DofLayout) -> None:
     from fem_impact.solid.rigid_rest import POINTS
 
     mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
 
 
-def assemble_masses(bodies: list[Body], layout: Layout) -> Array:
+def assemble_masses(bodies: list[MeshedBody], layout: DofLayout) -> Array:
     """Return the lumped masses (size,), kg."""
     mass = np.zeros(layout.size)
     for body in bodies:
@@ -100,7 +98,7 @@ def assemble_masses(bodies: list[Body], layout: Layout) -> Array:
     return mass
 
 
-def invert(mass: Array, bodies: list[Body]) -> Array:
+def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
     """Invert; nothing moves through the symmetry plane."""
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
     for body in bodies:
@@ -109,7 +107,7 @@ def invert(mass: Array, bodies: list[Body]) -> Array:
 
 
 def _start(
-    bodies: list[Body], layout: Layout, scene: Scene, mass: Array, drawn: MassPoints
+    bodies: list[MeshedBody], layout: DofLayout, scene: Scene, mass: Array, drawn: MassPoints
 ) -> tuple[Array, Array]:
     """Return positions and velocities of the masses at time 0; omega turns n towards t."""
     x, v = np.zeros(layout.size), np.zeros(layout.size)
@@ -127,7 +125,13 @@ def _start(
 
 
 def _elastic_rod(
-    body: Body, geometry: Geometry, layout: Layout, mass: Array, x: Array, drawn: MassPoints, spec: ModelSpec
+    body: MeshedBody,
+    geometry: Geometry,
+    layout: DofLayout,
+    mass: Array,
+    x: Array,
+    drawn: MassPoints,
+    spec: ModelSpec,
 ) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
     n, free = layout.rod_size, body.places[~body.mesh.is_hanging]
     nose, whole = nose_and_whole(body, geometry.rod, drawn, layout)
@@ -141,7 +145,7 @@ def _elastic_rod(
     return ElasticRod(slices, drawn, product, frame, layout, np.zeros(n), np.zeros(n)), whole
 
 
-def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
+def _rest(geometry: Geometry, layout: DofLayout, mass: Array) -> RigidRest:
     """Return the rigid body behind the nose: the nose's last section and the points behind it."""
     from fem_impact.solid.rigid_rest import POINTS, RigidRest
 
@@ -150,13 +154,13 @@ def _rest(geometry: Geometry, layout: Layout, mass: Array) -> RigidRest:
 
 
 def elastic_block(
-    body: Body, layout: Layout, x: Array, effect: str = "barrier-elastic"
+    body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic"
 ) -> tuple[ElasticBlock, sp.csr_matrix, tuple[sp.dia_matrix, Array]]:
     """Return the block's linear part, the stiffness of all its cells, and the half-space around it.
 
     That is springs and dashpots.
     """
-    from fem_impact.solid.boundary import spread_boundary
+    from fem_impact.fem.boundary import spread_boundary
 
     place = layout.barrier_slice
     shifted = body.places - place.start
@@ -173,9 +177,9 @@ def elastic_block(
 
 
 def _block(
-    barrier: list[Body],
+    barrier: list[MeshedBody],
     spec: ModelSpec,
-    layout: Layout,
+    layout: DofLayout,
     x: Array,
     inverse_mass: Array,
     share: float,
@@ -191,8 +195,8 @@ def _block(
 
 
 def dashpots(
-    body: Body,
-    layout: Layout,
+    body: MeshedBody,
+    layout: DofLayout,
     inverse_mass: Array,
     whole: sp.csr_matrix,
     outside: tuple[sp.dia_matrix, Array],
@@ -201,7 +205,7 @@ def dashpots(
 
     ``whole`` is the stiffness of all its cells, ``outside`` springs and dashpots of the half-space around it.
     """
-    from fem_impact.solid.boundary import radiating_share
+    from fem_impact.fem.boundary import radiating_share
 
     (springs, pots), place, m = outside, layout.barrier_slice, body.material
     nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
@@ -213,7 +217,7 @@ def dashpots(
     return Dashpots(places, damping[places - place.start], inverse_mass[places])
 
 
-def yielding_zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
+def yielding_zone(body: MeshedBody, law: Hardening, layout: DofLayout) -> YieldingZone:
     """Return the cells that may yield as one item."""
     from fem_impact.solid.yielding import YieldingZone
 
@@ -221,7 +225,7 @@ def yielding_zone(body: Body, law: Hardening, layout: Layout) -> YieldingZone:
     return YieldingZone.of(body.name, body.places[cells], body.points[cells], m.E, m.nu, law, layout.dummy)
 
 
-def facing_skin(body: Body) -> Ints:
+def facing_skin(body: MeshedBody) -> Ints:
     """Return the skin quads (m, 4) of the finest cells, all nodes free, facing the other body."""
     quads = body.mesh.faces_with(SKIN)
     corners = body.points[quads]
@@ -235,7 +239,7 @@ def facing_skin(body: Body) -> Ints:
 
 
 def _contact(
-    bodies: list[Body], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array
+    bodies: list[MeshedBody], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array
 ) -> PlaneContact | SurfaceContact:
     f = spec.friction or 0.0
     if len(bodies) == 1:
@@ -247,7 +251,7 @@ def _contact(
 
 
 def surface_contact(
-    bodies: list[Body], inverse_mass: Array, f: float, h: float, x: Array, conforming: bool
+    bodies: list[MeshedBody], inverse_mass: Array, f: float, h: float, x: Array, conforming: bool
 ) -> SurfaceContact:
     """Return the contact of a rod's skin with a barrier's, whose cells are ``h`` m wide there."""
     rod, barrier = (make_patch(facing_skin(body), body.places, body.points) for body in bodies)
@@ -256,7 +260,9 @@ def surface_contact(
     return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, PLAY * h, BAND * h, x)
 
 
-def _weight(gravity: float, alpha: float, mass: Array, x: Array, rod: Body, layout: Layout) -> Weight:
+def _weight(
+    gravity: float, alpha: float, mass: Array, x: Array, rod: MeshedBody, layout: DofLayout
+) -> Weight:
     down = np.zeros((len(rod.places), 3))
     down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
     direction = np.zeros(layout.size)
@@ -274,7 +280,7 @@ def _damping(
     free: Ints,
     steps: Mapping[str, float],
 ) -> ModalDamping:
-    from fem_impact.solid.damping import ModalDamping
+    from fem_impact.solid.elastic import ModalDamping
 
     n = K.shape[0]
     modes = rod_modes(K, mass[:n], inverse_mass[:n] == 0)

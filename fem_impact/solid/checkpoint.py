@@ -1,8 +1,7 @@
-"""Checkpoints: everything that moves in a run, in one file that is whole or not there.
+"""What moves in a run: every holder names it, and one place takes it out and puts it back.
 
-The file is a mark of 8 bytes, the SHA-256 of the rest, and an archive of plain arrays (npz, never objects).
-Saved after the forces of a step are known, so a run goes on with the kick of that step. Of the step at which
-a run ends there is none: one killed while it writes its results would go on past its end.
+An item or observer declares ``moving``, the names of its attributes that a run changes and that later steps
+read. What each step sets anew before it is read (work space) is left out.
 """
 
 from __future__ import annotations
@@ -14,16 +13,66 @@ import zlib
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
+from operator import attrgetter
 from pathlib import Path
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.output import write_bytes
-from fem_impact.solid.moving import Moving, put_back, take_out
+from fem_impact.files.atomic import write_bytes
 from fem_impact.solid.state import State
 
-__all__ = ["INTERVAL", "Checkpoint"]
+__all__ = ["INTERVAL", "Checkpoint", "Moving", "put_back", "take_out"]
+
+
+class Moving(Protocol):
+    """Anything whose moving part can be stored; () when nothing moves.
+
+    A name may be dotted (``book.friction``) and stands for an array, a number, or a property that takes what
+    it gave.
+    """
+
+    moving: ClassVar[tuple[str, ...]]
+
+
+def take_out(holders: Mapping[str, Moving]) -> dict[str, np.ndarray]:
+    """Return copies of everything that moves, by holder and name."""
+    return {
+        f"{key}/{name}": np.array(attrgetter(name)(holder))
+        for key, holder in holders.items()
+        for name in holder.moving
+    }
+
+
+def put_back(holders: Mapping[str, Moving], stored: Mapping[str, np.ndarray]) -> None:
+    """Set everything that moves.
+
+    Raises
+    ------
+    ValueError
+        If ``stored`` holds other names, shapes or types than these holders have.
+    """
+    wanted = [(key, name) for key, holder in holders.items() for name in holder.moving]
+    if {f"{key}/{name}" for key, name in wanted} != set(stored):
+        raise ValueError("holds other parts than this run.")
+    for key, name in wanted:
+        *path, last = name.split(".")
+        owner = attrgetter(".".join(path))(holders[key]) if path else holders[key]
+        _set(owner, last, stored[f"{key}/{name}"])
+
+
+def _set(owner: Any, name: str, value: np.ndarray) -> None:
+    now = getattr(owner, name)
+    if isinstance(getattr(type(owner), name, None), property):
+        setattr(owner, name, value)
+    elif not isinstance(now, np.ndarray):
+        setattr(owner, name, type(now)(value.item()))
+    elif value.shape != now.shape or value.dtype != now.dtype:
+        raise ValueError(f"holds {name} of the shape {value.shape}, not {now.shape}.")
+    else:
+        now[...] = value
+
 
 INTERVAL = 30.0  # s of wall time between checkpoints
 _MARK = b"fem-ckp1"

@@ -16,10 +16,9 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.kernels import kernel
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.kernels import kernel
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Counts = NDArray[np.uint32]
 
 

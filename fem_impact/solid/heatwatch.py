@@ -6,16 +6,14 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.solid.contact import PlaneContact, SurfaceContact
+from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.book import IMPULSE_T
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 WINDOW = 0.5e-6  # s over which powers and patches are means: nodes come and go within steps
 

@@ -13,7 +13,7 @@ from fem_impact.solid.state import State
 class Item(Protocol):
     """A part of the model that may hold energy or take it away.
 
-    ``moving`` names what a checkpoint must keep, see :mod:`~fem_impact.solid.moving`.
+    ``moving`` names what a checkpoint must keep, see :mod:`~fem_impact.solid.checkpoint`.
     """
 
     moving: ClassVar[tuple[str, ...]]

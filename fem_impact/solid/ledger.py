@@ -11,12 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_impact.arrays import Array
 from fem_impact.solid.items import Item
 from fem_impact.solid.state import State
-
-Array = NDArray[np.float64]
 
 # the accounts of every ledger, 0 where the effect is off; own items may add others
 ACCOUNTS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Protocol
 
-from fem_impact.solid.kernels import kernel
+from fem_impact.fem.kernels import kernel
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 

@@ -7,24 +7,23 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.modes import MassStiffness
-from fem_impact.solid.contact import ContactBook, PlaneContact, SurfaceContact
+from fem_impact.arrays import Array
+from fem_impact.fem.eigen import MassStiffness
+from fem_impact.fem.geometry import Geometry
+from fem_impact.fem.layout import DofLayout, MassPoints
+from fem_impact.fem.sparse import Hanging
+from fem_impact.solid.contact.book import ContactBook
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
-from fem_impact.solid.geometry import Geometry
 from fem_impact.solid.items import Force, Impulse, Item
-from fem_impact.solid.layout import Layout
 from fem_impact.solid.ledger import Ledger
-from fem_impact.solid.masspoints import MassPoints
-from fem_impact.solid.sparse import Hanging
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
     from fem_impact.solid.rigid_rest import ElasticNose
     from fem_impact.solid.yielding import YieldingZone
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,7 +48,7 @@ class Model:
     """
 
     geometry: Geometry
-    layout: Layout
+    layout: DofLayout
     mass: Array
     inverse_mass: Array
     drawn: MassPoints

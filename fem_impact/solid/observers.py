@@ -8,18 +8,16 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.output import FieldWriter, HistoryWriter
+from fem_impact.arrays import Array
+from fem_impact.files.fields_write import FieldWriter
 from fem_impact.progress import Progress
-from fem_impact.solid.contact.book import ACTIVE
-from fem_impact.solid.fields import Fields
+from fem_impact.solid.contact.book import ACTIVE, ContactBook
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.model import Model
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.state import State
-
-Array = NDArray[np.float64]
+from fem_impact.tables.growing import HistoryWriter
 
 GROWTH = 1e-2  # of E_0, made from nothing: the run is unstable and stops
 
@@ -78,7 +76,7 @@ class History:
 
     moving: ClassVar[tuple[str, ...]] = ("last_time", "last_impulse", "writer.size")
     model: Model
-    view: RodView
+    view: RodState
     watch: Watch
     writer: HistoryWriter
     every: int
@@ -109,7 +107,7 @@ class Frames:
     """Appends a frame of the fields at even times."""
 
     moving: ClassVar[tuple[str, ...]] = ("due", "writer.frames")
-    fields: Fields
+    fields: FieldSampler
     writer: FieldWriter
     interval: float
     every: int = 10
@@ -124,7 +122,7 @@ class Frames:
 
 
 @dataclass(slots=True)
-class Meter:
+class ProgressObserver:
     """Tells how far the run is; the end is not known beforehand, so it gives the latest time."""
 
     moving: ClassVar[tuple[str, ...]] = ()
@@ -150,3 +148,30 @@ class Meter:
         self.begun = self.begun or (clock.monotonic(), time)
         spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
         return spent * (self.end - time) / done if done > 0.02 * self.end else None
+
+
+WINDOW = 2e-6  # s: nodes close one by one, and the impulse of a single step is noise
+
+
+@dataclass(slots=True)
+class PeakForce:
+    """Follows the normal force on the whole rod.
+
+    ``largest`` is its largest mean over `WINDOW`, N.
+    """
+
+    moving: ClassVar[tuple[str, ...]] = ("largest", "_time", "_impulse")
+    book: ContactBook
+    every: int = 1
+    largest: float = 0.0
+    _time: float = 0.0
+    _impulse: float = 0.0
+
+    def observe(self, state: State) -> bool:
+        """Close a window when it is long enough."""
+        span = state.time - self._time
+        if span >= WINDOW:
+            impulse = float(self.book.impulse[1])
+            self.largest = max(self.largest, 2 * (impulse - self._impulse) / span)
+            self._time, self._impulse = state.time, impulse
+        return False

@@ -10,8 +10,8 @@ from math import sqrt
 
 import numpy as np
 
-from fem_impact.solid.hexmodes import LANES
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.fem.hexmodes import LANES
+from fem_impact.fem.kernels import inlined, kernel
 
 SMALL = 0.01  # growth of the flow stress' base in one step up to which a few terms of its power are exact
 # scratch rows: 1 for lanes that go together, trial stress, growth, unknown and its last change, increment,

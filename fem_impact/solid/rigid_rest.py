@@ -13,15 +13,12 @@ from math import pi, sqrt
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.kernels import kernel
+from fem_impact.fem.sparse import NodeProduct
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.kernels import kernel
-from fem_impact.solid.sparse import NodeProduct
 from fem_impact.solid.state import State
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 POINTS = 2  # that stand for the cylinder behind the nose
 

@@ -9,31 +9,30 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.effects import specify
-from fem_impact.modes import Flight, RigidMotion
+from fem_impact.fem.flight import FreeVibration, RigidMotion
+from fem_impact.fem.kernels import compiled_before
+from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.plan.plan import specify
 from fem_impact.progress import Progress, compiling
-from fem_impact.run_files import CHECKPOINT
+from fem_impact.run.program import stamp
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import INTERVAL, Checkpoint
-from fem_impact.solid.doubts import doubts
-from fem_impact.solid.kernels import compiled_before
+from fem_impact.solid.doubts import doubts, skin_share
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import Meter, Watch
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.observers import ProgressObserver, Watch
+from fem_impact.solid.rodview import RodState
 from fem_impact.solid.shares import run_time_shares
-from fem_impact.solid.skinwork import skin_share
 from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
-from fem_impact.sources import stamp
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
     from fem_impact.solid.heatwatch import HeatWatch
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class LoopCost:
     """What a run took.
 
     ``wall`` and ``cpu`` are s in its time loop, ``setup_wall`` and ``setup_cpu`` around it, compiling apart.
@@ -59,27 +58,27 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     skin_share : share of the barrier's plastic work that lies right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
-    vibration_check : kinetic and strain energy of the vibration without modes, see `RodView`, J, or None
+    vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
 
     scene: Scene
     model: Model
-    view: RodView
+    view: RodState
     time: float
     steps: int
     accounts: dict[str, float]
     E_0: float
     worst: float
     motion: RigidMotion
-    flight: Flight
+    flight: FreeVibration
     skin_share: float
     peak_force: float
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
-    cost: Cost
+    cost: LoopCost
     warnings: tuple[str, ...]
     heat: HeatWatch | None = None
     shares: dict[str, float | None] = field(default_factory=dict)
@@ -111,7 +110,7 @@ def solve(
     whole = Stopwatch()
     spec = specify(scene)
     model = model or build(scene, spec)
-    view = RodView.of(model)
+    view = RodState.of(model)
     state = model.initial_state()
     looking = Watchers.of(scene, spec, model, view, out, resume)
     observers: list[Observer] = [*looking.all]
@@ -136,26 +135,28 @@ def solve(
     free = looking.stop.finished and model.rod_stiffness is not None
     check = view.vibration(state, model) if free else None
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
-    cost = Cost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
+    cost = LoopCost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
     result = _result(scene, model, view, state, looking, check, cost)
     step_time = result.cost.cpu / max(result.steps, 1)
     return replace(result, shares=run_time_shares(model, state, step_time, looking.heat))
 
 
-def _meter(progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch) -> Meter:
+def _meter(
+    progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch
+) -> ProgressObserver:
     if not compiled_before():
         progress(compiling(scene.accuracy.max_time, 20))
-    return Meter(progress, watch, model, scene.accuracy.max_time, scene.id)
+    return ProgressObserver(progress, watch, model, scene.accuracy.max_time, scene.id)
 
 
 def _result(
     scene: Scene,
     model: Model,
-    view: RodView,
+    view: RodState,
     state: State,
     looking: Watchers,
     check: tuple[float, float] | None,
-    cost: Cost,
+    cost: LoopCost,
 ) -> SolidResult:
     ledger, stop = looking.watch.ledger, looking.stop
     return SolidResult(

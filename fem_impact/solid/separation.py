@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.effects.beam import bending_period
-from fem_impact.modes import Flight, RigidMotion
-from fem_impact.solid.contact import SurfaceContact
+from fem_impact.arrays import Array
+from fem_impact.fem.flight import FreeVibration, RigidMotion
+from fem_impact.physics.beam import bending_period
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
-    from fem_impact.scene import Scene
+    from fem_impact.scene.types import Scene
 
-Array = NDArray[np.float64]
 
 HORIZON, PERIODS = 4e-3, 1.5  # s, the camera's window: 40 frames at 10 kHz; of the rod's bending, if longer
 SAMPLE = 2e-6  # s
@@ -42,7 +42,7 @@ class Separation:
 
     moving: ClassVar[tuple[str, ...]] = ()
     model: Model
-    view: RodView
+    view: RodState
     limit: float
     horizon: float = HORIZON
     tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
@@ -100,7 +100,7 @@ class Separation:
         )
 
 
-def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: Flight, t: float) -> Array:
+def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:
     """Return a copy of positions ``x`` in which nodes ``places`` (k, 3) flew on freely for a time, s."""
     moved, now = x.copy(), np.zeros(1)
     c, s, drift = np.cos(motion.Omega * t), np.sin(motion.Omega * t), (motion.V_t * t, 0.0, motion.V_n * t)
@@ -112,7 +112,9 @@ def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: Fligh
     return moved
 
 
-def flight_heights(x: Array, rows: NDArray[np.int64], motion: RigidMotion, ahead: Flight, t: Array) -> Array:
+def flight_heights(
+    x: Array, rows: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: Array
+) -> Array:
     """Return heights n (k, times), m, of nodes at x (k, 3) in free flight after times t, s."""
     shake = ahead.displacement(rows, t) - ahead.displacement(rows, np.zeros(1))
     return _rigid_heights(x - motion.centre, motion, t) + shake

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from fem_impact.solid.heatwatch import HeatWatch
     from fem_impact.solid.model import Model
 
+
 REPEATS = 5
 
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar
 
-import numpy as np
-from numpy.typing import NDArray
-
-Array = NDArray[np.float64]
+from fem_impact.arrays import Array
 
 
 @dataclass(slots=True)
 class State:
-    """Moving part of a run; all vectors are flat and numbered by :class:`~fem_impact.solid.layout.Layout`.
+    """Moving part of a run; all vectors are flat and numbered by :class:`~fem_impact.fem.layout.Layout`.
 
     Attributes
     ----------

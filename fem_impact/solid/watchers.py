@@ -8,30 +8,29 @@ from pathlib import Path
 from typing import TYPE_CHECKING, ClassVar, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.estimates import contact_estimate
-from fem_impact.output import HISTORY, FieldWriter, HistoryWriter
+from fem_impact.arrays import Array
+from fem_impact.fem.geometry import tail_corners
+from fem_impact.fem.kernels import COMPILING
+from fem_impact.files.fields_write import FieldWriter
+from fem_impact.physics.contact import contact_estimate
+from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.doubts import SkinWatch
-from fem_impact.solid.fields import Fields
-from fem_impact.solid.geometry import tail_corners
-from fem_impact.solid.kernels import COMPILING
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
-from fem_impact.solid.moving import Moving
-from fem_impact.solid.observers import Frames, History, Watch, history_column
-from fem_impact.solid.peak import PeakForce
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.observers import Frames, History, PeakForce, Watch, history_column
+from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation, horizon
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
+from fem_impact.tables.csv import HISTORY
+from fem_impact.tables.growing import HistoryWriter
 
 if TYPE_CHECKING:
-    from fem_impact.effects import ModelSpec
-    from fem_impact.scene import Scene
+    from fem_impact.effects.slots import ModelSpec
+    from fem_impact.scene.types import Scene
     from fem_impact.solid.heatwatch import HeatWatch
 
-Array = NDArray[np.float64]
 
 FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
 
@@ -94,7 +93,7 @@ class Watchers:
 
     @classmethod
     def of(
-        cls, scene: Scene, spec: ModelSpec, model: Model, view: RodView, out: Path | None, go_on: bool
+        cls, scene: Scene, spec: ModelSpec, model: Model, view: RodState, out: Path | None, go_on: bool
     ) -> Watchers:
         """Make them; ``go_on`` keeps the files of the part of the run that a checkpoint ended."""
         watch = Watch(model.ledger(), scene.save.history_every)
@@ -145,9 +144,9 @@ def _heat_watch(model: Model) -> HeatWatch:
     return HeatWatch(model)
 
 
-def _frames(scene: Scene, model: Model, view: RodView, out: Path, go_on: bool) -> Frames:
+def _frames(scene: Scene, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
     bodies = [scene.projectile.material, scene.barrier.material]
-    fields = Fields.of(model, view, [(m.E, m.nu) for m in bodies])
+    fields = FieldSampler.of(model, view, [(m.E, m.nu) for m in bodies])
     body = {"body": fields.body}
     writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
     return Frames(fields, writer, FRAMES_SPAN * contact_estimate(scene).duration / scene.save.frames)

@@ -8,20 +8,13 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.elements import lame_constants
-from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.elements import lame_constants
+from fem_impact.fem.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
+from fem_impact.physics.hardening import Hardening
 from fem_impact.solid.state import State
-from fem_impact.solid.yielding_kernel import (
-    ROWS,
-    Blocks,
-    elastic_energy,
-    subtract_nodal,
-    update,
-)
+from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 Counts = NDArray[np.uint32]
 
 

@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.hexmodes import (
+from fem_impact.arrays import Array
+from fem_impact.fem.hexmodes import (
     CORNERS,
     LANES,
     THIRD,
@@ -26,10 +27,9 @@ from fem_impact.solid.hexmodes import (
     nodal_forces,
     slope,
 )
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.fem.kernels import inlined, kernel
 from fem_impact.solid.plastic_return import RETURN_ROWS, return_map
 
-Array = NDArray[np.float64]
 Counts = NDArray[np.uint32]
 
 # scratch rows: modes of x, of the increment and of the force (21 each), then point values

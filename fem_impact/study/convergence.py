@@ -7,20 +7,21 @@ from itertools import combinations
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cost.limits import pair_limit
+from fem_impact.cost.limits import limit, pair_limit
 from fem_impact.cost.settings import FAMILY, placed
 from fem_impact.figures.lines import Panel, Series
-from fem_impact.outcome import KEY_TABLE, Key, Outcome, known
-from fem_impact.output.tables import Cell
-from fem_impact.scale import Job, Results
-from fem_impact.scene import load, replace_all
-from fem_impact.study.document import Paper, Picture, Sheet, publish
-from fem_impact.study.request import Request, StudyResult
-from fem_impact.study.richardson import limit
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import Key, known
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.study.document import Paper, Picture, Request, Sheet, StudyResult, publish
+from fem_impact.tables.csv import Cell
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
-    from fem_impact.scene import Scene
+    from fem_impact.progress import ProgressMeter
+    from fem_impact.scene.types import Scene
+
 
 Row = dict[str, Any]
 
@@ -61,7 +62,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     return [job for name in request.ids or SETS for mesh in jobs_of(name, request.quick) for job in mesh]
 
 
-def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Extrapolate every quantity of every set; write table, data and figure."""
     rows = []
     for name in request.ids or SETS:

@@ -7,17 +7,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.scale import Job, Results
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import Results
 from fem_impact.study.criterion_measure import Rods, linear_rods, rods_of
 from fem_impact.study.criterion_tell import paper
-from fem_impact.study.document import publish
-from fem_impact.study.request import Request, StudyResult
+from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, TIP, Drop, length_of
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
+    from fem_impact.progress import ProgressMeter
 
 __all__ = ["conclude", "plan"]
+
 
 GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45, 42.0)
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)
@@ -71,7 +72,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     return [Job(name, drop.scene(), "modal") for name, drop in chosen.items()]
 
 
-def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Measure what rigid theory gets wrong per rod, where it passes stated levels, and what governs it."""
     quick = request.quick
     found: dict[str, Rods] = {f.name: rods_of(drops(f, quick), results) for f in FAMILIES}

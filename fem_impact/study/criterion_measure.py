@@ -9,18 +9,18 @@ from itertools import pairwise
 from math import pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.contact_law import contact_law
-from fem_impact.estimates import projectile
-from fem_impact.outcome import Outcome, known
-from fem_impact.scale import Results
-from fem_impact.study.contact_time import contact_time
-from fem_impact.study.linear_spring import spring_drop
+from fem_impact.arrays import Array
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import projectile
+from fem_impact.physics.contact_law import contact_law
+from fem_impact.reference.free_modes import bending_modes
+from fem_impact.reference.hertz import SPAN
+from fem_impact.reference.oblique import ObliqueRod, oblique_rod
+from fem_impact.study.point_mass import contact_time, spring_drop
 from fem_impact.study.rods import BODY, Drop, length_of
-from fem_impact.verify.reference.beam import bending_modes
-from fem_impact.verify.reference.hertz import SPAN
-from fem_impact.verify.reference.oblique import ObliqueRod, oblique_rod
 from rigid import LIMIT
 
 __all__ = [
@@ -37,7 +37,6 @@ __all__ = [
     "spread_of",
 ]
 
-Array = NDArray[np.float64]
 
 LEVELS = (0.02, 0.05, 0.10)
 """Errors of e at which a rod counts as no longer rigid."""

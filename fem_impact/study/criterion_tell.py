@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from fem_impact.figures.lines import Mark, Panel, Series
-from fem_impact.outcome import Outcome, known
-from fem_impact.output.tables import Cell
-from fem_impact.scale import Results
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known
+from fem_impact.outcome.record import Outcome
 from fem_impact.study.criterion_measure import (
     LEVELS,
     Measure,
@@ -23,11 +23,13 @@ from fem_impact.study.criterion_measure import (
 )
 from fem_impact.study.document import Paper, Picture, Sheet
 from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, Drop
-from fem_impact.study.static_give_tell import give_picture, give_sheet, give_words, gives_of
+from fem_impact.study.static_give import give_picture, give_sheet, give_words, gives_of
+from fem_impact.tables.csv import Cell
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
 
 __all__ = ["paper"]
+
 
 KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 """T1/tau and worst e of elastic frictionless drops, derived independently (benchmark problem 8)."""

@@ -1,22 +1,84 @@
-"""What a study publishes: findings, sheets of numbers, pictures with their data, the ledger of every run."""
+"""What is asked of a study, and what a study is: jobs, and what follows from their results."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from fem_impact.figures.lines import Panel, lines_figure
-from fem_impact.outcome import Outcome, or_none
-from fem_impact.output import make_directory, write_table, write_text
-from fem_impact.output.tables import Cell
-from fem_impact.scale import Results
-from fem_impact.study.markdown import table
-from fem_impact.study.request import Request, StudyResult, failures_of
+from fem_impact.files.atomic import make_directory, write_text
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.tables.csv import Cell, write_table
+from fem_impact.tables.markdown import table
 
-__all__ = ["FINDINGS", "LEDGER", "Paper", "Picture", "Sheet", "publish"]
+if TYPE_CHECKING:
+    from fem_impact.progress import ProgressMeter
+
+__all__ = [
+    "FINDINGS",
+    "LEDGER",
+    "Paper",
+    "Picture",
+    "Request",
+    "Sheet",
+    "StudyResult",
+    "failures_of",
+    "publish",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What is asked of a study.
+
+    Attributes
+    ----------
+    out : Path
+        Directory of the study, with the store of its results.
+    ids : tuple of str
+        Measured sets, where the study is about them; all when empty.
+    quick : bool
+        A small version for a first look.
+    fidelity : str
+        Of the studies that leave the choice; each has its default.
+    """
+
+    out: Path
+    ids: tuple[str, ...] = ()
+    quick: bool = False
+    fidelity: str = ""
+
+    def command(self, study: str) -> str:
+        """Return the command that asks for this."""
+        options = [*self.ids, *(["--quick"] if self.quick else [])]
+        options += ["--fidelity", self.fidelity] if self.fidelity else []
+        return " ".join(["fem-impact study", study, *options])
+
+
+@dataclass(frozen=True, slots=True)
+class StudyResult:
+    """The document that study.json holds, its text for a terminal, and notes on what could not be drawn."""
+
+    document: dict[str, Any]
+    text: str
+    notes: list[str] = field(default_factory=list)
+
+
+Plan = Callable[[Request, Results], list[Job]]
+Conclude = Callable[[Request, Results, "ProgressMeter"], StudyResult]
+
+
+def failures_of(results: Results) -> list[dict[str, str]]:
+    """Return one row a failed job."""
+    failed = (result for result in results.values() if isinstance(result, Failure))
+    return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
+
 
 FINDINGS = "fem-impact/findings/1"
 LEDGER = (

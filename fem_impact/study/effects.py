@@ -10,21 +10,26 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.effects import EFFECTS, Harm, choices, everything
-from fem_impact.effects.strike import Strike, strike
-from fem_impact.estimates import widest_tip_size
-from fem_impact.outcome import Outcome, known, or_none
-from fem_impact.output.tables import Cell
-from fem_impact.scale import Job, Results
-from fem_impact.scene import BARRIERS, MEASURED_SETS, NAMES, load, replace_all
-from fem_impact.study.document import Paper, Sheet, publish
-from fem_impact.study.request import Request, StudyResult
+from fem_impact.effects.registry import BARRIERS, EFFECTS, NAMES
+from fem_impact.effects.slots import Harm
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.beam_impact import BeamImpact, strike
+from fem_impact.plan.choose import choices, everything
+from fem_impact.plan.limits import widest_tip_size
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.study.document import Paper, Request, Sheet, StudyResult, publish
+from fem_impact.tables.csv import Cell
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
-    from fem_impact.scene import Scene
+    from fem_impact.progress import ProgressMeter
+    from fem_impact.scene.types import Scene
 
 __all__ = ["DESIGNED", "conclude", "cost_row", "expected_row", "plan", "row"]
+
 
 TIP = 0.8e-3  # m; coarse: both runs of a pair share it
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
@@ -77,7 +82,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     return jobs
 
 
-def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Tell where auto differs from everything on, and what each effect costs."""
     scenes = _scenes(request)
     pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
@@ -125,7 +130,7 @@ def told(scene: Scene, effects: Sequence[str]) -> Harm:
     return Harm(after.e - before.e, after.E_vib - before.E_vib)
 
 
-def expected_row(name: str, whole: Outcome, told: Strike) -> list[Cell]:
+def expected_row(name: str, whole: Outcome, told: BeamImpact) -> list[Cell]:
     """Return e and E_vib of a run beside those of a strike; vibration as found over expected."""
     e, vib = known(whole.restitution.edge.e), known(whole.energy.vibration)
     return [name, e, told.e, vib, told.E_vib, vib / told.E_vib if told.E_vib else None]

@@ -7,17 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.outcome import Outcome, known
-from fem_impact.scale import Failure, Job, Results
-from fem_impact.study.document import publish
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known
+from fem_impact.outcome.record import Outcome
+from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.gamma_tell import Maps, first_only, paper
-from fem_impact.study.request import Request, StudyResult
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
+    from fem_impact.progress import ProgressMeter
 
 __all__ = ["conclude", "plan"]
+
 
 FINE = np.concatenate([np.arange(10.0, 60.0, 2.0), np.arange(60.0, 121.0, 10.0)])
 COARSE = np.array([10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0])
@@ -88,7 +90,7 @@ def _cut(job: Job, run: Outcome | Failure) -> Job:
     return Job(first_only(job.name), replace(job.scene, accuracy=accuracy), "modal")
 
 
-def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Draw the maps, state the difference from finite elements, resolve what second contacts give back."""
     quick = request.quick
     maps = Maps(line(quick), grid(quick), anchors(quick), results)

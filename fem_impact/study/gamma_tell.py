@@ -8,14 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_impact.figures.lines import Mark, Panel, Series
-from fem_impact.outcome import Num, Outcome, known, or_none
-from fem_impact.output.tables import Cell
-from fem_impact.scale import Results
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import Num, known, or_none
+from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import Paper, Picture, Sheet
 from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, STATES, Drop
+from fem_impact.tables.csv import Cell
 from rigid import LIMIT, slenderness
 
 __all__ = ["Maps", "first_only", "paper"]
+
 
 X = "gamma, m^-0.3815"
 MARKS = (

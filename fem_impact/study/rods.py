@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
-from fem_impact.scene import Accuracy, Barrier, Impact, Projectile, Save, Scene, Surface, materials
+from fem_impact.scene.library import materials
+from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
 from rigid.slenderness import EXPONENT
 
 __all__ = ["MAP_NOTES", "PAPER_RODS", "STATES", "Drop", "length_of"]
+
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 """Lengths, m, of the three rods of 19 mm."""
@@ -72,7 +74,7 @@ class Drop:
         return Scene(
             id=self.name,
             title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {f:g}",
-            projectile=Projectile(self.length, self.diameter, "B", self.radius, steels["rod-steel"]),
+            projectile=ProjectileSpec(self.length, self.diameter, "B", self.radius, steels["rod-steel"]),
             barrier=Barrier(steels["plate-steel"]),
             surface=Surface("custom", f, f, f, "point of a map"),
             impact=Impact(turn, -self.speed * cos(turn), -self.speed * sin(turn)),

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.compare import Row, compare, text_table
 from fem_impact.cost.limits import mesh_limits
-from fem_impact.outcome import Outcome, Unknown, known
-from fem_impact.output import COMPARISON, write_table, write_text
-from fem_impact.scale import Failure, Job, Results
-from fem_impact.scene import MEASURED_SETS, load, replace_all
-from fem_impact.study.markdown import summary
-from fem_impact.study.present import present
-from fem_impact.study.request import Request, StudyResult, failures_of
-from fem_impact.study.sensitivity import INPUTS, explanations, sensitivity_jobs, sensitivity_rows
+from fem_impact.files.atomic import write_text
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import Key, Unknown, known, or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import shares
+from fem_impact.report.present import present
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.study.compare import Row, compare, text_table
+from fem_impact.study.document import Request, StudyResult, failures_of
+from fem_impact.study.inputs import INPUT_CHANGES, WORDS, explanations, sensitivity_jobs, sensitivity_rows
+from fem_impact.tables.csv import COMPARISON, write_table
+from fem_impact.tables.markdown import table
 
 if TYPE_CHECKING:
-    from fem_impact.progress import Meter
+    from fem_impact.progress import ProgressMeter
 
 __all__ = ["conclude", "jobs_of", "plan"]
+
 
 SCHEMA = "fem-impact/study/1"
 QUICK_TIP = 0.6e-3  # m
@@ -55,7 +62,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     return [job for group in groups for job in group.values()]
 
 
-def conclude(request: Request, results: Results, progress: Meter) -> StudyResult:
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Compare the sets with the measurements; write study.json, tables, films and pages."""
     out, outcomes, changed = request.out, [], []
     for name in chosen(request):
@@ -63,7 +70,7 @@ def conclude(request: Request, results: Results, progress: Meter) -> StudyResult
         if isinstance(found["fine"], Outcome):
             outcomes.append(with_limits(found["fine"], found["coarse"], out / name))
         if not request.quick:
-            changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUTS})
+            changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUT_CHANGES})
     document, text = write_study(outcomes, failures_of(results), changed, out)
     folders = [out / outcome.provenance.scene_id for outcome in outcomes]
     return StudyResult(document, text, present(folders, out, progress))
@@ -106,3 +113,105 @@ def write_study(
     write_text(out / "summary.md", summary(outcomes, comparison, changed, explained))
     failed = (f"failed: {f['scene_id']}: {f['error']}" for f in failures)
     return document, "\n".join([text_table(comparison), *failed])
+
+
+COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
+
+
+def summary(
+    outcomes: Sequence[Outcome], comparison: list[Row], changed: list[Row], explained: list[Row]
+) -> str:
+    """Return the tables, with those of the changed inputs if they were computed."""
+    tables = [_beside(comparison), _shares(outcomes), *_limits(outcomes)]
+    if changed:
+        words = "\n".join(f"- `{name}`: {meaning}" for name, meaning in WORDS.items())
+        tables += [_changes(changed), _explanations(explained), words]
+    return "\n\n".join(tables) + "\n"
+
+
+def _beside(comparison: list[Row]) -> str:
+    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
+    names = list(dict.fromkeys(row["set"] for row in comparison))
+    return table(["set", *COMPARED], [[name, *(cells[name, q] for q in COMPARED)] for name in names])
+
+
+def _cell(row: Row) -> str:
+    """Return model +- band / measured mean +- SD, and a mark: bold inside, ? undecided, plain else."""
+    digits = 1 if row["quantity"] == "Omega" else 3
+    band = f" ± {row['band']:.{digits}f}" if row["band"] is not None else ""
+    model = f"{row['model']:.{digits}f}{band}"
+    measured = f"{row['measured_mean']:.{digits}f} ± {row['measured_sd']:.{digits}f}"
+    if row["verdict"] == "inside":
+        return f"**{model}** / {measured}"
+    return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"
+
+
+def _shares(outcomes: Sequence[Outcome]) -> str:
+    listed = shares("report")
+    head = ["set", *(f"{share.label}, %" for share in listed), "residual", "steps", "CPU s"]
+    body = [
+        [
+            o.provenance.scene_id,
+            *(_percent(o, share.key) for share in listed),
+            f"{o.energy.residual:.0e}",
+            f"{known(o.cost.steps)}",
+            f"{o.cost.cpu:.0f}",
+        ]
+        for o in outcomes
+    ]
+    return table(head, body)
+
+
+def _limits(outcomes: Sequence[Outcome]) -> list[str]:
+    """Return a row a set with two meshes: limits of e and E_vib, how uncertain, what the finer took."""
+    head = ["set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s"]
+    body = []
+    for o in (o for o in outcomes if or_none(o.validity.mesh_band)):
+        limits, bands = known(o.validity.mesh_limit), known(o.validity.mesh_band)
+        (e, e_band), (vib, vib_band) = ((limits[k], bands[k]) for k in ("e_edge", "E_vib_over_E_0"))
+        of = [f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band))]
+        cells = [f"{e:.3f} ± {e_band:.3f}", of[0], f"{100 * vib:.3f} ± {100 * vib_band:.3f}", of[1]]
+        body.append([o.provenance.scene_id, *cells, f"{o.cost.cpu:.0f}"])
+    return [table(head, body)] if body else []
+
+
+def _percent(outcome: Outcome, key: Key) -> str:
+    value, band = outcome.estimate(key)
+    share = or_none(value)
+    if share is None:
+        return "–"
+    digits = 2 if abs(100 * share) < 10 else 1
+    return f"{100 * share:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+
+
+def _changes(changed: list[Row]) -> str:
+    """Return a row a set and quantity: its value on the coarser mesh and what each input changes."""
+    found: dict[tuple[str, str], dict[str, Row]] = {}
+    for row in changed:
+        found.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
+    body = [
+        [*key, f"{next(iter(of.values()))['base']:.3g}", *(_change(of.get(name)) for name in WORDS)]
+        for key, of in found.items()
+    ]
+    return table(["set", "quantity", "coarser mesh", *WORDS], body)
+
+
+def _change(row: Row | None) -> str:
+    return "" if row is None else f"{row['changed'] - row['base']:+.2g}"
+
+
+def _explanations(explained: list[Row]) -> str:
+    """Return a row a quantity that lies outside: what alone could bring it in, and what cannot."""
+    head = ["set", "quantity", "model", "measured", "could explain it", "cannot"]
+    body = [
+        [
+            row["set"],
+            row["quantity"],
+            f"{row['model']:.3g}",
+            f"{row['measured_mean']:.3g}",
+            ", ".join(row["could"]) or "none of these",
+            ", ".join(f"{name} ({s:+.0%})" for name, s in row["shares"].items() if name not in row["could"]),
+        ]
+        for row in explained
+    ]
+    return table(head, body)

@@ -9,18 +9,19 @@ from typing import ClassVar
 import numpy as np
 
 import meshes
-from fem_impact.solid.contact import PlaneContact
+from fem_impact.reference.rod_end import BarImpact, bar_speed, strike
 from fem_impact.solid.contact.book import ACTIVE
+from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Body, body_model, placed, rigid_of
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.bar import Strike, bar_speed, strike
-from fem_impact.verify.watch import Force, Until
+from fem_impact.verify.watch import ForceRecorder, Until
 
 __all__ = ["PROBLEM"]
+
 
 PLATEAU, DURATION, GROWTH, CLOSING = 0.005, 0.01, 1e-3, 1e-6
 WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
@@ -37,7 +38,7 @@ def _model(p: Values, slices: int, gap: float, across: int) -> Model:
     speed = np.zeros_like(rod.mesh.points)
     speed[:, 2] = -p["speed"]
     points = placed(rod.mesh.points, 0.0, gap)
-    return body_model(Body(rod, points, speed, p["E"], 0.0, p["rho"], friction=0.0))
+    return body_model(FreeBody(rod, points, speed, p["E"], 0.0, p["rho"], friction=0.0))
 
 
 @dataclass(slots=True)
@@ -78,10 +79,10 @@ def _lost(slices: int) -> float:
     return float(0.25 / slices + 0.25 * slices ** (-2 / 3))
 
 
-def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
+def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
     slices = int(p["slices"])
     model = _model(p, slices, 0.0, int(p["across"]))
-    state, force = model.initial_state(), Force(model)
+    state, force = model.initial_state(), ForceRecorder(model)
     energy = Until(model.ledger(), AFTER * exact.duration)
     march(model, state, [force, energy])
     plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration)
@@ -99,7 +100,7 @@ def _one_strike(p: Values, exact: Strike) -> tuple[list[Check], int, int]:
     return checks, state.step, len(model.geometry.rod.mesh.cells)
 
 
-def _many_strikes(p: Values, exact: Strike) -> list[Check]:
+def _many_strikes(p: Values, exact: BarImpact) -> list[Check]:
     """Bounce for the time that so many bounces without loss would take."""
     slices = max(4, int(p["slices"]) // COARSER)
     gap = FLIGHT * exact.duration * p["speed"]

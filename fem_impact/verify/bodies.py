@@ -9,35 +9,32 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.modes import MassStiffness, RigidMotion, rigid_motion
+from fem_impact.arrays import Array, Bools
+from fem_impact.fem.body import MeshedBody as Meshed
+from fem_impact.fem.body import make_body, nose_and_whole, slices_of
+from fem_impact.fem.eigen import MassStiffness
+from fem_impact.fem.elements import Kind
+from fem_impact.fem.flight import RigidMotion, rigid_motion
+from fem_impact.fem.geometry import Geometry
+from fem_impact.fem.hexmodes import dummy_element
+from fem_impact.fem.layout import DofLayout, MassPoints, number
+from fem_impact.fem.slices import SliceOperator
+from fem_impact.fem.sparse import Hanging, NodeProduct
+from fem_impact.fem.stable import stable_step
+from fem_impact.physics.hardening import Hardening
 from fem_impact.solid import build
-from fem_impact.solid.body import Body as Meshed
-from fem_impact.solid.body import make_body, nose_and_whole, slices_of
-from fem_impact.solid.contact import PlaneContact, SurfaceContact
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
-from fem_impact.solid.elements import Kind
 from fem_impact.solid.frame import FixedFrame, TurningFrame
-from fem_impact.solid.geometry import Geometry
-from fem_impact.solid.hardening import Hardening
-from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import Force, Impulse
-from fem_impact.solid.layout import Layout, number
-from fem_impact.solid.masspoints import MassPoints
 from fem_impact.solid.model import Model
-from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, NodeProduct
-from fem_impact.solid.stable import stable_step
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
 from meshes import HexMesh, RodMesh
 
-__all__ = ["Block", "Body", "body_model", "placed", "rigid_of", "unsliced"]
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
-Bools = NDArray[np.bool_]
+__all__ = ["Block", "FreeBody", "body_model", "placed", "rigid_of", "unsliced"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +57,7 @@ class Block:
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class FreeBody:
     """A body ready to be modelled, half of it at b >= 0.
 
     Attributes
@@ -111,7 +108,7 @@ def rigid_of(model: Model, state: State) -> RigidMotion:
     return rigid_motion(state.x[places], state.v[places], model.mass[places[:, 0]])
 
 
-def body_model(body: Body) -> Model:
+def body_model(body: FreeBody) -> Model:
     """Return the model of one body over the rigid plane n = 0, or over its block."""
     block = body.block
     layout = number(body.mesh, block.mesh if block else None)
@@ -150,7 +147,7 @@ def body_model(body: Body) -> Model:
     )
 
 
-def _zones(body: Body, parts: list[Meshed], layout: Layout) -> list[YieldingZone]:
+def _zones(body: FreeBody, parts: list[Meshed], layout: DofLayout) -> list[YieldingZone]:
     laws = (body.law, body.block.law if body.block else None)
     return [
         build.yielding_zone(part, law, layout)
@@ -159,26 +156,26 @@ def _zones(body: Body, parts: list[Meshed], layout: Layout) -> list[YieldingZone
     ]
 
 
-def _part(body: Body, layout: Layout) -> Meshed:
+def _part(body: FreeBody, layout: DofLayout) -> Meshed:
     mesh = body.mesh.mesh
     yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
     part = make_body("rod", mesh, body.points, layout.rod, body, yields, body.kind)
     return replace(part, mass=part.mass * body.denser[:, None])
 
 
-def _block_part(block: Block, layout: Layout) -> Meshed:
+def _block_part(block: Block, layout: DofLayout) -> Meshed:
     yields = block.mesh.finest & (block.law is not None)
     return make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
 
 
-def _inverse(body: Body, parts: list[Meshed], mass: Array, layout: Layout) -> Array:
+def _inverse(body: FreeBody, parts: list[Meshed], mass: Array, layout: DofLayout) -> Array:
     inverse = build.invert(mass, parts)
     if body.held is not None:
         inverse[layout.rod[body.held]] = 0.0
     return inverse
 
 
-def _start(body: Body, parts: list[Meshed], layout: Layout, drawn: MassPoints) -> tuple[Array, Array]:
+def _start(body: FreeBody, parts: list[Meshed], layout: DofLayout, drawn: MassPoints) -> tuple[Array, Array]:
     x, v = np.zeros(layout.size), np.zeros(layout.size)
     x[layout.dummy] = dummy_element()
     for part in parts:
@@ -192,7 +189,7 @@ def _start(body: Body, parts: list[Meshed], layout: Layout, drawn: MassPoints) -
 
 
 def _linear(
-    body: Body, part: Meshed, layout: Layout, mass: Array, x: Array, drawn: MassPoints
+    body: FreeBody, part: Meshed, layout: DofLayout, mass: Array, x: Array, drawn: MassPoints
 ) -> tuple[ElasticRod, MassStiffness]:
     """Return the linear part, slices by stencil where there are any, the rest by rows; and the stiffness."""
     n, free = layout.rod_size, layout.rod[~part.mesh.is_hanging]
@@ -209,7 +206,7 @@ def _no_slices() -> SliceOperator:
 
 
 def _contact(
-    body: Body, parts: list[Meshed], inverse: Array, x: Array
+    body: FreeBody, parts: list[Meshed], inverse: Array, x: Array
 ) -> PlaneContact | SurfaceContact | None:
     if body.friction is None:
         return None

@@ -11,21 +11,22 @@ from math import pi
 
 import numpy as np
 
-from fem_impact.effects import specify
-from fem_impact.estimates import projectile
+from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import specify
+from fem_impact.reference.rod_end import bar_speed
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.run import solve as run_solid
 from fem_impact.solid.state import State
-from fem_impact.verify import steel
+from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import rigid_of
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.bar import bar_speed
-from fem_impact.verify.rod_scene import rod_scene
+from fem_impact.verify.setups import rod_scene
 
 __all__ = ["MOMENTUM", "SPIN"]
+
 
 SMALL = 1e-6
 FASTEST = 0.05  # spin times length over c0

@@ -29,18 +29,18 @@ import numpy as np
 
 import rigid
 from fem_impact.errors import SceneError
-from fem_impact.estimates import projectile
+from fem_impact.physics.contact import projectile
+from fem_impact.reference.hertz import SpringRow, contact_modulus, equivalent_radius, hertz, tangential_ratio
+from fem_impact.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
-from fem_impact.verify import steel
+from fem_impact.verify import setups as steel
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
-from fem_impact.verify.reference.hertz import contact_modulus, equivalent_radius, hertz
-from fem_impact.verify.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
-from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
-from fem_impact.verify.rod_scene import rod_scene
+from fem_impact.verify.setups import rod_scene
 from rigid import Projectile
 
 __all__ = ["PROBLEM"]
+
 
 E_TOLERANCE, BENDING_RELATIVE, BENDING_ABSOLUTE = 0.04, 0.15, 1e-3
 CORNER = "a plain cylinder that touches with its corner, as the printed ones do"

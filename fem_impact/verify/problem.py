@@ -11,7 +11,8 @@ from typing import Any, Literal
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 
-__all__ = ["Check", "Cost", "Parameter", "Problem", "Solved", "Values", "Verification", "within"]
+__all__ = ["Check", "Parameter", "Problem", "ProblemCost", "Solved", "Values", "Verification", "within"]
+
 
 Values = Mapping[str, float]
 Kind = Literal["relative", "absolute", "at most", "shown"]
@@ -136,7 +137,7 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
+class ProblemCost:
     """What a problem took: seconds, and the explicit steps and elements of its runs."""
 
     wall_s: float
@@ -161,7 +162,7 @@ class Verification:
     name: str
     parameters: dict[str, float]
     checks: tuple[Check, ...]
-    cost: Cost
+    cost: ProblemCost
 
     @property
     def passed(self) -> bool:
@@ -194,7 +195,9 @@ class Problem:
         values = self.values(changes or {})
         wall, cpu = time.perf_counter(), time.process_time()
         solved = self.solve(values)
-        cost = Cost(time.perf_counter() - wall, time.process_time() - cpu, solved.steps, solved.elements)
+        cost = ProblemCost(
+            time.perf_counter() - wall, time.process_time() - cpu, solved.steps, solved.elements
+        )
         return Verification(self.name, values, solved.checks, cost)
 
     def values(self, changes: Mapping[str, float | str]) -> dict[str, float]:

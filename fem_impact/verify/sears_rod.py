@@ -30,20 +30,20 @@ from numpy.typing import NDArray
 
 import meshes
 from fem_impact.errors import SceneError
-from fem_impact.modes import flight
+from fem_impact.fem.flight import flight
+from fem_impact.reference.hertz import contact_modulus
+from fem_impact.reference.rod_end import AxialImpact, end_law, rod_impact, sears
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.state import State
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Block, Body, body_model, placed
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import Block, FreeBody, body_model, placed
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.hertz import contact_modulus
-from fem_impact.verify.reference.rod_end import end_law
-from fem_impact.verify.reference.sears import AxialImpact, rod_impact, sears
-from fem_impact.verify.tips import block_under, contact_zone, levels_for_radius, run_strike
+from fem_impact.verify.setups import block_under, contact_zone, levels_for_radius, run_strike
 
 __all__ = ["PROBLEM"]
+
 
 FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4
 AFTER = 1.1  # contact times that are followed
@@ -73,7 +73,7 @@ def _model(p: Values, touch: float) -> Model:
         under = block_under(touch, base, levels)
         block = Block(under, base / 2**levels, p["barrier_E"], p["nu"], p["rho"])
     rho = p["rho"] * pi * R**2 * p["length"] / (2 * float(np.sum(meshes.volume(rod.mesh))))
-    return body_model(Body(rod, points, velocity, p["E"], p["nu"], rho, friction=0.0, block=block))
+    return body_model(FreeBody(rod, points, velocity, p["E"], p["nu"], rho, friction=0.0, block=block))
 
 
 def _vibration(model: Model, state: State) -> float:

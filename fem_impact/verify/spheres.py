@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
-from math import inf, pi
+from dataclasses import replace
+from math import cos, inf, pi, sin
 
 import numpy as np
 from numpy.typing import NDArray
 
 import meshes
-from fem_impact.solid.elements import lumped_mass
+from fem_impact.fem.elements import lumped_mass
+from fem_impact.reference.finite_sphere import ball_impact
+from fem_impact.reference.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
+from fem_impact.reference.sphere import oblique_ball, oblique_sphere
+from fem_impact.reference.waves import radiated_energy
 from fem_impact.solid.model import Model
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Block, Body, body_model, placed, unsliced
-from fem_impact.verify.problem import Parameter, Values, within
-from fem_impact.verify.reference.hertz import HertzImpact, contact_modulus, hertz
-from fem_impact.verify.tips import block_under, contact_zone, levels_for_radius
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import Block, FreeBody, body_model, placed, unsliced
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.setups import TipImpact, block_under, contact_zone, levels_for_radius, run_strike
 
-__all__ = ["ball_mass", "modulus", "parameters", "plain_hertz", "small_contact", "sphere_model"]
+__all__ = [
+    "HERTZ",
+    "OBLIQUE_SPHERE",
+    "ball_mass",
+    "modulus",
+    "parameters",
+    "plain_hertz",
+    "small_contact",
+    "sphere_model",
+]
 
 
 CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
@@ -78,7 +91,7 @@ def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f:
     denser = _denser(points, mesh.mesh.cells, p)
     E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(
-        Body(mesh, points, velocity, E, nu, rho, denser, friction=f, block=block, turning=f > 0)
+        FreeBody(mesh, points, velocity, E, nu, rho, denser, friction=f, block=block, turning=f > 0)
     )
 
 
@@ -96,3 +109,112 @@ def _denser(points: NDArray[np.float64], cells: NDArray[np.int64], p: Values) ->
     sums = [[masses.sum(), masses @ out], [moments.sum(), moments @ out]]
     inner, slope = np.linalg.solve(sums, 0.5 * ball_mass(p) * np.array([1.0, 0.4]))
     return np.asarray(inner + slope * out)
+
+
+TOLERANCE, RADIATED, ENERGY = 0.02, 0.15, 1e-3
+AFTER = 1.15  # contact times that are followed
+
+
+def _radiated(p: Values, found: TipImpact, exact: HertzImpact) -> Check:
+    """Compare what left through the block's boundary with the half-space's, or nothing on a plane."""
+    E_0 = 0.5 * ball_mass(p) * p["speed"] ** 2
+    if p["block"]:
+        share = radiated_energy(exact, p["E"], p["nu"], p["rho"]) / E_0
+        return Check("radiated energy / E_0", "1", found.radiated / E_0, share, RADIATED)
+    return Check("radiated energy / E_0", "1", found.radiated / E_0, 0.0, 0.0, "absolute")
+
+
+def solve_hertz(p: Values) -> Solved:
+    """Compare force, time and energies with a finite sphere and with Hertz.
+
+    Raises
+    ------
+    SceneError
+        If the contact is too small or too large.
+    """
+    small_contact(p)
+    v = p["speed"]
+    plain = plain_hertz(p, v)
+    own = contact_modulus(p["E"], p["nu"])
+    exact = ball_impact(modulus(p), own, p["nu"], p["radius"], ball_mass(p), v)
+    model = sphere_model(p, plain, v)
+    found = run_strike(model, AFTER * plain.duration, plain.duration)
+    note = f"for a / R far below 1, here {plain.radius / p['radius']:.3f}"
+    checks = (
+        Check("largest force", "N", found.force, exact.force, TOLERANCE),
+        Check("contact time", "s", found.duration, exact.duration, TOLERANCE),
+        Check.shown("largest force, Hertz", "N", found.force, plain.force, note),
+        Check.shown("contact time, Hertz", "s", found.duration, plain.duration, note),
+        _radiated(p, found, exact),
+        Check("rebound + radiated energy / E_0", "1", found.kept(v), 1.0, ENERGY, "absolute"),
+        Check("largest energy / E_0", "1", found.most, 1.0, ENERGY, "at most"),
+    )
+    return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
+
+
+HERTZ = Problem(
+    "hertz",
+    "an elastic sphere strikes a frictionless barrier: force, time of contact, radiated energy",
+    parameters(9.5e-3, steel.speed("speed", "approach speed", 1.0), *steel.elastic(210e9)),
+    solve_hertz,
+)
+
+RESTITUTION, RATIO, SLIPPED = 0.02, 0.01, 0.05
+UNCOUPLED = 0.45  # Poisson's ratio from which pressing hardly shifts the skin on a rigid plane
+COUPLED = "on a rigid plane pressing shifts the skin sideways unless nu is near 0.5"
+
+
+def solve_oblique(p: Values) -> Solved:
+    """Compare tangential restitution of the centre, spin and impulse ratio.
+
+    Raises
+    ------
+    SceneError
+        If the contact is too small or too large.
+    """
+    small_contact(p, cos(p["angle"]))
+    v_n, v_t = p["speed"] * cos(p["angle"]), p["speed"] * sin(p["angle"])
+    R, normal = p["radius"], plain_hertz(p, v_n)
+    blow = (p["nu"], R, ball_mass(p), p["f"], v_n, v_t)
+    plain = oblique_sphere(modulus(p), *blow)
+    exact = oblique_ball(modulus(p), contact_modulus(p["E"], p["nu"]), *blow)
+    model = sphere_model(p, normal, v_n, v_t, p["f"])
+    found = run_strike(model, AFTER * normal.duration, normal.duration)
+    m = found.motion
+    mu = (m.V_t + v_t) / (m.V_n + v_n)
+    slides = exact.ratio > 0.999 * p["f"]
+    ratio = exact.ratio
+    if slides and p["block"]:
+        pressure = 2 * modulus(p) * normal.radius / (pi * R)
+        ratio = sliding_ratio(p["f"], p["nu"], p["E"] / (2 + 2 * p["nu"]), pressure)
+    back, note = -m.V_t / v_t, f"for a / R far below 1, here {normal.radius / R:.3f}"
+    # away from sliding the ratio tells the same as the restitution: v_t (1 - e_t) / (2 v_n)
+    near = RATIO * p["f"] if slides else RESTITUTION * v_t / (2 * v_n)
+    compared = [
+        Check("tangential restitution", "1", back, exact.centre_t / v_t, RESTITUTION, "absolute"),
+        Check("spin R Omega / v_t", "1", -R * m.Omega / v_t, exact.spin / v_t, SLIPPED, "absolute"),
+        Check("impulse ratio mu / f", "1", mu / p["f"], ratio / p["f"], near / p["f"], "absolute"),
+    ]
+    if not (slides or p["block"] or p["nu"] >= UNCOUPLED):
+        compared = [replace(check, tolerance=inf, kind="shown", note=COUPLED) for check in compared]
+    checks = (
+        compared[0],
+        Check.shown("tangential restitution, plain", "1", back, plain.centre_t / v_t, note),
+        *compared[1:],
+        Check("largest energy / E_0", "1", found.most, 1.0, 1e-3, "at most"),
+    )
+    return Solved(checks, found.state.step, len(model.geometry.rod.mesh.cells))
+
+
+OBLIQUE_SPHERE = Problem(
+    "oblique-sphere",
+    "an elastic sphere strikes obliquely with friction: reversal, spin, impulse ratio",
+    parameters(
+        2.5e-3,
+        steel.speed("speed", "approach speed", 3.9),
+        Parameter("angle", "path to the normal", 20 * pi / 180, 0.01, 1.5, "angle"),
+        Parameter("f", "Coulomb friction", 0.092, 0.001, 5.0),
+        *steel.elastic(380e9, 0.23, 4000.0),
+    ),
+    solve_oblique,
+)

@@ -13,16 +13,17 @@ from dataclasses import replace
 import numpy as np
 
 import meshes
-from fem_impact.solid.hardening import linear_hardening
+from fem_impact.physics.hardening import linear_hardening
+from fem_impact.reference.rod_end import bar_speed
+from fem_impact.reference.taylor import Metal, taylor_bar
 from fem_impact.solid.model import Model
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Body, body_model, placed, unsliced
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import FreeBody, body_model, placed, unsliced
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.bar import bar_speed
-from fem_impact.verify.reference.taylor import Metal, taylor_bar
 from fem_impact.verify.watch import Until, follow
 
 __all__ = ["PROBLEM"]
+
 
 PRINTED = {
     "radius": 3.2e-3,
@@ -60,7 +61,7 @@ def _model(p: Values) -> Model:
         np.ones(len(bar.mesh.cells), dtype=bool),
     )
     metal = p["E"], p["nu"], p["rho"]
-    body = Body(
+    body = FreeBody(
         unsliced(bar.mesh), points, velocity, *metal, kind="bbar", law=law, yields=yields, friction=0.0
     )
     model = body_model(body)

@@ -12,25 +12,26 @@ from math import exp, floor, log, log2, pi, sqrt
 import numpy as np
 
 import meshes
-from fem_impact.solid.hardening import linear_hardening
-from fem_impact.solid.model import Model
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.hertz import contact_modulus
-from fem_impact.verify.reference.thornton import (
+from fem_impact.physics.hardening import linear_hardening
+from fem_impact.reference.hertz import (
     MEAN,
+    contact_modulus,
     fitted_restitution,
     plastic_radius,
     plastic_speeds,
     thornton_restitution,
     yield_speed,
 )
+from fem_impact.solid.model import Model
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.setups import contact_zone
 from fem_impact.verify.spheres import ball_mass
-from fem_impact.verify.tips import contact_zone
 from fem_impact.verify.watch import Until, follow
 
 __all__ = ["PROBLEM", "judged_slope"]
+
 
 SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
 FIRST = 1.6  # peak pressure of first yield over yield stress
@@ -63,7 +64,7 @@ def _model(p: Values, v: float, cells: float) -> Model:
     law = linear_hardening(p["yield_stress"], p["hardening"])
     yields = mesh.level == levels
     return body_model(
-        Body(unsliced(mesh), points, velocity, p["E"], p["nu"], rho, law=law, yields=yields, friction=0.0)
+        FreeBody(unsliced(mesh), points, velocity, p["E"], p["nu"], rho, law=law, yields=yields, friction=0.0)
     )
 
 

@@ -30,18 +30,26 @@ from math import cos, radians, sin, sqrt
 
 import numpy as np
 
+from fem_impact.reference.bricks import rebound
+from fem_impact.reference.rod_end import bar_speed
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
-from fem_impact.verify import steel
-from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
+from fem_impact.verify import setups as steel
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
 from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
-from fem_impact.verify.reference.bar import bar_speed
-from fem_impact.verify.reference.bricks import rebound
-from fem_impact.verify.springs import NodeSprings, node_areas
-from fem_impact.verify.square_bar import KINDS, is_printed, parameters, square_bar, twin
+from fem_impact.verify.square_bars import (
+    KINDS,
+    NodeSprings,
+    is_printed,
+    node_areas,
+    parameters,
+    square_bar,
+    twin,
+)
 from fem_impact.verify.watch import Until
 
 __all__ = ["PROBLEM"]
+
 
 ANGLE, SPEED = radians(20), 3.0
 PRINTED, REBOUND = {0.0: 1.403, 0.2: 1.91}, 0.03  # m/s, by friction; tolerance
@@ -61,7 +69,7 @@ def _model(p: Values) -> Model:
     points, kind = placed(mesh.points, p["angle"], 0.0), KINDS[int(p["element"])]
     metal = p["E"], p["nu"], p["rho"]
     return body_model(
-        Body(unsliced(mesh), points, velocity, *metal, kind=kind, friction=p["f"], turning=True)
+        FreeBody(unsliced(mesh), points, velocity, *metal, kind=kind, friction=p["f"], turning=True)
     )
 
 

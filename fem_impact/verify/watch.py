@@ -14,12 +14,13 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 
-__all__ = ["Force", "Until", "follow"]
+__all__ = ["ForceRecorder", "Until", "follow"]
+
 
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 
-class Force:
+class ForceRecorder:
     """Records the normal force, N, of the whole body on the plane over each step."""
 
     every = 1

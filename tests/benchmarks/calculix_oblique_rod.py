@@ -20,14 +20,15 @@ import numpy as np
 from calculix import Strike, run
 
 import meshes
-from fem_impact.estimates import projectile
-from fem_impact.modes import flight, rod_modes
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.fem.flight import flight
+from fem_impact.physics.contact import projectile
 from fem_impact.solid.march import evaluate, march
-from fem_impact.verify import problem
-from fem_impact.verify.bodies import Body, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.catalogue import problem
 from fem_impact.verify.oblique_rod import _reference
-from fem_impact.verify.rod_scene import rod_scene
-from fem_impact.verify.springs import NodeSprings, node_areas
+from fem_impact.verify.setups import rod_scene
+from fem_impact.verify.square_bars import NodeSprings, node_areas
 from fem_impact.verify.watch import Until
 
 STICK, GAP = 0.1, 1e-7
@@ -39,7 +40,7 @@ def models(p, stiffness):
     mesh = meshes.rod(rod.meridian(), p["length"], int(p["across"]), slice_length=2.5e-3).mesh
     points = placed(mesh.points, p["angle"], GAP)
     velocity = np.tile([-p["v_t"], 0.0, -p["v_n"]], (len(points), 1))
-    body = Body(unsliced(mesh), points, velocity, p["E"], p["nu"], p["rho"], kind="full", turning=True)
+    body = FreeBody(unsliced(mesh), points, velocity, p["E"], p["nu"], p["rho"], kind="full", turning=True)
     hard = body_model(replace(body, friction=p["f"]))
     low = np.intersect1d(mesh.free_skin, np.flatnonzero(points[:, 2] < 2e-3))
     area = node_areas(mesh, np.isin(mesh.faces, low).all(axis=1))

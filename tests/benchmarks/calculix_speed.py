@@ -27,7 +27,7 @@ from kernel_speed import LEDGER_EVERY, cpu_ns, plain_stiffness
 
 import meshes
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.verify.bodies import Body, body_model
+from fem_impact.verify.bodies import FreeBody, body_model
 
 LENGTH, RADIUS, E, NU, RHO = 0.24, 0.0095, 206e9, 0.29, 7850.0
 SPANS = (1e-5, 4e-5)  # s of motion
@@ -76,7 +76,7 @@ def calculix(mesh, velocity, kind, end):
 
 def ours(rod, velocity, end):
     """Return CPU times, ns, of a CSR product and of a step with ledger; steps to the end; displacement, m."""
-    model = body_model(Body(rod, rod.mesh.points, velocity, E, NU, RHO))
+    model = body_model(FreeBody(rod, rod.mesh.points, velocity, E, NU, RHO))
     count = ceil(end / model.step)
     model = replace(model, steps={"rod": end / count})
     state, ledger, node = model.initial_state(), model.ledger(), model.layout.rod[-1]

@@ -13,10 +13,10 @@ from math import cos, sin
 import numpy as np
 from calculix import Strike, run
 
-from fem_impact.solid.elements import lumped_mass
-from fem_impact.verify import problem, verify
+from fem_impact.fem.elements import lumped_mass
 from fem_impact.verify.bodies import placed
-from fem_impact.verify.square_bar import square_bar
+from fem_impact.verify.catalogue import problem, verify
+from fem_impact.verify.square_bars import square_bar
 from fem_impact.verify.tilted_bar import ANGLE, SPEED
 
 END = 3e-4  # s

@@ -18,13 +18,15 @@ from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from fem_impact.effects import specify
+from fem_impact.effects.registry import BARRIERS
 from fem_impact.figures.style import PALETTE, QUIET, figure
-from fem_impact.output import write_table
-from fem_impact.scene import BARRIERS, Scene, load
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build
 from fem_impact.solid.march import Observer, advance, evaluate
 from fem_impact.solid.model import Model
+from fem_impact.tables.csv import write_table
 
 SCENE, UNTIL = "t5b", 10e-6  # s: in contact, both bodies yield
 STEPS, ROUNDS = 20, 15

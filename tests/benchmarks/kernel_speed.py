@@ -19,16 +19,16 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 import meshes
-from fem_impact.effects import specify
-from fem_impact.scene import load
+from fem_impact.fem.elements import isotropic_stiffness
+from fem_impact.fem.sparse import assemble, tie_operator
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
-from fem_impact.solid.elements import isotropic_stiffness
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.model import Model
-from fem_impact.solid.sparse import assemble, tie_operator
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
-from fem_impact.verify.bodies import Body, body_model
+from fem_impact.verify.bodies import FreeBody, body_model
 
 Row = tuple[str, int, float, float]  # part, elements, ns an element-step, over the CSR product's
 ACROSS, SLICES = 12, 144  # cells across and along the bar
@@ -79,7 +79,7 @@ def bar_rows() -> list[Row]:
     flat = np.array([[0.0, 0.0], [0.0095, 0.0]])
     rod = meshes.rod(flat, 0.24, ACROSS, slice_length=0.24 / SLICES, nose=False)
     still = np.zeros_like(rod.mesh.points)
-    model = body_model(Body(rod, rod.mesh.points, still, 206e9, 0.29, 7850.0))
+    model = body_model(FreeBody(rod, rod.mesh.points, still, 206e9, 0.29, 7850.0))
     state, ledger, cells = model.initial_state(), model.ledger(), len(rod.mesh.cells)
     state.v[:] = np.random.default_rng(1).normal(size=len(state.v)) * (model.inverse_mass > 0)
     plain, vector = plain_stiffness(model), state.x[: model.layout.rod_size].copy()

@@ -19,10 +19,10 @@ import sys
 from math import exp, log
 from pathlib import Path
 
-from fem_impact.cost import FAMILY, QUANTITIES, TARGETED, Mesh
 from fem_impact.cost.limits import truths
-from fem_impact.cost.settings import FEWER_PLACES
-from fem_impact.scene import load
+from fem_impact.cost.quantities import QUANTITIES, TARGETED
+from fem_impact.cost.settings import FAMILY, FEWER_PLACES, Mesh
+from fem_impact.scene.shipped import load
 
 PRESENT = Path(__file__).parents[2]
 SETS = ("t5b", "t3-machined", "t6-17")

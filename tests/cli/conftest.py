@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import pytest
 
 import fem_impact.study
-from fem_impact.outcome import KEYS, Outcome
+from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.progress import Progress
 
 
@@ -64,7 +64,9 @@ def stand(monkeypatch):
     table = types.SimpleNamespace(document=document, text="the table", notes=["no film: no GL"])
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     _module(
-        monkeypatch, "fem_impact.simulate", simulate=work("simulate", lambda: stand.outcome or an_outcome())
+        monkeypatch,
+        "fem_impact.run.simulate",
+        simulate=work("simulate", lambda: stand.outcome or an_outcome()),
     )
     monkeypatch.setattr(fem_impact.study, "run_study", work("run_study", lambda: table))
     films = {name: work(name, lambda: film) for name in ("render", "render_side_by_side")}

@@ -3,8 +3,10 @@
 import json
 import re
 
-from fem_impact.effects import EFFECTS
-from fem_impact.scene import NAMES, Scene, load, shipped
+from fem_impact.effects.registry import EFFECTS, NAMES
+from fem_impact.scene.library import shipped
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
 
 
 def test_scenes_lists_every_shipped_scene(cli):

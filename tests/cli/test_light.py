@@ -26,7 +26,7 @@ def test_no_heavy_module_is_imported(words):
 
 
 def test_help_imports_no_scene_either():
-    probe = "import sys, fem_impact.cli; print('fem_impact.scene' in sys.modules)"
+    probe = "import sys, fem_impact.commands.main; print('fem_impact.scene' in sys.modules)"
     done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "False"
 

@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.cli_parser import build_parser, read_line
+from fem_impact.commands.parser import build_parser, read_line
 from fem_impact.errors import EXIT_CODES
-from fem_impact.scene import Scene, load, surfaces
+from fem_impact.scene.library import surfaces
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
 from rigid import SHAPES
 
 ROOT = Path(__file__).parents[2]

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.scene import load
-from fem_impact.study import Request
+from fem_impact.scene.shipped import load
+from fem_impact.study.document import Request
 
 
 def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
@@ -44,7 +44,7 @@ def test_a_target_runs_side_by_side_on_the_cores_there_are(cli, stand, monkeypat
         calls.append((scene.accuracy.target, options["workers"]))
         return stand.an_outcome()
 
-    monkeypatch.setattr("fem_impact.cli_run.cores", lambda: 3)
+    monkeypatch.setattr("fem_impact.commands.run.cores", lambda: 3)
     monkeypatch.setattr("fem_impact.cost.simulate_to_target", to_target)
     assert cli("run", "t5b", "--set", "accuracy=20 %", "--quiet")[0] == 0
     assert calls == [(0.2, 3)] and not stand.calls

@@ -2,8 +2,8 @@
 
 import pytest
 
-from fem_impact.cli_parser import build_parser
-from fem_impact.wrap import wrapped
+from fem_impact.commands.parser import build_parser
+from fem_impact.tables.text import wrapped
 
 COMMANDS = list(build_parser()._subparsers._group_actions[0].choices)
 

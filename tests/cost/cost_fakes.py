@@ -3,7 +3,7 @@
 from concurrent.futures import Executor, Future
 from math import cos, pi
 
-from fem_impact.outcome import KEYS, Outcome
+from fem_impact.outcome.record import KEYS, Outcome
 
 LIMIT, ORDER = {"e_edge": 0.3, "mu": 0.5, "E_vib_over_E_0": 0.02}, 1.0
 SLOPE = {"e_edge": 0.03, "mu": -0.02, "E_vib_over_E_0": 0.002}  # at a tip of 0.4 mm

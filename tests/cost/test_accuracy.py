@@ -3,19 +3,24 @@
 import pytest
 from cost_fakes import Here, run
 
-import fem_impact.simulate
-from fem_impact.cost import NEARNESS, Judged, achieve, measure, nearest, plan, stored, summarise, summary
+import fem_impact.run.simulate
+from fem_impact.cost import to_target as achieve
+from fem_impact.cost import to_target as stored
+from fem_impact.cost.judge import Judged
 from fem_impact.cost.limits import pair_limit
+from fem_impact.cost.measure import measure
 from fem_impact.cost.settings import placed
+from fem_impact.cost.to_target import NEARNESS, nearest, plan, summarise, summary
 from fem_impact.errors import SceneError
 from fem_impact.progress import NullMeter
-from fem_impact.scene import MEASURED_SETS, Accuracy, Scene, load
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, Scene
 
 
 @pytest.fixture
 def costs(monkeypatch, tmp_path):
     """Stored costs of t5b whose limit, order and times are known, measured on half as quick a machine."""
-    monkeypatch.setattr(fem_impact.simulate, "simulate", run)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     held = summarise({"t5b": measure(load("t5b"), tmp_path, NullMeter(), executor=Here())})
     held["machine"] = {"csr_ns_per_element_step": 2 * stored.yardsticks()["csr_ns_per_element_step"]}
     monkeypatch.setattr(stored, "summary", lambda: held)
@@ -156,7 +161,7 @@ def test_a_reduced_run_does_not_claim_an_achieved_error(costs):
 def test_simulate_hands_over_a_scene_with_a_target(monkeypatch):
     monkeypatch.setattr(fem_impact.cost, "simulate_to_target", lambda *words: words)
     scene = asking(0.2)
-    assert fem_impact.simulate.simulate(scene)[:4] == (scene, None, None, None)
+    assert fem_impact.run.simulate.simulate(scene)[:4] == (scene, None, None, None)
 
 
 def test_the_shipped_summary_is_dated_and_about_shipped_scenes():

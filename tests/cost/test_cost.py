@@ -10,40 +10,33 @@ import numpy as np
 import pytest
 from cost_fakes import LIMIT, SLOPE, TIP, WIGGLE, Here, run
 
-import fem_impact.simulate
-from fem_impact.cost import (
-    FAMILY,
-    TARGETED,
-    Mesh,
+import fem_impact.run.simulate
+from fem_impact.cost.document import text_table, write_cost
+from fem_impact.cost.judge import (
     advice,
     best_pair,
     best_within,
     cheapest,
-    chosen,
     front,
-    judge_stored,
-    ladder,
-    measure,
-    on_mesh,
     pair_sentence,
-    text_table,
     verdict,
     worst,
-    write_cost,
 )
 from fem_impact.cost.limits import EVEN, LOWEST, pair_limit, truths
-from fem_impact.cost.settings import placed
-from fem_impact.cost.yardsticks import yardsticks
+from fem_impact.cost.measure import judge_stored, measure
+from fem_impact.cost.quantities import TARGETED, chosen
+from fem_impact.cost.settings import FAMILY, Mesh, ladder, on_mesh, placed
 from fem_impact.errors import RunError, UsageError
+from fem_impact.plan.measured import yardsticks
 from fem_impact.progress import NullMeter
-from fem_impact.scene import load
+from fem_impact.scene.shipped import load
 
 SCENE = load("t5b")
 
 
 @pytest.fixture
 def fake(monkeypatch):
-    monkeypatch.setattr(fem_impact.simulate, "simulate", run)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     monkeypatch.setattr(import_module("fem_impact.cost.measure"), "compiled_before", lambda: True)
 
 
@@ -290,7 +283,7 @@ def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
             raise RunError("out of patience.")
         return run(scene, fidelity)
 
-    monkeypatch.setattr(fem_impact.simulate, "simulate", failing)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", failing)
     most = 8
     found = measure(SCENE, tmp_path, NullMeter(), executor=Here())
     places = {0.396: ("0", "0.25", "0.5", "0.75"), 0.198: ("0", "0.5")}

@@ -9,16 +9,17 @@ import pytest
 from cost_fakes import Here, run
 
 import fem_impact.cost
+import fem_impact.run.simulate
 import fem_impact.scene
-import fem_impact.simulate
-from fem_impact.cost import summary, summary_markdown
+from fem_impact.cost.document import summary_markdown
+from fem_impact.cost.to_target import summary
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture
 def fake(monkeypatch):
-    monkeypatch.setattr(fem_impact.simulate, "simulate", run)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     measure = import_module("fem_impact.cost.measure")
     monkeypatch.setattr(measure, "compiled_before", lambda: True)
     monkeypatch.setattr(measure, "ProcessPoolExecutor", lambda *_, **__: Here())
@@ -59,7 +60,7 @@ def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     assert "summary: all/summary.json" in out
     meshes = [one["name"] for one in held["scenes"]["t5b"]["settings"] if one["kind"] == "mesh"]
     assert meshes == ["solid 0.594 mm", "solid 0.396 mm", "solid 0.297 mm"]
-    monkeypatch.setattr(fem_impact.simulate, "simulate", None)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", None)
     assert cli("cost", "paper", "--stored", "--out", "all", "--quiet")[0] == 0
     again = json.loads(Path("all/summary.json").read_text())
     assert again["scenes"] == held["scenes"]
@@ -94,7 +95,7 @@ def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
             reasons={"achieved_error": "one run alone"}, **stated | {"achieved_error": None}
         )
 
-    monkeypatch.setattr(fem_impact.simulate, "simulate", answer)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", answer)
     code, out, err = cli("run", "t5b", "--set", "accuracy=20 %")
     assert code == 0
     assert "accuracy 20 %: modal, expected error 15 %" in err

@@ -2,8 +2,8 @@
 
 import pytest
 
+from fem_impact.cost.document import work_precision
 from fem_impact.cost.judge import Judged
-from fem_impact.cost.plot import work_precision
 from fem_impact.figures import style
 
 

@@ -8,21 +8,18 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.contact_law import thornton
-from fem_impact.effects import EFFECTS, choices, neglected, specify
-from fem_impact.effects.vibration import bending_period
-from fem_impact.estimates import (
-    coarse_tip,
-    contact_estimate,
-    contact_modulus,
-    effective_mass,
-    principal_radii,
-    widest_tip_size,
-)
-from fem_impact.scene import Scene, load
-from fem_impact.scene.effect_names import NAMES
+from fem_impact.effects.registry import EFFECTS, NAMES
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.contact import contact_estimate, contact_modulus, effective_mass, principal_radii
+from fem_impact.physics.contact_law import thornton
+from fem_impact.plan.choose import choices, neglected
+from fem_impact.plan.limits import coarse_tip, widest_tip_size
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build
-from fem_impact.solid.contact import PlaneContact, SurfaceContact
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.yielding import YieldingZone

@@ -6,13 +6,12 @@ from math import log, pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.effects import EFFECTS, choices, everything
-from fem_impact.effects.beam import bending_period
 from fem_impact.effects.plasticity import DEEP
 from fem_impact.effects.radiation import number as radiated
-from fem_impact.effects.share import expected_shares
-from fem_impact.effects.strike import strike
-from fem_impact.estimates import (
+from fem_impact.effects.registry import BARRIERS, EFFECTS, NAMES
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.beam_impact import strike
+from fem_impact.physics.contact import (
     FLATTEST,
     arms,
     contact_estimate,
@@ -20,9 +19,11 @@ from fem_impact.estimates import (
     principal_radii,
     start_energy,
 )
-from fem_impact.heating import expected_rise, flash_bound
-from fem_impact.scene import BARRIERS, NAMES, load, replace_all
-from fem_impact.verify.reference.hertz import radiated_share
+from fem_impact.physics.flash import expected_rise, flash_bound
+from fem_impact.plan.choose import choices, everything
+from fem_impact.plan.measured import expected_shares
+from fem_impact.reference.hertz import radiated_share
+from fem_impact.scene.shipped import load, replace_all
 
 
 def number(stated, name):

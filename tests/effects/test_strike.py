@@ -6,14 +6,13 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.contact_law import contact_law
-from fem_impact.effects import everything
-from fem_impact.effects.beam import beam
-from fem_impact.effects.flight import Flight
-from fem_impact.effects.strike import Touch, strike
-from fem_impact.estimates import normal_share
-from fem_impact.modal import modal_rod
-from fem_impact.scene import load, replace_all
+from fem_impact.modal.rod import modal_rod
+from fem_impact.physics.beam import BeamFlight, beam
+from fem_impact.physics.beam_impact import Touch, strike
+from fem_impact.physics.contact import normal_share
+from fem_impact.physics.contact_law import contact_law
+from fem_impact.plan.choose import everything
+from fem_impact.scene.shipped import load, replace_all
 
 ELASTIC = ("vibration", "barrier-elastic")
 # E_vib / E_0 of finite elements at the default mesh (README, Results; 21 November 2026)
@@ -96,9 +95,9 @@ def test_flying_at_once_and_ending_early_change_nothing(length, monkeypatch):
         everything(load("t3-machined")), {"projectile.length": length, "impact.v_n": "-4 m/s"}
     )
     quick = strike(scene)
-    monkeypatch.setattr(Flight, "free", lambda *_: 1)
-    monkeypatch.setattr(Flight, "gone", lambda *_: False)
-    monkeypatch.setattr("fem_impact.effects.strike.MOST_STEPS", 200_000)
+    monkeypatch.setattr(BeamFlight, "free", lambda *_: 1)
+    monkeypatch.setattr(BeamFlight, "gone", lambda *_: False)
+    monkeypatch.setattr("fem_impact.physics.beam_impact.MOST_STEPS", 200_000)
     assert strike.__wrapped__(scene) == pytest.approx(quick, rel=1e-5)
 
 

@@ -6,16 +6,21 @@ from math import exp, hypot
 import numpy as np
 import pytest
 
-from fem_impact.effects import EFFECTS, Effect, Harm, choices, choose, neglected, specify
-from fem_impact.estimates import contact_estimate, projectile
-from fem_impact.output import read_table
-from fem_impact.scene import effect_names, load, replace_all
-from fem_impact.simulate import simulate
+from fem_impact.effects import registry as effect_names
+from fem_impact.effects.registry import EFFECTS
+from fem_impact.effects.slots import Effect, Harm
+from fem_impact.physics.contact import contact_estimate, projectile
+from fem_impact.plan import choose
+from fem_impact.plan.choose import choices, neglected
+from fem_impact.plan.plan import specify
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid import run
 from fem_impact.solid.build import build
 from fem_impact.solid.elastic import Weight
 from fem_impact.solid.march import march
 from fem_impact.solid.observers import Watch
+from fem_impact.tables.csv import read_table
 
 MOON = 1.62  # m/s2
 

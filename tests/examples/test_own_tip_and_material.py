@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.estimates import projectile
-from fem_impact.scene import load, replace_all
-from fem_impact.solid.geometry import build_geometry
+from fem_impact.fem.geometry import build_geometry
+from fem_impact.physics.contact import projectile
+from fem_impact.scene.shipped import load, replace_all
 from rigid import SHAPES, Nose
 
 

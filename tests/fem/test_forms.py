@@ -8,14 +8,14 @@ from skfem import Basis, ElementHex1, ElementVector, FacetBasis
 
 import meshes
 from fem_impact.fem import forms
+from fem_impact.fem.boundary import spread_boundary
+from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.fem.hexmodes import dummy_element
+from fem_impact.fem.slices import SliceOperator
+from fem_impact.fem.sparse import NodeProduct, assemble, tie_operator
+from fem_impact.physics.hardening import linear_hardening
 from fem_impact.render.kinematics import stretch
-from fem_impact.solid.boundary import spread_boundary
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
-from fem_impact.solid.hardening import linear_hardening
-from fem_impact.solid.hexmodes import dummy_element
 from fem_impact.solid.items import add_force
-from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import NodeProduct, assemble, tie_operator
 from fem_impact.solid.yielding import YieldingZone
 from meshes import OUTER, Zone
 

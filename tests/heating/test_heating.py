@@ -7,11 +7,19 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.estimates import arms, contact_estimate
-from fem_impact.heating import Half, expected_rise, flash, flash_bound, moving_rise, short_rise, sliding_speed
-from fem_impact.reduce import reduce
-from fem_impact.scene import load
-from fem_impact.simulate import simulate
+from fem_impact.physics.contact import arms, contact_estimate
+from fem_impact.physics.flash import (
+    Half,
+    expected_rise,
+    flash,
+    flash_bound,
+    moving_rise,
+    short_rise,
+    sliding_speed,
+)
+from fem_impact.run.simulate import simulate
+from fem_impact.run.solid import reduce
+from fem_impact.scene.shipped import load
 from fem_impact.solid.heatwatch import loaded_area
 
 STEEL = Half(53.0, 7850 * 440.0)

@@ -24,14 +24,14 @@ from hypothesis import strategies as st
 import fem_impact
 import meshes
 import rigid
-from fem_impact.errors import FemImpactError, ResultError
-from fem_impact.outcome import Outcome
-from fem_impact.output import read_table
-from fem_impact.scale import store as store_module
-from fem_impact.scale.store import Store
-from fem_impact.scene import SceneError, load
+from fem_impact.errors import FemImpactError, ResultError, SceneError
+from fem_impact.jobs import store as store_module
+from fem_impact.jobs.store import Store
+from fem_impact.outcome.record import Outcome
+from fem_impact.scene.shipped import load
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.state import State
+from fem_impact.tables.csv import read_table
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=1500, deadline=None, suppress_health_check=list(HealthCheck))

@@ -6,11 +6,11 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.contact_law import ContactLaw, contact_law, restitution
-from fem_impact.estimates import projectile
 from fem_impact.modal.impact import plastic_work, reach
 from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
-from fem_impact.scene import load
+from fem_impact.physics.contact import projectile
+from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
+from fem_impact.scene.shipped import load
 
 NU, R = 0.29, 9.5e-3
 MASS = 4 / 3 * pi * R**3 * 7850

@@ -7,15 +7,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem_impact.compare import compare, text_table
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.estimates import effective_mass, projectile
 from fem_impact.modal.impact import solve as modal_solve
-from fem_impact.outcome import KEYS, Outcome
-from fem_impact.outcome_keys import coefficient_keys
-from fem_impact.scene import MEASURED_SETS, Scene, load, replace_all
-from fem_impact.simulate import simulate
+from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.physics.contact import effective_mass, projectile
+from fem_impact.run.common import coefficient_keys
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import MEASURED_SETS, Scene
 from fem_impact.solid.separation import HORIZON, horizon
+from fem_impact.study.compare import compare, text_table
 from rigid import solve
 
 REDUCED = ("rigid", "modal")

@@ -9,11 +9,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fem_impact.modal.impact as impact
-from fem_impact.estimates import contact_modulus, projectile
-from fem_impact.modal import ModalRod, modal_rod, record, solve
-from fem_impact.scene import load, replace_all
-from fem_impact.verify.reference.oblique import oblique_drop, oblique_rod
-from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
+from fem_impact.modal.impact import solve
+from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.physics.contact import contact_modulus, projectile
+from fem_impact.reference.hertz import SpringRow, tangential_ratio
+from fem_impact.reference.oblique import oblique_drop, oblique_rod
+from fem_impact.run import modal as record
+from fem_impact.scene.shipped import load, replace_all
 
 
 def rod(length, speed, f, angle=pi / 4):

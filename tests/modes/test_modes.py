@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem_impact.effects import specify
-from fem_impact.modes import flight, rigid_motion, rod_modes
-from fem_impact.scene import load
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.fem.flight import flight, rigid_motion
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.rodview import modes_of
 

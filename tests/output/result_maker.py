@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from fem_impact.outcome import KEYS, Outcome
-from fem_impact.output import COMPARISON, CONTACTS, HISTORY, FieldWriter, write_table, write_text
+from fem_impact.files.atomic import write_text
+from fem_impact.files.fields_write import FieldWriter
+from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.tables.csv import COMPARISON, CONTACTS, HISTORY, write_table
 
 LENGTH, RADIUS, ALPHA, SPEED = 0.08, 9.5e-3, np.radians(45.0), 2.1
 MASS, E_0 = 0.1766, 0.1766 * SPEED**2 / 2

@@ -10,12 +10,12 @@ from result_maker import values
 
 from fem_impact.errors import ResultError
 from fem_impact.figures.lines import Panel, Series
-from fem_impact.outcome import Outcome
-from fem_impact.output import write_text
-from fem_impact.report import write_all, write_report
+from fem_impact.files.atomic import write_text
+from fem_impact.outcome.record import Outcome
+from fem_impact.report.all_page import write_all
 from fem_impact.report.findings import read_findings
-from fem_impact.study.document import Paper, Picture, Sheet, publish
-from fem_impact.study.request import Request
+from fem_impact.report.write import write_report
+from fem_impact.study.document import Paper, Picture, Request, Sheet, publish
 
 
 @pytest.fixture

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from fem_impact.render.board import blank, clock, colour_bar, heading
-from fem_impact.render.layout import Abreast, Layout
+from fem_impact.render.layout import Abreast, FrameLayout
 from fem_impact.render.motion import FIELDS
 from fem_impact.render.side_by_side import TITLE, _scale, _title
 
@@ -23,7 +23,7 @@ def boxes(drawn: Figure):
 @pytest.mark.parametrize("field", FIELDS)
 @pytest.mark.parametrize("count", [None, 3, 4])
 def test_words_under_a_view_clear_the_view_the_bar_and_the_strip(field, count):
-    frame = Layout(1280, 720) if count is None else Abreast(1280, 720, count)
+    frame = FrameLayout(1280, 720) if count is None else Abreast(1280, 720, count)
     view = frame.close if count is None else frame.views[1]
     drawn = blank(frame)
     colour_bar(drawn, frame, view, field, (-1.0, 1.0))
@@ -44,7 +44,7 @@ class Pen:
 
 @pytest.mark.parametrize("title", [TITLE, LONG])
 def test_a_title_ends_before_the_clock(title):
-    frame, pen = Layout(1280, 720), Pen()
+    frame, pen = FrameLayout(1280, 720), Pen()
     drawn = blank(frame)
     heading(drawn, frame, title)
     clock(pen, frame, 8000e-6)

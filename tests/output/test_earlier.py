@@ -5,10 +5,11 @@ import os
 
 import pytest
 
-from fem_impact.earlier import earlier, set_aside
-from fem_impact.outcome import Outcome
-from fem_impact.scene import Scene, load
-from fem_impact.simulate import simulate
+from fem_impact.files.run_directory import earlier, set_aside
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
 
 
 def test_an_older_run_goes_whole_into_a_directory_of_its_time(tmp_path):
@@ -45,7 +46,7 @@ def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch
     def killed(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(importlib.import_module("fem_impact.simulate"), "_compute", killed)
+    monkeypatch.setattr(importlib.import_module("fem_impact.run.simulate"), "_compute", killed)
     with pytest.raises(KeyboardInterrupt):
         simulate(load("t5d"), "rigid", out=tmp_path)
     assert not (tmp_path / "outcome.json").exists()

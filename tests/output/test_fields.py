@@ -9,7 +9,8 @@ import pytest
 import result_maker
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.output import FieldWriter, read_fields
+from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields_write import FieldWriter
 
 POINTS, CELLS = result_maker.grid((2, 1, 1))
 

@@ -6,8 +6,9 @@ import h5py
 import numpy as np
 import pytest
 
-from fem_impact.output import FieldWriter, read_fields
-from fem_impact.output.fields_layout import add_frame
+from fem_impact.files.fields_layout import add_frame
+from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields_write import FieldWriter
 
 NODES, CELLS = 90, 40
 RNG = np.random.default_rng(1)
@@ -91,7 +92,7 @@ def test_the_first_frame_is_there_or_not(tmp_path, monkeypatch):
         root.file.flush()
         seen.append(writer.path.read_bytes())
 
-    monkeypatch.setattr("fem_impact.output.fields_write.add_frame", looked_at)
+    monkeypatch.setattr("fem_impact.files.fields_write.add_frame", looked_at)
     assert writer.append(0.0, *fields_of(0))
     assert seen == [before]
     assert writer.frames == 1

@@ -8,17 +8,11 @@ import pytest
 import result_maker
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.figures import (
-    comparison_figure,
-    force_figure,
-    ledger_figure,
-    partition_figure,
-    study_partition_figure,
-    style,
-)
-from fem_impact.figures.accounts import FINAL, RUNNING
+from fem_impact.figures import style
+from fem_impact.figures.history import FINAL, RUNNING, force_figure, ledger_figure
+from fem_impact.figures.partition import comparison_figure, partition_figure, study_partition_figure
 from fem_impact.figures.style import percent
-from fem_impact.output import HISTORY, read_table
+from fem_impact.tables.csv import HISTORY, read_table
 
 
 @pytest.fixture(scope="module")

@@ -10,15 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.output import (
-    HISTORY,
-    HistoryWriter,
-    atomic_path,
-    make_directory,
-    read_table,
-    write_table,
-    write_text,
-)
+from fem_impact.files.atomic import atomic_path, make_directory, write_text
+from fem_impact.tables.csv import HISTORY, read_table, write_table
+from fem_impact.tables.growing import HistoryWriter
 
 
 def test_failing_block_leaves_the_old_file_and_nothing_else(tmp_path):

@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.figures import style
 from fem_impact.figures.lines import Mark, Panel, Series, lines_figure
-from fem_impact.output import read_table
+from fem_impact.tables.csv import read_table
 
 MARKS = (Mark(28.7, "0.12 m"), Mark(26.45, "limit of Eq 29"), Mark(57.3, "0.24 m"))
 

@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from result_maker import values
 
 from fem_impact.errors import ResultError
-from fem_impact.outcome import ARMS, KEYS, Outcome, installed_versions, markdown_table
+from fem_impact.outcome.groups import ARMS
+from fem_impact.outcome.keys import markdown_table
+from fem_impact.outcome.record import KEYS, Outcome, installed_versions
 
 TEXT = Outcome(values()).to_json()
 

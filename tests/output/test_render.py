@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from PIL import Image
 
 import fem_impact.render.encode as encoding
-import fem_impact.render.probe as probe
+import fem_impact.render.encode as probe
 from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError
-from fem_impact.output import read_fields
-from fem_impact.render import render, render_side_by_side, require_gl
+from fem_impact.files.fields_read import read_fields
+from fem_impact.render.encode import require_gl
+from fem_impact.render.film import render
 from fem_impact.render.kinematics import (
     axis_of,
     hex_volumes,
@@ -24,9 +25,9 @@ from fem_impact.render.kinematics import (
     stretch,
     to_points,
 )
-from fem_impact.render.layout import Abreast, Layout
+from fem_impact.render.layout import Abreast, FrameLayout
 from fem_impact.render.motion import prepare
-from fem_impact.render.side_by_side import _alike
+from fem_impact.render.side_by_side import _alike, render_side_by_side
 
 POINTS, CELLS = result_maker.grid((3, 2, 4))
 WEIGHTS = nodal_volumes(POINTS, CELLS)
@@ -116,7 +117,7 @@ def test_cell_values_at_points_keep_a_constant():
 @pytest.mark.parametrize("size", [(1000, 720), (1280, 700), (320, 240)])
 def test_size_an_encoder_cannot_take_is_refused(size):
     with pytest.raises(ValueError, match="multiples of 16"):
-        Layout(*size)
+        FrameLayout(*size)
 
 
 def test_ranges_are_fixed_over_the_film(result):
@@ -219,7 +220,7 @@ def test_film_shows_motion_and_carries_the_marker(result, tmp_path):
     made = render(result, tmp_path / "film.png", frames=3, size=(640, 480))
     assert (made.frames, made.notes) == (3, ())
     pictures = [np.asarray(Image.open(path)).astype(int) for path in sorted(made.path.iterdir())]
-    layout = Layout(640, 480)
+    layout = FrameLayout(640, 480)
     for view in (layout.rod, layout.close, layout.strip):
         cut = np.s_[view.top : view.top + view.height, view.left : view.left + view.width]
         for picture in pictures:

@@ -7,11 +7,13 @@ import pytest
 import result_maker
 
 from fem_impact.errors import ResultError
-from fem_impact.output import write_bytes
-from fem_impact.report import draw_study, read_study, write_report
-from fem_impact.report.effects import effects_section
+from fem_impact.files.atomic import write_bytes
 from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
-from fem_impact.scene import load
+from fem_impact.report.sections import effects_section
+from fem_impact.report.study_data import read_study
+from fem_impact.report.study_page import draw_study
+from fem_impact.report.write import write_report
+from fem_impact.scene.shipped import load
 
 VOID = {"meta", "link", "img", "source", "br"}
 

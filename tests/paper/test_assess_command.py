@@ -5,11 +5,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fem_impact.assess.assess import assess
+from fem_impact.assess.bounds import (
+    Range,
+    carry,
+    largest_loss_whatever,
+    measured_on,
+    sliding_heat,
+    worst_losses,
+)
+from fem_impact.assess.drop import DroppedRod, weights_of
 from fem_impact.errors import SceneError
-from fem_impact.paper import Case, assess
-from fem_impact.paper.bounds import Range, largest_loss_whatever, sliding_heat, worst_losses
-from fem_impact.paper.case import weights_of
-from fem_impact.paper.transfer import carry, measured_on
 from rigid import (
     General,
     ImpactError,
@@ -30,11 +36,11 @@ def case_of(s):
     """The case that repeats a measured set."""
     speed = float(np.hypot(s.motion["v_n"], s.motion["v_t"]).mean())
     rod = Projectile(s.length, s.diameter, s.tip, s.tip_radius, 7850.0)
-    return Case(rod, speed**2 / (2 * GRAVITY), s.alpha, s.surface)
+    return DroppedRod(rod, speed**2 / (2 * GRAVITY), s.alpha, s.surface)
 
 
 def short_rod(height=0.225, degrees=45.0, surface="machined", tip="B", radius=0.003, length=0.08):
-    return Case(Projectile(length, 0.019, tip, radius, 7850.0), height, np.radians(degrees), surface)
+    return DroppedRod(Projectile(length, 0.019, tip, radius, 7850.0), height, np.radians(degrees), surface)
 
 
 @pytest.mark.parametrize("s", measured_sets(), ids=lambda s: s.id)

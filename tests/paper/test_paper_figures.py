@@ -11,7 +11,7 @@ from rigid.experiments import angle_sets, correlations, drawn_losses, loss_again
 @pytest.fixture(scope="module")
 def drawn(tmp_path_factory):
     """Every figure, drawn once."""
-    from fem_impact.paper import FIGURES, draw_figure
+    from fem_impact.paper.figures import FIGURES, draw_figure
 
     out = tmp_path_factory.mktemp("figures")
     return {number: draw_figure(number, out) for number in FIGURES}

@@ -4,15 +4,15 @@ import math
 
 import pytest
 
-from fem_impact.paper import Case
-from fem_impact.paper import rigid_enough as module
-from fem_impact.paper.rigid_enough import rigid_enough
+from fem_impact.assess import rigid_enough as module
+from fem_impact.assess.drop import DroppedRod
+from fem_impact.assess.rigid_enough import rigid_enough
 from rigid import Projectile
 
 
 def case(length, degrees=45.0):
     rod = Projectile(length, 0.019, "B", 0.003, 7850.0)
-    return Case(rod, 0.26, math.radians(degrees), "machined")
+    return DroppedRod(rod, 0.26, math.radians(degrees), "machined")
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import rigid
-from fem_impact.cli_parser import read_line
+from fem_impact.commands.parser import read_line
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 COMMANDS = ("audit", "coefficients", "figure", "assess")
@@ -18,7 +18,7 @@ COMMANDS = ("audit", "coefficients", "figure", "assess")
 @pytest.mark.parametrize("command", COMMANDS)
 def test_help_is_light(command):
     probe = (
-        "import sys\nfrom fem_impact.cli import main\n"
+        "import sys\nfrom fem_impact.commands.main import main\n"
         f"try:\n    main([{command!r}, '--help'])\nexcept SystemExit:\n    pass\n"
         "print(*(n for n in ('numpy', 'matplotlib', 'rigid', 'h5py') if n in sys.modules), 'end')"
     )
@@ -72,7 +72,9 @@ def test_the_python_of_the_section_runs(capsys):
 
 def test_the_table_of_the_section_names_what_there_is():
     table = re.search(r"^\| in `rigid` \|.*?\n\n", README, re.DOTALL | re.MULTILINE).group()
-    names = [name for row in table.strip().splitlines()[2:] for name in re.findall("`([^`]+)`", row.split("|")[1])]
+    names = [
+        name for row in table.strip().splitlines()[2:] for name in re.findall("`([^`]+)`", row.split("|")[1])
+    ]
     assert "solve_free" in names
     assert [name for name in names if name != "rigid.experiments" and name not in rigid.__all__] == []
 

@@ -7,12 +7,12 @@ from concurrent.futures import Executor
 from pathlib import Path
 from unittest import mock
 
-import fem_impact.simulate
+import fem_impact.run.simulate
 from fem_impact.errors import RunError
-from fem_impact.outcome import KEYS, SCHEMA_VERSION, Outcome
-from fem_impact.scale import Job
-from fem_impact.scale.job import compute
-from fem_impact.scene import load, replace_all
+from fem_impact.jobs.job import Job, compute
+from fem_impact.outcome.check import SCHEMA_VERSION
+from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.scene.shipped import load, replace_all
 
 LOG = "SCALE_TEST_LOG"
 
@@ -60,7 +60,7 @@ def act(word, rest):
 def computed(job):
     """What a worker does, with the solver above."""
     # a worker may live in the process of the tests, whose other tests want the true one back
-    with mock.patch.object(fem_impact.simulate, "simulate", simulate):
+    with mock.patch.object(fem_impact.run.simulate, "simulate", simulate):
         return compute(job)
 
 

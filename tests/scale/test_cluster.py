@@ -14,9 +14,11 @@ import pytest
 from scale_tasks import LOG, Acting, job
 
 from fem_impact.errors import MissingLibraryError, UsageError
+from fem_impact.jobs import executors as cluster_module
+from fem_impact.jobs.executors import on_scheduler
+from fem_impact.jobs.job import Failure
+from fem_impact.jobs.run import run_jobs
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure, on_scheduler, run_jobs
-from fem_impact.scale import cluster as cluster_module
 
 HERE = Path(__file__).parent
 

@@ -5,10 +5,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scale_tasks import Acting, Here, job
 
+from fem_impact.jobs.forecast import estimate
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import GUESS, STEEPNESS, Eta, expected_costs, makespan, run_jobs
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Job, estimate, run_jobs
-from fem_impact.scale.costs import GUESS, STEEPNESS, Eta, expected_costs, makespan
-from fem_impact.scene import load
+from fem_impact.scene.shipped import load
 
 
 def solid(name, size):
@@ -34,7 +35,7 @@ def test_a_makespan_lies_between_its_bounds(costs, workers):
 
 def test_the_eta_follows_the_work_not_the_number_of_jobs(monkeypatch):
     seen, now = [], [100.0]
-    monkeypatch.setattr("fem_impact.scale.costs.time.monotonic", lambda: now[0])
+    monkeypatch.setattr("fem_impact.jobs.run.time.monotonic", lambda: now[0])
     eta = Eta.start({"long": 8.0, "short": 2.0}, 3, seen.append)
     now[0] = 116.0
     eta("long", 2)

@@ -13,9 +13,11 @@ import pytest
 from scale_tasks import LOG, Acting, job
 
 from fem_impact.errors import RunError
+from fem_impact.jobs import run as run_module
+from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.jobs.job import Failure
+from fem_impact.jobs.run import run_jobs
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure, LocalProcesses, run_jobs
-from fem_impact.scale import run as run_module
 
 HERE = Path(__file__).parent
 STUDY = """

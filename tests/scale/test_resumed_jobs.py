@@ -2,10 +2,10 @@
 
 import pytest
 
-import fem_impact.simulate
+import fem_impact.run.simulate
 from fem_impact.errors import ResultError
-from fem_impact.scale.job import Job, compute
-from fem_impact.scene import load
+from fem_impact.jobs.job import Job, compute
+from fem_impact.scene.shipped import load
 
 
 class Told:
@@ -25,6 +25,6 @@ def test_a_started_run_resumes_if_it_fits(fits, tries, tmp_path, monkeypatch):
             raise ResultError("another program")
         return Told()
 
-    monkeypatch.setattr(fem_impact.simulate, "simulate", simulate)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", simulate)
     answer = compute(Job("one", load("t5b"), out=tmp_path))
     assert (answer.outcome, answer.reason, asked) == ("outcome", "", tries)

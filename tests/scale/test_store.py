@@ -9,21 +9,23 @@ from pathlib import Path
 import pytest
 from scale_tasks import Here, job, simulate
 
-import fem_impact.simulate
-import fem_impact.sources as sources_module
+import fem_impact.run.program as sources_module
+import fem_impact.run.simulate
 from fem_impact.errors import OutputPathError, ResultError
+from fem_impact.jobs import job as job_module
+from fem_impact.jobs.job import Failure
+from fem_impact.jobs.run import run_jobs
+from fem_impact.jobs.store import Store
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure, Store, run_jobs
-from fem_impact.scale import job as job_module
-from fem_impact.scene import load
-from fem_impact.sources import source_digest, stamp
+from fem_impact.run.program import source_digest, stamp
+from fem_impact.scene.shipped import load
 
-ROOT = Path(fem_impact.simulate.__file__).parents[1]
+ROOT = Path(fem_impact.run.simulate.__file__).parents[1]
 
 
 @pytest.fixture(autouse=True)
 def solver(monkeypatch):
-    monkeypatch.setattr(fem_impact.simulate, "simulate", simulate)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", simulate)
 
 
 def run(store, *jobs):
@@ -47,7 +49,7 @@ def test_a_result_belongs_to_one_scene_fidelity_and_program(tmp_path, monkeypatc
     assert run(store, other)[1] == ["a"]
     assert run(store, job_module.Job("a", job("a").scene, "solid"))[1] == ["a"]
     monkeypatch.setattr(job_module, "source_digest", lambda: "another program")
-    monkeypatch.setattr("fem_impact.scale.run.source_digest", lambda: "another program")
+    monkeypatch.setattr("fem_impact.jobs.run.source_digest", lambda: "another program")
     assert run(store, job("a"))[1] == ["a"]
 
 
@@ -112,7 +114,7 @@ def test_sources_changed_during_a_run_do_not_sign_its_result(tmp_path, monkeypat
         source.write_text("new")
         return simulate(scene, **rest)
 
-    monkeypatch.setattr(fem_impact.simulate, "simulate", slow)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", slow)
     source_digest.cache_clear()
     try:
         before = source_digest()
@@ -145,7 +147,7 @@ def test_the_digest_covers_what_makes_numbers():
         ("fem_impact/cost/data/summary.json", True),
         ("fem_impact/scene/data/materials.toml", True),
         ("rigid/massive.py", True),
-        ("fem_impact/wrap.py", False),
+        ("fem_impact/tables/text.py", False),
         ("fem_impact/effects/data/effect-cost.csv", False),
     ],
 )
@@ -161,8 +163,8 @@ def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, f
 def test_the_digest_covers_all_modules_that_a_run_imports():
     """All but those that refuse, write files or show progress."""
     probe = (
-        "import sys\nfrom fem_impact.scene import load\nfrom fem_impact.simulate import simulate\n"
-        "import fem_impact.reduce, fem_impact.solid.run\n"
+        "import sys\nfrom fem_impact.scene import load\nfrom fem_impact.run.simulate import simulate\n"
+        "import fem_impact.run.solid, fem_impact.solid.run\n"
         "simulate(load('t5b'), 'rigid'), simulate(load('t5b'), 'modal')\n"
         "print(*(name for name in sys.modules if name.startswith('fem_impact.')))"
     )

@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.errors import UsageError
-from fem_impact.scene import Impact, Material, Projectile, Scene, SceneError, load, materials, replace_all
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.scene.library import materials
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import Impact, Material, ProjectileSpec, Scene
 
 NAN, INF = float("nan"), float("inf")
 MISTAKES = [
@@ -206,7 +208,7 @@ def test_a_shipped_name_never_stands_for_other_values():
 def test_python_objects_pass_the_same_checks():
     steel = materials()["rod-steel"]
     with pytest.raises(SceneError, match=r"tip_radius = \"10 mm\""):
-        Projectile(0.24, 0.019, "B", 0.010, steel)
+        ProjectileSpec(0.24, 0.019, "B", 0.010, steel)
     with pytest.raises(SceneError, match="v_n"):
         Impact(math.pi / 4, 1.5, -1.5)
     with pytest.raises(SceneError, match="finite"):

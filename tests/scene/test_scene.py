@@ -9,23 +9,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.scene import (
-    BARRIERS,
-    Accuracy,
-    Barrier,
-    Impact,
-    Projectile,
-    Save,
-    Scene,
-    SceneError,
-    Surface,
-    load,
-    materials,
-    replace_all,
-    shipped,
-    surfaces,
-)
+from fem_impact.effects.registry import BARRIERS
+from fem_impact.errors import SceneError
 from fem_impact.scene.fields import Element
+from fem_impact.scene.library import materials, shipped, surfaces
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
 
 STEELS = st.sampled_from(list(materials().values()))
 OPTIONAL = ("vibration", "friction", "rod-plasticity", "gravity", "large-rotation")
@@ -36,7 +25,7 @@ def scenes(draw):
     diameter = draw(st.floats(5e-3, 0.05))
     tip = draw(st.sampled_from(["A", "B", "plain"]))
     radius = 0.0 if tip == "plain" else draw(st.floats(0.01, 1.0)) * diameter / 2
-    rod = Projectile(diameter * draw(st.floats(1.0, 20.0)), diameter, tip, radius, draw(STEELS))
+    rod = ProjectileSpec(diameter * draw(st.floats(1.0, 20.0)), diameter, tip, radius, draw(STEELS))
     angle = draw(st.floats(0.0, math.pi / 2, exclude_max=True))
     speed = st.floats(-300.0, -1e-6)
     listed = (draw(st.sampled_from(BARRIERS)), *draw(st.sets(st.sampled_from(OPTIONAL))))

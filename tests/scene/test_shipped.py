@@ -6,21 +6,11 @@ import numpy as np
 import pytest
 
 from fem_impact.errors import UsageError
-from fem_impact.scene import (
-    DEFAULTS,
-    MEASURED_SETS,
-    Accuracy,
-    Heating,
-    Impact,
-    Save,
-    Scene,
-    load,
-    materials,
-    shipped,
-    source_of,
-    surfaces,
-    validity,
-)
+from fem_impact.plan.limits import validity
+from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene.library import materials, shipped, source_of, surfaces
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save, Scene
 from rigid.experiments import measured_set, set_ids
 
 

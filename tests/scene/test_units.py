@@ -7,8 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_impact.errors import SceneError
-from fem_impact.scene import format_quantity, parse_quantity
-from fem_impact.scene.units import DIMENSIONS, parse_number
+from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
 
 magnitudes = st.floats(1e-200, 1e30)
 finite = magnitudes | magnitudes.map(lambda x: -x) | st.just(0.0)

@@ -4,8 +4,8 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 
-from fem_impact.effects import specify
-from fem_impact.scene import load
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.run import solve
 

@@ -9,12 +9,12 @@ import scipy.sparse as sp
 import solid_shapes as shapes
 
 import meshes
-from fem_impact.solid.boundary import RADIATION, radiating_share, spread_boundary
+from fem_impact.fem.boundary import RADIATION, radiating_share, spread_boundary
+from fem_impact.fem.elements import isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.reference.waves import radiation_resistance
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
-from fem_impact.solid.elements import isotropic_stiffness, lame_constants, lumped_mass
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
-from fem_impact.verify.reference.radiation import radiation_resistance
 from meshes import OUTER
 
 E, NU, RHO = shapes.E, shapes.NU, shapes.RHO

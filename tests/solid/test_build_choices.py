@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.effects import specify
-from fem_impact.modes import rod_modes
-from fem_impact.scene import load
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 
 BASE = scenes.scene("vibration", "barrier-elastic", length=0.08)

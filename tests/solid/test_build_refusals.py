@@ -2,9 +2,9 @@
 
 import pytest
 
-from fem_impact.effects import specify
 from fem_impact.errors import SceneError
-from fem_impact.scene import load, replace_all
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
 
 

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fem_impact.solid.contact.impulses import MOST_SWEEPS, push, relative, solve
-from fem_impact.solid.contact.search import bilinear
+from fem_impact.solid.contact.patch import bilinear
 
 
 def system(seed, count=8, tilt=0.2, masters=12):

@@ -4,12 +4,11 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.effects import specify
-from fem_impact.estimates import barrier_conforms
-from fem_impact.scene import load
+from fem_impact.physics.contact import barrier_conforms
+from fem_impact.plan.plan import specify
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
-from fem_impact.solid.contact.patch import make_patch
-from fem_impact.solid.contact.search import lowest_gap, vertex_normals
+from fem_impact.solid.contact.patch import lowest_gap, make_patch, vertex_normals
 from fem_impact.solid.march import advance, evaluate
 
 RADIUS = 3e-3

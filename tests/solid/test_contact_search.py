@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.solid.contact.patch import edge_neighbours, make_patch, nearest_quads
-from fem_impact.solid.contact.search import bilinear, locate, vertex_normals
+from fem_impact.solid.contact.patch import (
+    bilinear,
+    edge_neighbours,
+    locate,
+    make_patch,
+    nearest_quads,
+    vertex_normals,
+)
 from fem_impact.solid.contact.surface import SurfaceContact
 
 H = 0.5e-3

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.solid.damping import ModalDamping
+from fem_impact.solid.elastic import ModalDamping
 from fem_impact.solid.march import march
 from fem_impact.verify.bodies import rigid_of
 

@@ -7,7 +7,7 @@ from skfem import Basis, ElementHex1, ElementVector, MeshHex
 from skfem.models.elasticity import linear_elasticity
 
 import meshes
-from fem_impact.solid.elements import (
+from fem_impact.fem.elements import (
     HEX_MAPPING,
     VTK_TO_SKFEM,
     element_stiffness,
@@ -15,7 +15,7 @@ from fem_impact.solid.elements import (
     lame_constants,
     lumped_mass,
 )
-from fem_impact.solid.sparse import assemble, tie_operator
+from fem_impact.fem.sparse import assemble, tie_operator
 from meshes import Zone
 
 E, NU, RHO = shapes.E, shapes.NU, shapes.RHO

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_impact.solid.fours import add_product, load, spread, store, three
-from fem_impact.solid.kernels import kernel
+from fem_impact.fem.kernels import add_product, kernel, load, spread, store, three
 
 
 @kernel

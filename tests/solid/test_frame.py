@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import solid_shapes as shapes
 
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness
+from fem_impact.fem.elements import element_stiffness, isotropic_stiffness
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from fem_impact.solid.hardening import Hardening, linear_hardening, power_hardening
+from fem_impact.physics.hardening import Hardening, linear_hardening, power_hardening
 
 
 def nominal_strength(law):

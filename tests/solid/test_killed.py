@@ -10,10 +10,11 @@ import time
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.outcome import Outcome
-from fem_impact.output import read_fields, read_table
-from fem_impact.run_files import CHECKPOINT
-from fem_impact.scene import load, replace_all
+from fem_impact.files.fields_read import read_fields
+from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.outcome.record import Outcome
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.tables.csv import read_table
 
 SCENE = replace_all(
     load("t5b"),

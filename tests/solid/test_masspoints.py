@@ -5,10 +5,10 @@ import pytest
 from solid_scenes import model, scene
 
 import meshes
-from fem_impact.estimates import projectile
-from fem_impact.modes import rigid_motion
-from fem_impact.solid.elements import lumped_mass
-from fem_impact.solid.masspoints import TWISTING, MassPoints
+from fem_impact.fem.elements import lumped_mass
+from fem_impact.fem.flight import rigid_motion
+from fem_impact.fem.layout import TWISTING, MassPoints
+from fem_impact.physics.contact import projectile
 
 RADIUS, DENSITY = 9.5e-3, 7850.0
 

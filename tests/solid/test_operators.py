@@ -8,9 +8,9 @@ import scipy.sparse as sp
 import solid_shapes as shapes
 
 import meshes
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
-from fem_impact.solid.slices import SliceOperator
-from fem_impact.solid.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.fem.slices import SliceOperator
+from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 
 C = isotropic_stiffness(shapes.E, shapes.NU)
 

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.effects import specify
+from fem_impact.effects.registry import NAMES
 from fem_impact.errors import ResultError
-from fem_impact.output import read_fields
-from fem_impact.reduce import reduce
-from fem_impact.run_files import CHECKPOINT
-from fem_impact.scene import NAMES
+from fem_impact.files.fields_read import read_fields
+from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.plan.plan import specify
+from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
+from fem_impact.solid.checkpoint import put_back, take_out
 from fem_impact.solid.march import march
-from fem_impact.solid.moving import put_back, take_out
-from fem_impact.solid.rodview import RodView
+from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import solve
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
@@ -171,7 +171,7 @@ class Run:
         spec = specify(scene)
         self.model = build(scene, spec)
         self.state = self.model.initial_state()
-        view = RodView.of(self.model)
+        view = RodState.of(self.model)
         self.looking = Watchers.of(scene, spec, self.model, view, out, go_on)
         self.holders = self.looking.holders(self.model, self.state, Stopwatch())
 
@@ -246,7 +246,7 @@ def test_a_checkpoint_of_another_scene_is_refused(stopped):
 
 def test_a_checkpoint_of_another_program_is_refused(stopped, monkeypatch):
     scene, place = stopped
-    monkeypatch.setattr("fem_impact.sources.source_digest", lambda: "0" * 64)
+    monkeypatch.setattr("fem_impact.run.program.source_digest", lambda: "0" * 64)
     assert "written with another sources;" in refusal(scene, place)
 
 

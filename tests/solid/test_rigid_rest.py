@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.effects import specify
-from fem_impact.estimates import arms, projectile
-from fem_impact.reduce import reduce
+from fem_impact.physics.contact import arms, projectile
+from fem_impact.plan.plan import specify
+from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold
 from fem_impact.solid.run import solve

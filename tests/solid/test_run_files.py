@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from fem_impact.outcome import Outcome
-from fem_impact.output import HISTORY, read_fields, read_table
-from fem_impact.scene import load, replace_all
-from fem_impact.simulate import simulate
-from fem_impact.solid.fields import centre_gradients, mises
+from fem_impact.files.fields_read import read_fields
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.solid.rodview import centre_gradients, mises
+from fem_impact.tables.csv import HISTORY, read_table
 
 ACCOUNTS = [name for name in HISTORY if name.startswith(("E_", "W_", "residual"))]
 

@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.effects import specify
-from fem_impact.estimates import projectile
-from fem_impact.modes import rigid_motion
-from fem_impact.reduce import reduce
+from fem_impact.fem.flight import rigid_motion
+from fem_impact.fem.geometry import to_barrier_frame
+from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import specify
+from fem_impact.run.solid import reduce
 from fem_impact.solid import build as built
 from fem_impact.solid.build import START_GAP
-from fem_impact.solid.contact import PlaneContact
-from fem_impact.solid.geometry import to_barrier_frame
+from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import advance, evaluate, march
 from fem_impact.solid.run import solve
 from meshes import SKIN

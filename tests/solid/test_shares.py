@@ -6,7 +6,7 @@ import pytest
 import solid_scenes
 
 from fem_impact.solid import shares
-from fem_impact.solid.damping import ModalDamping
+from fem_impact.solid.elastic import ModalDamping
 from fem_impact.solid.heatwatch import HeatWatch
 
 

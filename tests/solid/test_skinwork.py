@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.reduce import reduce
-from fem_impact.solid.skinwork import DEPTH, skin_share
+from fem_impact.run.solid import reduce
+from fem_impact.solid.doubts import DEPTH, skin_share
 
 CUBE = np.array([(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], dtype=float)
 STACK = np.stack([CUBE - [0, 0, 1], CUBE - [0, 0, 2]])  # two cells of unit height under n = 0

@@ -6,13 +6,12 @@ import solid_scenes as scenes
 import solid_shapes as shapes
 from scipy.sparse import csr_matrix
 
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lumped_mass
-from fem_impact.solid.hexmodes import LANES
-from fem_impact.solid.sparse import assemble, tie_operator
-from fem_impact.solid.stable import SAFETY, gradient_squares, stable_step
-from fem_impact.solid.stepguard import StepGuard
+from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.fem.hexmodes import LANES
+from fem_impact.fem.sparse import assemble, tie_operator
+from fem_impact.fem.stable import SAFETY, gradient_squares, stable_step
+from fem_impact.solid.stepguard import StepGuard, zone_step
 from fem_impact.solid.yielding import gauss_volumes
-from fem_impact.solid.zonestep import zone_step
 
 C = isotropic_stiffness(shapes.E, shapes.NU)
 RHO = 7850.0

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import solid_shapes as shapes
 
-from fem_impact.solid.elements import element_stiffness, isotropic_stiffness, lame_constants
-from fem_impact.solid.hardening import RateFactor, linear_hardening, power_hardening
-from fem_impact.solid.hexmodes import LANES, dummy_element
+from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lame_constants
+from fem_impact.fem.hexmodes import LANES, dummy_element
+from fem_impact.physics.hardening import RateFactor, linear_hardening, power_hardening
 from fem_impact.solid.plastic_return import RETURN_ROWS, _hardened_increment, return_map
 from fem_impact.solid.yielding import YieldingZone
 

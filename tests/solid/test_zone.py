@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.estimates import contact_estimate
-from fem_impact.reduce import reduce
-from fem_impact.scene import load, replace_all
-from fem_impact.simulate import simulate
-from fem_impact.solid.geometry import DRAG, LOW, SLIDE, build_geometry, half_widths
+from fem_impact.fem.geometry import DRAG, LOW, SLIDE, build_geometry, half_widths
+from fem_impact.physics.contact import contact_estimate
+from fem_impact.run.simulate import simulate
+from fem_impact.run.solid import reduce
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.run import solve
 
 SCENE = load("t6-17").replace("accuracy.tip_size", "0.6 mm")
@@ -77,7 +77,7 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     scene = SCENE.replace("save.frames", 0)
     part = solve(scene)
-    monkeypatch.setattr("fem_impact.solid.geometry._round", lambda mesh, *_: mesh.finest)
+    monkeypatch.setattr("fem_impact.fem.geometry._round", lambda mesh, *_: mesh.finest)
     whole = solve(scene)
     counts = [[zone.count for zone in found.model.zones] for found in (part, whole)]
     assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75

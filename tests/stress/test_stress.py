@@ -6,19 +6,19 @@ from dataclasses import replace
 
 import pytest
 
-from fem_impact.effects import specify
-from fem_impact.estimates import contact_estimate
-from fem_impact.outcome import Outcome
-from fem_impact.scene import SceneError, load, replace_all
-from fem_impact.simulate import require_runnable
+from fem_impact.errors import SceneError
+from fem_impact.fem.geometry import face_reach
+from fem_impact.hard_cases.judge import Balance, balance
+from fem_impact.hard_cases.run import MARKS, ROW, page, run_case
+from fem_impact.hard_cases.run import _model as model_of
+from fem_impact.hard_cases.scenes import CASES
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import contact_estimate
+from fem_impact.plan.plan import specify
+from fem_impact.run.simulate import require_runnable
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
-from fem_impact.solid.geometry import face_reach
 from fem_impact.solid.run import solve
-from fem_impact.stress import CASES, run_case
-from fem_impact.stress.judge import Balance, balance
-from fem_impact.stress.page import MARKS, page
-from fem_impact.stress.run import ROW
-from fem_impact.stress.run import _model as model_of
 
 QUICK = (
     *("flat-on-plane", "flat-on-block", "few-elements", "overlap", "between-nodes", "painleve"),

@@ -1,6 +1,6 @@
 """Records of runs that were never computed."""
 
-from fem_impact.outcome import KEYS, Outcome
+from fem_impact.outcome.record import KEYS, Outcome
 
 
 def outcome(**changed):

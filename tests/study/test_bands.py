@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from fem_impact.study.bands import EXTRA, bands, limits
 from study_fakes import outcome
 
-from fem_impact.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
-from fem_impact.outcome import KEYS
-from fem_impact.scene import MEASURED_SETS
-from fem_impact.study.bands import EXTRA, bands, limits
+from fem_impact.outcome.record import KEYS
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.study.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
 from rigid.experiments import Statistic, measured_set
 
 

@@ -5,17 +5,10 @@ import json
 import pytest
 from study_fakes import outcome
 
+from fem_impact.jobs.job import Failure
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure
-from fem_impact.study import Request
-from fem_impact.study.convergence import (
-    QUANTITIES,
-    _pairs,
-    conclude,
-    convergence_rows,
-    jobs_of,
-    plan,
-)
+from fem_impact.study.convergence import QUANTITIES, _pairs, conclude, convergence_rows, jobs_of, plan
+from fem_impact.study.document import Request
 
 NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
 

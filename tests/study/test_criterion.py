@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
-from fem_impact.contact_law import contact_law, restitution
-from fem_impact.modal import modal_rod, solve
+from fem_impact.modal.impact import solve
+from fem_impact.modal.rod import modal_rod
+from fem_impact.physics.contact_law import contact_law, restitution
 from fem_impact.progress import NullMeter
-from fem_impact.study import Request, document, static_give
-from fem_impact.study.contact_time import contact_time
+from fem_impact.reference.hertz import SPAN
+from fem_impact.study import document, static_give
 from fem_impact.study.criterion import FAMILIES, conclude, drops, plan
 from fem_impact.study.criterion_measure import (
     Rod,
@@ -22,10 +23,10 @@ from fem_impact.study.criterion_measure import (
     slender,
     spread_of,
 )
-from fem_impact.study.linear_spring import spring_drop
+from fem_impact.study.document import Request
+from fem_impact.study.point_mass import contact_time, spring_drop
 from fem_impact.study.rods import PAPER_RODS, Drop, length_of
 from fem_impact.study.static_give import static_restitution
-from fem_impact.verify.reference.hertz import SPAN
 
 
 def integrated(rod, k, horizon=3e-3, dt=2e-8):

@@ -5,11 +5,14 @@ from math import isclose
 
 import pytest
 
-from fem_impact.effects import Harm, choices, everything
-from fem_impact.effects.strike import Strike, strike
-from fem_impact.scene import BARRIERS, MEASURED_SETS, load
-from fem_impact.simulate import simulate
-from fem_impact.study import Request
+from fem_impact.effects.registry import BARRIERS
+from fem_impact.effects.slots import Harm
+from fem_impact.physics.beam_impact import BeamImpact, strike
+from fem_impact.plan.choose import choices, everything
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.study.document import Request
 from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_row, plan, row, told
 
 RUN = {
@@ -78,8 +81,8 @@ def test_a_change_stands_beside_what_was_expected_of_it():
 
 
 def test_vibration_stands_beside_what_was_expected():
-    assert expected_row("x", RUN, Strike(0.5, 1e-3, 9.0)) == ["x", 0.4, 0.5, 2e-3, 1e-3, 2.0]
-    assert expected_row("x", RUN, Strike(0.5, 0.0, 9.0))[-1] is None
+    assert expected_row("x", RUN, BeamImpact(0.5, 1e-3, 9.0)) == ["x", 0.4, 0.5, 2e-3, 1e-3, 2.0]
+    assert expected_row("x", RUN, BeamImpact(0.5, 0.0, 9.0))[-1] is None
 
 
 def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):

@@ -5,9 +5,10 @@ import json
 import pytest
 from study_fakes import outcome
 
+from fem_impact.jobs.job import Failure
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure
-from fem_impact.study import Request, document
+from fem_impact.study import document
+from fem_impact.study.document import Request
 from fem_impact.study.gamma import SLACK, anchors, conclude, grid, line, plan
 from fem_impact.study.gamma_tell import Maps
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from fem_impact.cost.settings import FAMILY, on_mesh
-from fem_impact.scene import load, replace_all
-from fem_impact.simulate import simulate
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
 
 F = 0.2
 

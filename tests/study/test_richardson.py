@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from fem_impact.cost.limits import limit
 from fem_impact.errors import RunError
-from fem_impact.study.richardson import limit
 
 SIZES = np.array([3.0, 2.25, 1.8, 1.5, 1.0])
 

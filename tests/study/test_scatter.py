@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
-from fem_impact.estimates import projectile
+from fem_impact.jobs.job import Failure
+from fem_impact.physics.contact import projectile
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure
-from fem_impact.scene import load
-from fem_impact.study import Request
+from fem_impact.scene.shipped import load
 from fem_impact.study import scatter as scatter_module
+from fem_impact.study.document import Request
+from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, sample_values
 from fem_impact.study.scatter import conclude, design, plan
-from fem_impact.study.scatter_inputs import CONTACT, INPUTS, LEVELS, sample_values
 from rigid.experiments import measured_set
 
 SCENE, SET = load("t5b"), measured_set("t5b")
@@ -39,12 +39,12 @@ def test_samples_are_seeded_and_stay_within_their_ranges():
     first, again = design(16), design(16)
     assert all((first[part] == again[part]).all() for part in first)
     values = sample_values(SCENE, SET, first["A"], tests=False)
-    low, high = np.array([i.span(SCENE, SET) for i in INPUTS]).T
+    low, high = np.array([i.span(SCENE, SET) for i in UNCERTAIN_INPUTS]).T
     assert ((values >= low) & (values <= high)).all()
     assert (values.std(axis=0) > 0.1 * (high - low)).all()
     tests = sample_values(SCENE, SET, first["A"], tests=True)
     same = (tests == values).all(axis=0)
-    assert [i.name for i, is_same in zip(INPUTS, same, strict=True) if not is_same] == [
+    assert [i.name for i, is_same in zip(UNCERTAIN_INPUTS, same, strict=True) if not is_same] == [
         "yield",
         "plate clamping",
     ]
@@ -53,7 +53,7 @@ def test_samples_are_seeded_and_stay_within_their_ranges():
 
 
 def test_the_contact_point_moves_by_what_is_stated():
-    rods = [replace(SCENE.projectile, tip_radius=r) for r in INPUTS[3].span(SCENE, SET)]
+    rods = [replace(SCENE.projectile, tip_radius=r) for r in UNCERTAIN_INPUTS[3].span(SCENE, SET)]
     at = [projectile(replace(SCENE, projectile=rod)).contact_point(np.pi / 4) for rod in rods]
     assert np.hypot(*np.subtract(*at)) == pytest.approx(2 * CONTACT, rel=1e-6)
 
@@ -62,7 +62,7 @@ def test_a_scene_with_nominal_inputs_is_the_set(tmp_path):
     (job, *_), half = plan(Request(tmp_path, ("t5b",), quick=True), {}), 0.5
     assert job.fidelity == "modal"
     assert job.scene.projectile.length == SCENE.projectile.length
-    centre = sample_values(SCENE, SET, np.full((1, len(INPUTS)), half), tests=True)[0]
+    centre = sample_values(SCENE, SET, np.full((1, len(UNCERTAIN_INPUTS)), half), tests=True)[0]
     changed = scatter_module.replace_all(SCENE, scatter_module.changes(SCENE, centre))
     assert changed.impact == SCENE.impact
     assert changed.projectile.tip_radius == pytest.approx(SCENE.projectile.tip_radius)
@@ -74,7 +74,7 @@ def test_indices_of_a_known_function(tmp_path, monkeypatch):
     monkeypatch.setattr(scatter_module, "publish", lambda paper, *_: paper)
     paper = conclude(request, results_of(request), NullMeter())
     total = {(q, i): t for _, q, i, _, _, t, _ in next(s for s in paper.sheets if s.name == "sobol").rows}
-    spans = [i.span(SCENE, SET) for i in INPUTS]
+    spans = [i.span(SCENE, SET) for i in UNCERTAIN_INPUTS]
     mean_speed = np.hypot(SCENE.impact.v_n, SCENE.impact.v_t)
     friction, speed = 2 * np.ptp(spans[0]), 0.1 * mean_speed * np.ptp(spans[4])
     share = friction**2 / (friction**2 + speed**2)
@@ -100,5 +100,5 @@ def test_the_study_tells_spread_and_correlation_beside_the_tests(tmp_path):
 
 def test_solid_runs_are_few_and_coarse(tmp_path):
     jobs = plan(Request(tmp_path, ("t5b",), fidelity="solid"), {})
-    assert len(jobs) == 8 * (len(INPUTS) + 4)
+    assert len(jobs) == 8 * (len(UNCERTAIN_INPUTS) + 4)
     assert {(job.fidelity, job.scene.accuracy.tip_size) for job in jobs} == {("solid", 0.8e-3)}

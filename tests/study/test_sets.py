@@ -6,12 +6,13 @@ from dataclasses import replace
 import pytest
 from study_fakes import outcome
 
-from fem_impact.outcome import Outcome
+from fem_impact.jobs.job import Failure
+from fem_impact.outcome.record import Outcome
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure
-from fem_impact.study import Request, run_study
-from fem_impact.study import request as request_module
-from fem_impact.study.sensitivity import INPUTS
+from fem_impact.study import document as request_module
+from fem_impact.study.catalogue import run_study
+from fem_impact.study.document import Request
+from fem_impact.study.inputs import INPUT_CHANGES
 from fem_impact.study.sets import COARSER, QUICK_SETS, conclude, jobs_of, plan
 
 
@@ -78,7 +79,7 @@ def test_a_first_look_is_one_set_a_rod(tmp_path):
 
 def test_changed_inputs_are_run_unless_quick(tmp_path):
     found = study(tmp_path, "t5b", quick=False)
-    assert {row["input"] for row in found.document["sensitivity"]} >= {i.name for i in INPUTS}
+    assert {row["input"] for row in found.document["sensitivity"]} >= {i.name for i in INPUT_CHANGES}
     assert study(tmp_path, "t5b").document["sensitivity"] == []
 
 

@@ -6,12 +6,11 @@ from study_fakes import outcome
 import fem_impact.render
 import fem_impact.report
 from fem_impact.errors import MissingLibraryError
+from fem_impact.jobs.job import Failure
 from fem_impact.progress import NullMeter
-from fem_impact.scale import Failure
-from fem_impact.study.markdown import summary
-from fem_impact.study.present import pictures, present
-from fem_impact.study.sensitivity import explanations, sensitivity_rows
-from fem_impact.study.sets import jobs_of
+from fem_impact.report.present import pictures, present
+from fem_impact.study.inputs import explanations, sensitivity_rows
+from fem_impact.study.sets import jobs_of, summary
 
 
 def row(quantity, verdict, model=0.3, band=0.01):

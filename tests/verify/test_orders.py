@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 import meshes
-from fem_impact.modes import rod_modes
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.reference.free_modes import cylinder_frequencies
 from fem_impact.solid.march import march
-from fem_impact.verify import verify
-from fem_impact.verify.bodies import Body, body_model
-from fem_impact.verify.free_modes import Probe, frequencies
-from fem_impact.verify.reference.cylinder import cylinder_frequencies
+from fem_impact.verify.bodies import FreeBody, body_model
+from fem_impact.verify.catalogue import verify
+from fem_impact.verify.waves import Probe, frequencies
 
 
 def order(errors, sizes):
@@ -27,7 +27,7 @@ def test_frequencies_are_of_second_order():
     for n in across:
         bar = meshes.rod(np.array([[0.0, 0.0], [9.5e-3, 0.0]]), 0.06, n, slice_length=0.019 / n, nose=False)
         still = np.zeros_like(bar.mesh.points)
-        found = frequencies(body_model(Body(bar, bar.mesh.points, still, 219e9, 0.29, 7850.0)))
+        found = frequencies(body_model(FreeBody(bar, bar.mesh.points, still, 219e9, 0.29, 7850.0)))
         bending, longitudinal = found["bending"][:3], found["longitudinal"][:2]
         errors.append([*(bending / exact.bending - 1), *(longitudinal / exact.longitudinal[:2] - 1)])
     for row in np.transpose(errors):
@@ -44,7 +44,7 @@ def test_waves_are_of_second_order_in_the_slice():
 def test_time_steps_are_of_second_order():
     """Leapfrog rings a mode at (2 / dt) asin(omega dt / 2): high by (omega dt)^2 / 24."""
     bar = meshes.rod(np.array([[0.0, 0.0], [9.5e-3, 0.0]]), 0.03, 6, nose=False)
-    still = body_model(Body(bar, bar.mesh.points, np.zeros_like(bar.mesh.points), 219e9, 0.29, 7850.0))
+    still = body_model(FreeBody(bar, bar.mesh.points, np.zeros_like(bar.mesh.points), 219e9, 0.29, 7850.0))
     n = still.layout.rod_size
     modes = rod_modes(still.rod_stiffness, still.mass[:n], still.inverse_mass[:n] == 0, 30)
     omega, shape = modes.omega[-1], modes.shape[:, -1]

@@ -5,16 +5,16 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.cli import main
+from fem_impact.commands.main import main
 from fem_impact.errors import UsageError
-from fem_impact.verify import PROBLEMS, Check, Cost, Verification
-from fem_impact.verify.page import HEAD, MARKS, page, put_page
+from fem_impact.verify.catalogue import HEAD, MARKS, PROBLEMS, page, put_page
+from fem_impact.verify.problem import Check, ProblemCost, Verification
 
 README = Path(__file__).parents[2] / "README.md"
 
 
 def found(name, *checks):
-    return Verification(name, {}, checks, Cost(30.0, 25.4, 10, 20))
+    return Verification(name, {}, checks, ProblemCost(30.0, 25.4, 10, 20))
 
 
 EASY = Check("length", "m", 1.001, 1.0, 0.1)

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from fem_impact.cli import main
+from fem_impact.commands.main import main
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.verify import PROBLEMS, Check, Parameter, Problem, problem, verify
-from fem_impact.verify.problem import Solved
+from fem_impact.verify.catalogue import PROBLEMS, problem, verify
+from fem_impact.verify.problem import Check, Parameter, Problem, Solved
 
 LENGTH = Parameter("length", "of it", 0.24, 0.02, 2.0, "length")
 COUNT = Parameter("across", "cells", 8, 6, 24, multiple=2)

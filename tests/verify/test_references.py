@@ -9,18 +9,22 @@ from pathlib import Path
 
 import pytest
 
+from fem_impact.reference.bricks import Bar, rebound, wall_stress
+from fem_impact.reference.free_modes import bending_modes, cylinder_frequencies
+from fem_impact.reference.hertz import (
+    SpringRow,
+    contact_modulus,
+    hertz,
+    radiated_share,
+    tangential_ratio,
+    thornton_restitution,
+    yield_speed,
+)
+from fem_impact.reference.oblique import oblique_drop, oblique_rod
+from fem_impact.reference.rod_end import sears, strike
+from fem_impact.reference.sphere import INERTIA, oblique_sphere, reversal
+from fem_impact.reference.waves import flexural_speed, longitudinal_speed, rayleigh_speed
 from fem_impact.verify import reference
-from fem_impact.verify.reference.bar import strike
-from fem_impact.verify.reference.beam import bending_modes
-from fem_impact.verify.reference.bricks import Bar, rebound, wall_stress
-from fem_impact.verify.reference.cylinder import cylinder_frequencies
-from fem_impact.verify.reference.hertz import contact_modulus, hertz, radiated_share
-from fem_impact.verify.reference.oblique import oblique_drop, oblique_rod
-from fem_impact.verify.reference.sears import sears
-from fem_impact.verify.reference.sphere import INERTIA, oblique_sphere, reversal
-from fem_impact.verify.reference.tangential import SpringRow, tangential_ratio
-from fem_impact.verify.reference.thornton import thornton_restitution, yield_speed
-from fem_impact.verify.reference.waves import flexural_speed, longitudinal_speed, rayleigh_speed
 from rigid import Projectile
 
 STEEL = (219e9, 0.29, 7850.0)

@@ -5,15 +5,12 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.verify.reference.finite_sphere import ball_excess, ball_impact, bounce, local_law
-from fem_impact.verify.reference.finite_sphere_shear import ball_shear
-from fem_impact.verify.reference.hertz import contact_modulus, hertz, radiated_share
-from fem_impact.verify.reference.oblique import ObliqueRod, oblique_drop
-from fem_impact.verify.reference.radiation import radiated_energy
-from fem_impact.verify.reference.rod_end import end_excess, end_law
-from fem_impact.verify.reference.sears import rod_impact, sears
-from fem_impact.verify.reference.sphere import oblique_ball, oblique_sphere
-from fem_impact.verify.reference.tangential import SpringRow
+from fem_impact.reference.finite_sphere import ball_excess, ball_impact, ball_shear, bounce, local_law
+from fem_impact.reference.hertz import SpringRow, contact_modulus, hertz, radiated_share
+from fem_impact.reference.oblique import ObliqueRod, oblique_drop
+from fem_impact.reference.rod_end import end_excess, end_law, rod_impact, sears
+from fem_impact.reference.sphere import oblique_ball, oblique_sphere
+from fem_impact.reference.waves import radiated_energy
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9
 MASS = 4 / 3 * pi * R**3 * RHO

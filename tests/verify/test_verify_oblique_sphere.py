@@ -4,7 +4,7 @@ from math import atan
 
 import pytest
 
-from fem_impact.verify import verify
+from fem_impact.verify.catalogue import verify
 
 COARSE = {"cells": 3, "across": 8}
 

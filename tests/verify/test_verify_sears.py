@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.verify import verify
+from fem_impact.verify.catalogue import verify
 
 
 def test_a_short_rod():

@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import RunError, SceneError
-from fem_impact.verify import verify
+from fem_impact.verify.catalogue import verify
 
 COARSE = {"slices": 20, "across": 6}
 

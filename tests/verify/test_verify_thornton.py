@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.verify import problem, verify
+from fem_impact.verify.catalogue import problem, verify
 from fem_impact.verify.thornton_tip import judged_slope
 
 

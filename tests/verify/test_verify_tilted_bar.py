@@ -3,7 +3,7 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.verify import verify
+from fem_impact.verify.catalogue import verify
 
 HARD, SPRINGS = "normal rebound, hard contact", "normal rebound, springs of public codes"
 

@@ -3,10 +3,10 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.verify import problem, verify
 from fem_impact.verify.bodies import rigid_of
+from fem_impact.verify.catalogue import problem, verify
+from fem_impact.verify.setups import run_strike
 from fem_impact.verify.spheres import ball_mass, plain_hertz, sphere_model
-from fem_impact.verify.tips import run_strike
 
 
 def errors(found):

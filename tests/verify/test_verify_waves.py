@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 
-from fem_impact.verify import verify
+from fem_impact.verify.catalogue import verify
 
 
 def test_waves():

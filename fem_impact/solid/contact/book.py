@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from fem_impact.arrays import Array
 
 # places in the step record that the kernels fill (half model)
 IMPULSE_T, IMPULSE_N, ARM, FRICTION, CLOSING, ACTIVE, OUTSIDE, SWEEPS = range(8)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from fem_impact.solid.kernels import inlined, kernel
+from fem_impact.fem.kernels import inlined, kernel
 
 MOST_SWEEPS = 60
 TOLERANCE = 1e-9  # largest change of an impulse in a sweep over the largest impulse

@@ -1,4 +1,4 @@
-"""A contact surface: quadrilaterals, their neighbours, and the nodes they use."""
+"""Where a point stands over a deformed surface: compiled walks over quads in the (t, b) plane."""
 
 from __future__ import annotations
 
@@ -7,10 +7,137 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.solid.contact.search import vertex_normals
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.kernels import inlined, kernel
 
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+# a point this far outside the last quad (in its own units) still belongs to it: symmetry plane, round-off
+SLACK = 1e-6
+LONGEST_WALK = 60
+
+
+@inlined
+def bilinear(xi, eta):  # type: ignore[no-untyped-def]
+    """Return the four bilinear weights."""
+    return (
+        0.25 * (1 - xi) * (1 - eta),
+        0.25 * (1 + xi) * (1 - eta),
+        0.25 * (1 + xi) * (1 + eta),
+        0.25 * (1 - xi) * (1 + eta),
+    )
+
+
+@inlined
+def height_from(x, surface, normals, node, t, b):  # type: ignore[no-untyped-def]
+    """Return the height that a node stands for at (t, b): its own, and a share ``bend`` of its slope."""
+    place, bend, normal = surface.places[node], surface.bend[node], normals[node]
+    if bend == 0.0:
+        return x[place[2]]
+    return x[place[2]] - bend * ((t - x[place[0]]) * normal[0] + (b - x[place[1]]) * normal[1]) / normal[2]
+
+
+@kernel
+def _invert(x, places, quad, t, b):  # type: ignore[no-untyped-def]
+    """Return (xi, eta) of the point (t, b) in a quad's projection, by Newton's method."""
+    t0, t1 = x[places[quad[0], 0]], x[places[quad[1], 0]]
+    t2, t3 = x[places[quad[2], 0]], x[places[quad[3], 0]]
+    b0, b1 = x[places[quad[0], 1]], x[places[quad[1], 1]]
+    b2, b3 = x[places[quad[2], 1]], x[places[quad[3], 1]]
+    xi, eta = 0.0, 0.0
+    for _ in range(12):
+        w0, w1, w2, w3 = bilinear(xi, eta)
+        r_t = t - (w0 * t0 + w1 * t1 + w2 * t2 + w3 * t3)
+        r_b = b - (w0 * b0 + w1 * b1 + w2 * b2 + w3 * b3)
+        t_xi = 0.25 * ((1 - eta) * (t1 - t0) + (1 + eta) * (t2 - t3))
+        b_xi = 0.25 * ((1 - eta) * (b1 - b0) + (1 + eta) * (b2 - b3))
+        t_eta = 0.25 * ((1 - xi) * (t3 - t0) + (1 + xi) * (t2 - t1))
+        b_eta = 0.25 * ((1 - xi) * (b3 - b0) + (1 + xi) * (b2 - b1))
+        det = t_xi * b_eta - t_eta * b_xi
+        if det == 0.0:
+            break
+        d_xi, d_eta = (r_t * b_eta - r_b * t_eta) / det, (t_xi * r_b - b_xi * r_t) / det
+        xi = min(max(xi + d_xi, -3.0), 3.0)
+        eta = min(max(eta + d_eta, -3.0), 3.0)
+        if abs(d_xi) + abs(d_eta) < 1e-12:
+            break
+    return xi, eta
+
+
+@kernel
+def _way_out(x, places, quad, neighbours, t, b):  # type: ignore[no-untyped-def]
+    """Return the edge to leave a quad by: -1 when (t, b) is inside, -2 when only borders lie between.
+
+    Out through the open edge that the point lies farthest outside of; edges turn left around the quad.
+    """
+    leave, farthest, outside = -1, 0.0, False
+    for edge in range(4):
+        p, q = quad[edge], quad[(edge + 1) % 4]
+        along_t, along_b = x[places[q, 0]] - x[places[p, 0]], x[places[q, 1]] - x[places[p, 1]]
+        length = np.sqrt(along_t * along_t + along_b * along_b)
+        beyond = ((t - x[places[p, 0]]) * along_b - (b - x[places[p, 1]]) * along_t) / (length * length)
+        if beyond > SLACK:
+            outside = True
+            if neighbours[edge] >= 0 and beyond * length > farthest:
+                leave, farthest = edge, beyond * length
+    return leave if leave >= 0 or not outside else -2
+
+
+@kernel
+def locate(x, places, quads, neighbours, start, t, b):  # type: ignore[no-untyped-def]
+    """Walk from quad ``start`` to the one over (t, b): (quad or -1, xi, eta)."""
+    q = start
+    for _ in range(LONGEST_WALK):
+        edge = _way_out(x, places, quads[q], neighbours[q], t, b)
+        if edge == -2:
+            return -1, 0.0, 0.0
+        if edge == -1:
+            xi, eta = _invert(x, places, quads[q], t, b)
+            return q, min(max(xi, -1.0), 1.0), min(max(eta, -1.0), 1.0)
+        q = neighbours[q, edge]
+    return -1, 0.0, 0.0
+
+
+@kernel
+def vertex_normals(x, places, quads, mirrored, normals):  # type: ignore[no-untyped-def]
+    """Set unit normals (k, 3) of patch nodes, mirrored at b = 0: means over the corners of the quads around.
+
+    The weights give the exact normal on a sphere, however uneven the quads (Max 1999, J. Graph. Tools 4(2)).
+    """
+    normals[:] = 0.0
+    for q in range(len(quads)):
+        for a in range(4):
+            i, j, k = quads[q, a], quads[q, (a + 1) % 4], quads[q, (a + 3) % 4]
+            ut, ub = x[places[j, 0]] - x[places[i, 0]], x[places[j, 1]] - x[places[i, 1]]
+            un = x[places[j, 2]] - x[places[i, 2]]
+            wt, wb = x[places[k, 0]] - x[places[i, 0]], x[places[k, 1]] - x[places[i, 1]]
+            wn = x[places[k, 2]] - x[places[i, 2]]
+            scale = 1.0 / ((ut * ut + ub * ub + un * un) * (wt * wt + wb * wb + wn * wn))
+            normals[i, 0] += scale * (ub * wn - un * wb)
+            normals[i, 1] += scale * (un * wt - ut * wn)
+            normals[i, 2] += scale * (ut * wb - ub * wt)
+    for i in range(len(normals)):
+        if mirrored[i]:
+            normals[i, 1] = 0.0
+        length = np.sqrt(normals[i, 0] ** 2 + normals[i, 1] ** 2 + normals[i, 2] ** 2)
+        normals[i, 0] /= length
+        normals[i, 1] /= length
+        normals[i, 2] /= length
+
+
+@kernel
+def lowest_gap(x, nodes, surface, normals, last, sign):  # type: ignore[no-untyped-def]
+    """Return the smallest height of nodes (k, 3) over a surface (``sign`` 1) or under it (-1); else inf."""
+    gap = np.inf
+    for i in range(len(nodes)):
+        t, b, n = x[nodes[i, 0]], x[nodes[i, 1]], x[nodes[i, 2]]
+        q, xi, eta = locate(x, surface.places, surface.quads, surface.neighbours, max(last[i], 0), t, b)
+        if q < 0:
+            continue
+        w, height = bilinear(xi, eta), 0.0
+        for a in range(4):
+            node = surface.quads[q, a]
+            height += w[a] * height_from(x, surface, normals, node, t, b)
+        gap = min(gap, sign * (n - height))
+    return gap
 
 
 # a node is on an edge, not on a rounding, where a quad leans more than this from the mean of those around

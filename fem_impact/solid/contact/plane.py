@@ -6,8 +6,9 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.kernels import kernel
 from fem_impact.solid.contact.book import (
     ACTIVE,
     ARM,
@@ -18,11 +19,7 @@ from fem_impact.solid.contact.book import (
     MOVING,
     ContactBook,
 )
-from fem_impact.solid.kernels import kernel
 from fem_impact.solid.state import State
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(slots=True)

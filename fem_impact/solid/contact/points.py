@@ -5,26 +5,15 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_impact.solid.contact.book import (
-    ACTIVE,
-    ARM,
-    CLOSING,
-    FRICTION,
-    IMPULSE_N,
-    IMPULSE_T,
-    OUTSIDE,
-)
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.solid.contact.book import ACTIVE, ARM, CLOSING, FRICTION, IMPULSE_N, IMPULSE_T, OUTSIDE
 from fem_impact.solid.contact.impulses import relative
-from fem_impact.solid.contact.search import bilinear, height_from, locate
-from fem_impact.solid.kernels import inlined, kernel
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
+from fem_impact.solid.contact.patch import bilinear, height_from, locate
 
 
-class Motion(NamedTuple):
+class PointState(NamedTuple):
     """Positions, kicked velocities, the forces and step lengths of the kick, inverse masses."""
 
     x: Array

@@ -20,24 +20,20 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.book import MOVING, SWEEPS, ContactBook
 from fem_impact.solid.contact.impulses import solve
-from fem_impact.solid.contact.patch import Patch, nearest_quads
+from fem_impact.solid.contact.patch import Patch, lowest_gap, nearest_quads, vertex_normals
 from fem_impact.solid.contact.points import (
-    Motion,
     Points,
+    PointState,
     barrier_under_rod,
     book_work,
     make_points,
     rod_over_barrier,
 )
-from fem_impact.solid.contact.search import lowest_gap, vertex_normals
 from fem_impact.solid.state import State
-
-Array = NDArray[np.float64]
-Ints = NDArray[np.int64]
 
 
 @dataclass(slots=True)
@@ -90,7 +86,7 @@ class SurfaceContact:
 
     def resolve(self, state: State) -> None:
         """Find this step's contacts, solve their impulses, book the work."""
-        motion = Motion(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
+        motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
         c, rod, barrier, record = self.points, self.rod, self.barrier, self.book.step
         record[:] = 0.0
         self._turn_normals(state.x)

@@ -1,0 +1,175 @@
+"""A user's own camera data: a CSV file with one test a row and the units in the header."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import read_text
+from fem_impact.scene.units import DIMENSIONS, Unit
+from rigid.arrays import Floats
+
+__all__ = ["Camera", "read_camera"]
+
+
+KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
+HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
+LARGEST = 1e6  # m/s or rad/s
+_NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega)(?:_(\w+)|\s*[\[(](.+)[\])])?")
+Line = tuple[int, list[str]]
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """Velocities of each test.
+
+    Attributes
+    ----------
+    motion : mapping of str to (n,) float64
+        v_n, v_t, V_n, V_t (m/s) and Omega (rad/s).
+    tests : tuple of str
+        Label of each test: its cell in a column ``test``, else its number.
+    ignored : tuple of str
+        Columns of the file that were not used.
+    """
+
+    motion: Mapping[str, Floats]
+    tests: tuple[str, ...]
+    ignored: tuple[str, ...]
+
+
+def read_camera(path: str | Path) -> Camera:
+    """Read the velocities before and after each impact.
+
+    Parameters
+    ----------
+    path : path
+        UTF-8 CSV with a header. Columns are named ``v_n_m_per_s`` or ``v_n [m/s]``, and so on, in
+        any unit of speed (m/s, mm/s, km/s) and of angular speed (rad/s, deg/s, rpm); capitals are the
+        motion after impact. A column ``test`` may label the rows.
+
+    Raises
+    ------
+    ResultError
+        Names the file, and the row and column where there is one.
+    """
+    lines = list(_lines(read_text(path), path))
+    if not lines:
+        raise ResultError(f"{path}: is empty. Begin it with the header {HEADER}.")
+    (_, header), *rows = lines
+    names = [name.strip() for name in header]
+    places = _places(names, path)
+    _check_rows(rows, names, path)
+    motion = {
+        name: np.array([_number(row, names, at, unit, path) for row in rows])
+        for name, (at, unit) in places.items()
+    }
+    _check_motion(motion, rows, names, places, path)
+    used = {at for at, _ in places.values()}
+    ignored = tuple(n for i, n in enumerate(names) if i not in used and n != "test")
+    return Camera(motion, _labels(rows, names), ignored)
+
+
+def _lines(text: str, path: str | Path) -> Iterator[Line]:
+    """Yield line number and cells of what is neither blank nor a remark."""
+    reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
+                yield reader.line_num, cells
+    except csv.Error as error:
+        raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+
+
+def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit]]:
+    """Find the five columns and their units."""
+    found: dict[str, tuple[int, Unit]] = {}
+    for at, name in enumerate(names):
+        match = _NAME.fullmatch(name)
+        if match is None:
+            continue
+        if match[1] in found:
+            raise ResultError(f"{path}: {match[1]} has two columns, the second is {name!r}. Keep one.")
+        found[match[1]] = at, _unit(name, match[1], match[2] or match[3], path)
+    missing = [name for name in KINDS if name not in found]
+    if missing:
+        hint = " Separate columns by commas." if any(";" in name or "\t" in name for name in names) else ""
+        lacks = f"{path}: the header lacks {', '.join(missing)}.{hint}"
+        raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).")
+    return found
+
+
+def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
+    """Return the unit that the column's name states."""
+    kind = DIMENSIONS[KINDS[name]]
+    if not text:
+        remedy = f"Name it {name}_{kind.suffix} or {name} [{kind.units[0].symbol}]"
+        raise ResultError(f"{path}: column {column!r} names no unit. {remedy} (units: {kind.symbols}).")
+    unit = kind.unit(text.strip().replace("_per_", "/"))
+    if unit is None:
+        wrong = f"{path}: column {column!r}: {text!r} is not a unit of {kind.name}"
+        raise ResultError(f"{wrong} ({kind.symbols}).")
+    return unit
+
+
+def _check_rows(rows: Sequence[Line], names: Sequence[str], path: str | Path) -> None:
+    """Refuse a table that is ragged or too short for an uncertainty."""
+    for line, cells in rows:
+        if len(cells) != len(names):
+            raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
+    if len(rows) < 2:
+        raise ResultError(f"{path}: holds {len(rows)} tests; an uncertainty needs at least two.")
+
+
+def _number(row: Line, names: Sequence[str], at: int, unit: Unit, path: str | Path) -> float:
+    """Read one cell in SI."""
+    line, cells = row
+    text = cells[at].strip()
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ResultError(f"{path}: line {line}, column {names[at]}: {text[:40]!r} is not a finite number.")
+    value = unit.to_si(text)
+    if abs(value) > LARGEST:
+        raise ResultError(
+            f"{path}: line {line}, column {names[at]}: {text[:40]} is no speed of a dropped rod."
+        )
+    return value
+
+
+def _check_motion(
+    motion: Mapping[str, Floats],
+    rows: Sequence[Line],
+    names: Sequence[str],
+    places: Mapping[str, tuple[int, Unit]],
+    path: str | Path,
+) -> None:
+    """Refuse a test that is no impact, usually one with a sign turned round."""
+    wrong = (
+        ("v_n", motion["v_n"] >= 0, "must be negative: n points out of the barrier, and the rod falls on it"),
+        ("V_n", motion["V_n"] <= motion["v_n"], "must exceed v_n: the barrier can only push"),
+    )
+    for name, bad, words in wrong:
+        if bad.any():
+            first = int(np.argmax(bad))
+            line, cells = rows[first]
+            at = places[name][0]
+            cell = cells[at].strip()
+            raise ResultError(f"{path}: line {line}, column {names[at]}: {cell} {words}.")
+
+
+def _labels(rows: Sequence[Line], names: Sequence[str]) -> tuple[str, ...]:
+    """Return the label of each test."""
+    if "test" not in names:
+        return tuple(str(number) for number in range(1, len(rows) + 1))
+    return tuple(cells[names.index("test")].strip() for _, cells in rows)

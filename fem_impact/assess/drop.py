@@ -1,0 +1,234 @@
+"""A dropped rod to be assessed, and how far it lies from what was measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.scene.units import parse_quantity
+from rigid import SHAPES, Arms, Nose, Projectile, RigidError, drop_velocities
+from rigid.experiments import MeasuredSet, measured_sets
+
+__all__ = [
+    "DENSITY",
+    "TIP_RADII",
+    "DroppedRod",
+    "outside_of",
+    "quantity",
+    "rod_from_options",
+    "sets_of",
+    "warnings_of",
+    "weights_of",
+]
+
+
+Surface = Literal["machined", "contaminated", "cleaned"]
+NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
+"""What counts as one step away: twice the length, 20 degrees, twice the speed."""
+FAST, STEEP = math.log(1.5), math.radians(10.0)
+"""As near a set must be in speed for its angle to count as measured, and in angle for its speed."""
+
+
+@dataclass(frozen=True, slots=True)
+class DroppedRod:
+    """A rod that falls without spin on an inclined steel plate.
+
+    Attributes
+    ----------
+    rod : Projectile
+        SI.
+    height : float
+        Drop height, m.
+    alpha : float
+        Inclination, rad, between 0 and pi/2.
+    surface : "machined", "contaminated" or "cleaned"
+        State of tip and plate.
+    """
+
+    rod: Projectile
+    height: float
+    alpha: float
+    surface: str
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.height) and self.height > 0):
+            raise SceneError("must be above 0.", key="--height", value=f"{self.height:g} m")
+        if not 0 < self.alpha < math.pi / 2:
+            words = (
+                "must lie between 0 and 90 degrees; a rod that falls flat on its end has no one "
+                "contact point."
+            )
+            raise SceneError(words, key="--angle", value=f"{math.degrees(self.alpha):g} deg")
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """v_n and v_t just before impact (Eq 27-28), m/s."""
+        v_n, v_t = drop_velocities(self.height, self.alpha)
+        return float(v_n), float(v_t)
+
+    @property
+    def speed(self) -> float:
+        """Speed of fall, m/s."""
+        return math.hypot(*self.velocity)
+
+    @property
+    def arms(self) -> Arms:
+        """Arms of the lowest point of the tip, m."""
+        return self.rod.arms(self.alpha)
+
+
+def sets_of(surface: str) -> tuple[MeasuredSet, ...]:
+    """Give the measured sets of one surface state."""
+    return tuple(s for s in measured_sets() if s.surface == surface)
+
+
+def weights_of(case: DroppedRod) -> dict[str, float]:
+    """Weigh the measured sets of this surface by nearness (the fourth power of the distance, Shepard's way).
+
+    A measured case takes its own set alone, a case between two sets both; what has less than 2 % is left
+    out. The weights add up to 1.
+    """
+    near = {s.id: max(_distance(case, s), 0.02) ** -4 for s in sets_of(case.surface)}
+    kept = {name: w for name, w in near.items() if w >= 0.02 * sum(near.values())}
+    return {name: w / sum(kept.values()) for name, w in kept.items()}
+
+
+def _distance(case: DroppedRod, s: MeasuredSet) -> float:
+    """Count steps in length, angle and speed; an edge for a measured nose, or a nose for an edge, is one."""
+    steps = (
+        math.log(case.rod.length / s.length) / NEAR["length"],
+        (case.alpha - s.alpha) / NEAR["alpha"],
+        math.log(case.speed / _speed(s)) / NEAR["speed"],
+        float(_has_face(case.rod.nose) != _has_face(SHAPES[s.tip](s.diameter / 2, s.tip_radius))),
+    )
+    return math.hypot(*steps)
+
+
+def _has_face(tip: Nose) -> bool:
+    """Whether the tip has a flat face, so that its edge strikes (B, plain), and not its nose (A)."""
+    return tip.face > 0
+
+
+def _speed(s: MeasuredSet) -> float:
+    return float(np.hypot(s.motion["v_n"], s.motion["v_t"]).mean())
+
+
+def warnings_of(case: DroppedRod) -> tuple[str, ...]:
+    """Say in plain sentences where the case lies outside what was measured."""
+    narrow = (_narrow(case.surface, sets_of(case.surface)),) if case.surface != "machined" else ()
+    return (*narrow, *outside_of(case))
+
+
+def outside_of(case: DroppedRod) -> tuple[str, ...]:
+    """Name each quantity of the case that leaves the range measured on its surface."""
+    return tuple(_outside(case, sets_of(case.surface)))
+
+
+def _outside(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+    rod = case.rod
+    lengths = sorted({s.length for s in sets})
+    if not any(math.isclose(rod.length, x) for x in lengths):
+        known = ", ".join(f"{1e3 * x:g}" for x in lengths)
+        yield f"length {1e3 * rod.length:g} mm: measured on {case.surface} surfaces were rods of {known} mm"
+    if not math.isclose(rod.diameter, 0.019):
+        yield f"diameter {1e3 * rod.diameter:g} mm: only rods of 19 mm were measured"
+    if not any(rod.tip == s.tip and math.isclose(rod.tip_radius, s.tip_radius) for s in sets):
+        known = " or ".join(sorted({f"{s.tip} with {1e3 * s.tip_radius:g} mm" for s in sets}))
+        tip = f"tip {rod.tip} with a radius of {1e3 * rod.tip_radius:g} mm"
+        yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
+    yield from _motion_warnings(case, sets)
+
+
+def _narrow(surface: str, sets: tuple[MeasuredSet, ...]) -> str:
+    tests = sum(len(s.motion["v_n"]) for s in sets)
+    speeds = " and ".join(f"{_speed(s):.2f}" for s in sorted(sets, key=_speed))
+    return (
+        f"{surface} surfaces were measured with one rod (240 mm), at one angle (45 degrees), at "
+        f"{speeds} m/s, in "
+        f"{tests} tests: anything else is an extrapolation"
+    )
+
+
+def _motion_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+    """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
+    length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
+    same = [s for s in sets if s.length == length]
+    as_fast = [s for s in same if abs(math.log(case.speed / _speed(s))) <= FAST] or same
+    as_steep = [s for s in same if abs(case.alpha - s.alpha) <= STEEP] or same
+    angles = sorted(math.degrees(s.alpha) for s in as_fast)
+    speeds = sorted(_speed(s) for s in as_steep)
+    rod, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
+    near = "" if as_fast == same else " at about this speed"
+    if not angles[0] - 0.05 <= degrees <= angles[-1] + 0.05:
+        yield f"angle {degrees:g} degrees: {rod} at {_span(angles, 'degrees', '.0f')}{near}"
+    near = "" if as_steep == same else " at about this angle"
+    if not 0.95 * speeds[0] <= case.speed <= 1.05 * speeds[-1]:
+        yield f"speed {case.speed:.2f} m/s: {rod} at {_span(speeds, 'm/s', '.2f')}{near}"
+
+
+def _span(values: list[float], unit: str, form: str) -> str:
+    low, high = format(values[0], form), format(values[-1], form)
+    return f"{low} {unit} only" if low == high else f"{low} to {high} {unit}"
+
+
+DENSITY = 7850.0
+"""Of the measured steel rods, kg/m3."""
+
+TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
+"""Radius of each measured tip, m (a plain tip has a sharp edge); an added tip has none by default."""
+
+_EXAMPLES = {
+    "--diameter": "19 mm",
+    "--height": "0.82 m",
+    "--angle": "45 deg",
+    "--tip-radius": "3 mm",
+    "--budget": "30 s",
+    "--finest": "0.25 mm",
+}
+
+
+def quantity(text: str, dimension: str, option: str) -> float:
+    """Read an option that carries a unit, such as ``--length "240 mm"``; return its SI value."""
+    try:
+        return parse_quantity(text, dimension, option)
+    except SceneError as error:
+        example = _EXAMPLES.get(option, "240 mm")
+        remedy = f'Write it with its unit, such as {option} "{example}".'
+        raise UsageError(error.problem, key=option, value=text, remedy=remedy) from None
+
+
+def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | None) -> Projectile:
+    """Make the steel rod that ``--length --diameter --tip --tip-radius`` describe.
+
+    Raises
+    ------
+    UsageError
+        A quantity has no unit, the tip is unknown, or it is an added one and has no radius.
+    SceneError
+        No such rod can be turned.
+    """
+    radius = _tip_radius(tip, tip_radius)
+    size = quantity(length, "length", "--length"), quantity(diameter, "length", "--diameter")
+    try:
+        return Projectile(*size, tip, radius, DENSITY)
+    except RigidError as error:
+        remedy = "Change --length, --diameter, --tip or --tip-radius."
+        raise SceneError(f"{error}.", key="rod", remedy=remedy) from None
+
+
+def _tip_radius(tip: str, stated: str | None) -> float:
+    """Return the radius of a tip of `SHAPES`, m: the stated one, or that of a measured tip."""
+    if tip not in SHAPES:
+        remedy = did_you_mean(tip, SHAPES, f"Known are: {', '.join(SHAPES)}.")
+        raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
+    if stated is not None:
+        return quantity(stated, "length", "--tip-radius")
+    if tip not in TIP_RADII:
+        remedy = 'Give its radius, such as --tip-radius "3 mm".'
+        raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
+    return TIP_RADII[tip]

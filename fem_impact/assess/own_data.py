@@ -1,0 +1,139 @@
+"""Coefficients of a user's own tests, with their uncertainty."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from fem_impact.assess.camera import Camera
+from fem_impact.paper.audit import estimate_entry, finite, statistic_entry
+from rigid import (
+    Arms,
+    Projectile,
+    bootstrap,
+    coefficients,
+    critical_ratio,
+    first_order,
+    impulse_centre,
+    losses,
+)
+from rigid.arrays import Floats
+from rigid.experiments import statistic
+
+__all__ = ["own_coefficients"]
+
+
+SHARES = ("E_ln", "E_lt", "E_r")
+
+
+def own_coefficients(
+    camera: Camera, rod: Projectile, alpha: float, arms: Arms, source: str
+) -> dict[str, Any]:
+    """Work out e, mu and e_m of a set of tests (Eq 16-18) with their uncertainty.
+
+    Parameters
+    ----------
+    camera : Camera
+        Velocities of the tests, SI.
+    rod : Projectile
+        Gives mass and k2.
+    alpha : float
+        Inclination, rad.
+    arms : Arms
+        Of the contact point, m.
+    source : str
+        Where the arms come from, in words.
+
+    Returns
+    -------
+    dict
+        Plain JSON: rod, arms, coefficients with first-order and bootstrap intervals, scatter, losses as
+        fractions of E_0, centre of impulse, one entry a test, notes.
+    """
+    body: dict[str, Any] = {"d_c": float(arms.d_c), "d_d": float(arms.d_d), "k2": rod.k2}
+    tests = _tests(camera, rod, arms)
+    mean = {name: values.mean() for name, values in camera.motion.items()}
+    centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
+    found = {
+        "tests": len(camera.tests),
+        "rod": _rod_entry(rod, alpha),
+        "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
+        "coefficients": _estimates(camera.motion, body),
+        "scatter": _scatter(tests),
+        "mu_c": _critical(mean, body, tests),
+        "impulse_centre": {"d_c_m": float(centre.d_c), "from_contact_m": float(centre.d_c - arms.d_c)},
+        "rows": _rows(camera, tests),
+    }
+    return {**found, "notes": _notes(camera, tests, found)}
+
+
+def _tests(camera: Camera, rod: Projectile, arms: Arms) -> dict[str, Floats]:
+    """Give coefficients and energy fractions test by test."""
+    given: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": rod.k2}
+    shares = losses(**camera.motion, **given, mass=rod.mass).fractions()._asdict()
+    found = coefficients(**camera.motion, **given)._asdict()
+    return {**found, **{f"{name}_over_E_0": shares[name] for name in SHARES}}
+
+
+def _rod_entry(rod: Projectile, alpha: float) -> dict[str, Any]:
+    names = ("length", "diameter", "tip_radius")
+    sizes = {f"{name}_m": getattr(rod, name) for name in names}
+    return {**sizes, "tip": rod.tip, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha}
+
+
+def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[str, Any]:
+    """Give each coefficient of the mean motion with both intervals."""
+    linear, drawn = first_order(motion, **body), bootstrap(motion, **body)
+    return {
+        name: {
+            "value": finite(linear[name].value),
+            "first_order": estimate_entry(linear[name]),
+            "bootstrap": estimate_entry(drawn[name]),
+        }
+        for name in linear
+    }
+
+
+def _scatter(tests: Mapping[str, Floats]) -> dict[str, Any]:
+    """Give mean and SD over the tests of what is finite in all of them."""
+    return {
+        name: statistic_entry(statistic(values))
+        for name, values in tests.items()
+        if np.isfinite(values).all()
+    }
+
+
+def _critical(mean: Mapping[str, Any], body: Mapping[str, Any], tests: Mapping[str, Floats]) -> float | None:
+    motion = float(mean["v_n"]), float(mean["v_t"])
+    return finite(critical_ratio(*motion, e=max(0.0, float(tests["e"].mean())), **body))
+
+
+def _rows(camera: Camera, tests: Mapping[str, Floats]) -> list[dict[str, Any]]:
+    return [
+        {"test": label, **{name: finite(values[i]) for name, values in tests.items()}}
+        for i, label in enumerate(camera.tests)
+    ]
+
+
+def _notes(camera: Camera, tests: Mapping[str, Floats], found: Mapping[str, Any]) -> list[str]:
+    """Say what a reader should doubt."""
+    notes = [f"columns not used: {', '.join(camera.ignored)}"] if camera.ignored else []
+    gains = [t for t, kept in zip(camera.tests, tests["E_r_over_E_0"], strict=True) if kept > 1]
+    if gains:
+        notes.append(
+            f"more kinetic energy after than before impact in test {', '.join(gains)}: check its row"
+        )
+    if (camera.motion["v_t"] > 0).any():
+        notes.append("v_t > 0 in some tests: t points up the slope, and a falling rod has v_t < 0")
+    return [*notes, _moment_note(found["coefficients"]["e_m"]["bootstrap"])]
+
+
+def _moment_note(e_m: Mapping[str, Any]) -> str:
+    low, high = e_m["low"], e_m["high"]
+    if low is None or high is None:
+        return "e_m is not determined: the impulse passes through the mass centre within the errors"
+    if low <= -1.0 <= high:
+        return "e_m = -1 (no moment at the contact) lies within the 95 % interval: read no physics into e_m"
+    return "e_m = -1 lies outside the 95 % interval: the impulse did not act at the stated contact point"

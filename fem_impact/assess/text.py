@@ -1,0 +1,204 @@
+"""The assessment as text for the terminal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from fem_impact.tables.text import wrapped
+
+__all__ = ["assess_text", "own_text"]
+
+
+Document = Mapping[str, Any]
+SPANS = (("e", 1.0, 2), ("d_c_m", 1e3, 1))  # of the range that is searched: key, scale, digits
+WORDS = {
+    "total": "total loss",
+    "E_lt": "tangential E_lt",
+    "E_ln": "normal E_ln",
+    "E_r": "kept as rigid motion",
+}
+
+
+def assess_text(document: Document) -> str:
+    """Lay the document of `assess` out for reading: warnings first, since they bind all that follows."""
+    parts = (_case, _warnings, _losses, _worst, _heat, _limits, _rigid)
+    return "\n".join(line for part in parts for line in part(document)) + "\n"
+
+
+def _wrap(text: str, indent: str = "  ") -> list[str]:
+    return wrapped(text, indent)
+
+
+def _case(d: Document) -> Iterator[str]:
+    c = d["case"]
+    sizes = f"{1e3 * c['length_m']:g} mm x {1e3 * c['diameter_m']:g} mm steel rod, tip {c['tip']}"
+    drop = (
+        f"dropped {c['height_m']:g} m on a {c['surface']} plate at {math.degrees(c['angle_rad']):g} degrees"
+    )
+    yield from _wrap(f"{sizes}, {drop}", "")
+    speed = math.hypot(c["v_n_m_per_s"], c["v_t_m_per_s"])
+    yield f"{c['mass_kg']:.3f} kg at {speed:.2f} m/s: E_0 = {c['E_0_J']:.3g} J"
+
+
+def _warnings(d: Document) -> Iterator[str]:
+    yield ""
+    if not d["warnings"]:
+        yield "Inside what was measured."
+    for sentence in d["warnings"]:
+        yield from _wrap(f"WARNING: {sentence}", "")
+
+
+def _losses(d: Document) -> Iterator[str]:
+    b, energy = d["basis"], d["case"]["E_0_J"]
+    yield ""
+    sets = ", ".join(f"{name} ({100 * w:.0f} %)" for name, w in b["weights"].items())
+    yield from _wrap(
+        f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
+    )
+    head = f"{'mean':>6}{'95 % of impacts':>18}{'mean, J':>9}"
+    yield f"  {'':<21}{head}  all {b['all_tests']} of the surface"
+    for name, words in WORDS.items():
+        s = d["losses"][name]
+        spread = f"{100 * s['low']:.0f} to {100 * s['high']:.0f}"
+        every = f"{100 * s['all_low']:.0f} to {100 * s['all_high']:.0f}"
+        yield f"  {words:<21}{100 * s['mean']:6.1f}{spread:>18}{s['mean'] * energy:9.3g}  {every}"
+
+
+def _worst(d: Document) -> Iterator[str]:
+    w, r = d["worst_case"], d["range"]
+    yield ""
+    e, d_c = (f"{scale * r[key][0]:.{n}f} to {scale * r[key][1]:.{n}f}" for key, scale, n in SPANS)
+    yield f"Worst case for any impulse ratio up to the critical one, e from {e},"
+    yield f"  arm d_c of the impulse from {d_c} mm"
+    if not r["measured"]:
+        yield "  (every restitution, because the case lies outside what was measured)"
+    if w["reason"]:
+        yield from _wrap(w["reason"])
+        return
+    for name, words in (("tangential", "tangential loss (for ignition)"), ("total", "total loss")):
+        x = w[name]
+        yield (
+            f"  {words:<32}{100 * x['over_E_0']:5.1f} % = {x['J']:.3g} J, at mu = {x['mu']:.2f}, e = "
+            f"{x['e']:.2f}"
+        )
+    yield from _wrap(
+        f"The critical ratio is {d['mu_c']['mean']:.2f} here; it is no upper bound of mu, since a tip "
+        "that slides back "
+        "exceeds it by about 20 %."
+    )
+
+
+def _heat(d: Document) -> Iterator[str]:
+    h = d["friction_heat"]
+    yield ""
+    yield (
+        f"Friction heat: at most {h['upper_bound_J']:.3g} J ({100 * h['upper_bound_over_E_0']:.1f} % "
+        "of E_0), assuming"
+    )
+    for sentence in h["assumptions"]:
+        yield from _wrap(f"- {sentence}")
+    words = (
+        f"Sharper: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
+        f"{h['rigid_rod_assumption']}."
+    )
+    yield from _wrap(words)
+
+
+def _limits(d: Document) -> Iterator[str]:
+    u, s = d["not_attributed"], d["slenderness"]
+    yield ""
+    yield from _wrap(
+        f"Not attributed: {100 * u['mean']:.0f} % ({100 * u['low']:.0f} to {100 * u['high']:.0f}) "
+        f"{u['sentence']}",
+        "",
+    )
+    yield ""
+    gamma = f"gamma = {s['gamma_per_m0_3815']:.1f} m^-0.3815 ({s['gamma_per_mm0_3815']:.2f} mm^-0.3815)"
+    limit = f"limit {s['limit_per_m0_3815']:.2f} ({s['limit_per_mm0_3815']:.3f})"
+    yield from _wrap(f"Slenderness: {gamma}, {limit}: {s['verdict']}. {s['meaning'].capitalize()}.", "")
+
+
+def _rigid(d: Document) -> Iterator[str]:
+    r = d.get("rigid_theory")
+    if r is None:
+        return
+    free, stiff = r["with_vibration"], r["rigid"]
+    angle = math.degrees(r["worst_angle_rad"])
+    yield ""
+    yield from _wrap(
+        f"May rigid-body theory be used? At this angle: {r['answer']} (vibration changes e by "
+        f"{r['error_of_e']:.3f}; {r['fidelity']}). At any angle: {r['answer_any_angle']} (by "
+        f"{r['worst_error_of_e']:.3f} at {angle:.0f} degrees; {r['worst_fidelity']}).",
+        "",
+    )
+    pairs = (("e", "e"), ("mu", "mu"), ("Omega", "Omega_rad_per_s"), ("E_r/E_0", "E_r_over_E_0"))
+    told = ", ".join(f"{words} {free[key]:.3g} ({stiff[key]:.3g})" for words, key in pairs)
+    yield from _wrap(f"with vibration (rigid rod on the same contact): {told}")
+    yield from _wrap(f"vibration {100 * r['E_vib_over_E_0']:.2g} % of E_0, T1/tau = {r['T1_over_tau']:.2f}")
+
+
+def own_text(document: Document) -> str:
+    """Lay the document of `own_coefficients` out for reading."""
+    parts = (_head, _coefficients, _scatter, _rest)
+    return "\n".join(line for part in parts for line in part(document)) + "\n"
+
+
+def _head(d: Document) -> Iterator[str]:
+    rod, arms = d["rod"], d["arms"]
+    size = f"{1e3 * rod['length_m']:g} mm x {1e3 * rod['diameter_m']:g} mm, tip {rod['tip']}"
+    yield (
+        f"{d['tests']} tests of a rod {size}: {rod['mass_kg']:.4f} kg, k2 = "
+        f"{1e6 * rod['k_squared_m2']:.1f} mm2"
+    )
+    yield from wrapped(
+        f"contact point: d_c = {1e3 * arms['d_c_m']:.2f} mm, d_d = {1e3 * arms['d_d_m']:.2f} mm "
+        f"({arms['source']})"
+    )
+
+
+def _coefficients(d: Document) -> Iterator[str]:
+    yield ""
+    yield from wrapped(
+        "Coefficients of the mean motion, 95 % intervals (velocity scatter, contact point 0.5 mm, "
+        "tracking 2 %)"
+    )
+    yield f"  {'':<5}{'value':>8}   {'first order':<20}bootstrap"
+    for name, c in d["coefficients"].items():
+        yield f"  {name:<5}{_number(c['value']):>8}   {_span(c['first_order']):<20}{_span(c['bootstrap'])}"
+    yield ""
+    yield "Standard uncertainty by source"
+    for name, c in d["coefficients"].items():
+        parts = ", ".join(f"{k} {_number(v)}" for k, v in c["first_order"]["parts"].items())
+        yield f"  {name:<5}{parts}"
+
+
+def _scatter(d: Document) -> Iterator[str]:
+    yield ""
+    yield "Scatter of single tests, mean (SD)"
+    words = [
+        f"{name.replace('_over_E_0', '/E_0')} {s['mean']:.3f} ({s['sd']:.3f})"
+        for name, s in d["scatter"].items()
+    ]
+    yield from wrapped(", ".join(words), "  ", "")
+
+
+def _rest(d: Document) -> Iterator[str]:
+    centre = d["impulse_centre"]
+    yield ""
+    yield from wrapped(
+        f"Centre of impulse (e_m = -1): d_c = {1e3 * centre['d_c_m']:.2f} mm, "
+        f"{1e3 * centre['from_contact_m']:+.2f} mm from the contact point"
+    )
+    yield f"Critical impulse ratio: {_number(d['mu_c'])}"
+    for note in d["notes"]:
+        yield from wrapped(f"note: {note}")
+
+
+def _span(estimate: Mapping[str, Any]) -> str:
+    return f"{_number(estimate['low'])} to {_number(estimate['high'])}"
+
+
+def _number(value: float | None) -> str:
+    return "not finite" if value is None else f"{value:.3f}"

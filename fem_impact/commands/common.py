@@ -1,0 +1,282 @@
+"""Read ``--set key=value`` and change a scene by it."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import tempfile
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.commands.parser import Options
+from fem_impact.errors import OutputPathError, ResultError, UsageError
+from fem_impact.files.run_directory import COMPUTED
+from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.shares import shares
+from fem_impact.progress import NullMeter, ProgressMeter, meter_for
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+__all__ = [
+    "changed_scene",
+    "checked_file",
+    "checked_out",
+    "checked_result",
+    "chosen_meter",
+    "print_json",
+    "print_outcome",
+    "print_table",
+    "read_changes",
+]
+
+
+def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
+    """Load a scene and apply the changes of the command line, checked together at the end."""
+    from fem_impact.scene.shipped import load, replace_all
+
+    scene = load(id_or_path)
+    return replace_all(scene, read_changes(changes)) if changes else scene
+
+
+def read_changes(changes: Sequence[str]) -> dict[str, Any]:
+    """Return key and value of each ``key=value``; a value is TOML where it can be, text otherwise."""
+    return dict(_one(change) for change in changes)
+
+
+def _one(change: str) -> tuple[str, Any]:
+    key, equals, text = change.partition("=")
+    if not equals or not key.strip():
+        raise UsageError(
+            "is not of the form key=value.",
+            key="--set",
+            value=change,
+            remedy="Write --set accuracy.tip_size='0.5 mm'.",
+        )
+    return key.strip(), _changed_value(key.strip(), text.strip())
+
+
+def _changed_value(key: str, text: str) -> Any:
+    if key == "effects" and not text.startswith("[") and "," in text:
+        return [name.strip() for name in text.split(",")]
+    try:
+        return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+    except (ValueError, RecursionError):
+        return text
+
+
+def chosen_meter(options: Options) -> ProgressMeter:
+    """Return a meter on standard error, or a silent one."""
+    if options.quiet:
+        return NullMeter()
+    return meter_for(sys.stderr, width=max(40, shutil.get_terminal_size((100, 24)).columns - 1))
+
+
+RESULT_FILES = ("outcome.json", "study.json")
+_OF_STUDIES = ("store.sqlite", "ledger.csv")
+_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *COMPUTED, "scene.toml", "row.json")
+
+
+def checked_out(out: Path) -> Path:
+    """Make the directory for results and prove that it can be written.
+
+    Raises
+    ------
+    OutputPathError
+        When it is a file, lies below a file, holds somebody's other files, or cannot be written.
+    """
+    try:
+        _refuse_files(out)
+        _refuse_strangers(out)
+        out.mkdir(parents=True, exist_ok=True)
+        _prove_writable(out)
+    except OutputPathError:
+        raise
+    except (OSError, ValueError) as error:
+        raise OutputPathError(_cannot(out, error)) from None
+    return out
+
+
+def checked_file(out: Path) -> Path:
+    """Return a file path whose directory exists and can be written."""
+    try:
+        if out.is_dir():
+            raise OutputPathError(f"{out}: is a directory. Give the name of a file with --out.")
+        _refuse_files(out.parent)
+        _prove_writable(out.parent)
+    except OutputPathError:
+        raise
+    except (OSError, ValueError) as error:
+        raise OutputPathError(_cannot(out.parent, error)) from None
+    return out
+
+
+def checked_result(result: Path) -> Path:
+    """Return a directory that holds results.
+
+    Raises
+    ------
+    ResultError
+        When it is missing, is a file, or holds no results.
+    """
+    if not result.exists():
+        raise ResultError(f"{result}: there is no such directory. Name one that `fem-impact run` wrote.")
+    if not result.is_dir():
+        raise ResultError(f"{result}: is a file. Name the directory of the results, such as {result.parent}.")
+    if not any((result / name).is_file() for name in RESULT_FILES):
+        if (result / "history.csv").is_file():
+            way = f"Go on with `fem-impact run {result / 'scene.toml'} --resume --out {result}`."
+            raise ResultError(f"{result}: the run here did not come to its end. {way}")
+        names = " or ".join(RESULT_FILES)
+        raise ResultError(f"{result}: holds no {names}. Name a directory that `fem-impact run` wrote.")
+    return result
+
+
+def _refuse_files(out: Path) -> None:
+    for place in (out, *out.parents):
+        if place.exists() and not place.is_dir():
+            what = "is a file" if place == out else f"lies below {place}, which is a file"
+            raise OutputPathError(f"{out}: {what}. Choose another directory with --out.")
+
+
+def _refuse_strangers(out: Path) -> None:
+    if not out.is_dir() or not any(out.iterdir()) or _is_ours(out):
+        return
+    raise OutputPathError(
+        f"{out}: the directory holds other files, and results would mix with them. "
+        "Choose an empty or a new directory with --out."
+    )
+
+
+def _is_ours(out: Path) -> bool:
+    """Say whether a run, or the runs of a study that was stopped early, wrote here."""
+    own = (out / name for name in _OWN_FILES)
+    of_runs = (run / name for run in out.iterdir() if run.is_dir() for name in _OWN_FILES)
+    return any(path.exists() for path in (*own, *of_runs))
+
+
+def _prove_writable(directory: Path) -> None:
+    with tempfile.TemporaryFile(dir=directory):
+        pass
+
+
+def _cannot(out: Path, error: Exception) -> str:
+    words = getattr(error, "strerror", None) or str(error)
+    return f"{out}: cannot be written ({words}). Choose another directory with --out."
+
+
+_MOTION = (
+    ("impulse ratio mu", "mu", ""),
+    ("V_n after", "V_n_m_per_s", "m/s"),
+    ("V_t after", "V_t_m_per_s", "m/s"),
+    ("Omega after", "Omega_rad_per_s", "rad/s"),
+)
+_IF_ON = ("damping", "gravity")
+"""Shares that are not mentioned where their effect is off."""
+
+
+def print_json(document: Any) -> None:
+    """Print one JSON document; NaN and infinity are never written."""
+    sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def print_outcome(outcome: Outcome, out: Path) -> None:
+    """Print the motion after impact, where the energy went, and every warning."""
+    lines = [f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}", ""]
+    # only a measured set has arms of the paper
+    arms = ("paper's", "e_paper") if or_none(outcome.restitution.paper.e) is not None else ("tip's", "e_edge")
+    restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
+    lines += [_motion(outcome, *row) for row in (restitution, *_MOTION)]
+    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
+    listed = _listed(outcome)
+    lines += [_share(label, value) for label, value in listed.items()]
+    lines += [_share("residual of the ledger", outcome.energy.residual)]
+    lines += ["", _share("friction + plate's top 0.1 mm", outcome.energy.skin)]
+    lines += [_vibration_note(outcome)] if or_none(outcome.energy.below_floor) else []
+    lines += _accuracy(outcome)
+    lines += _unknown({**listed, "friction + plate's top 0.1 mm": outcome.energy.skin})
+    lines += ["", *(line for sentence in _sentences(outcome) for line in wrapped(f"note: {sentence}"))]
+    sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
+
+
+def _listed(outcome: Outcome) -> dict[str, Num]:
+    """Return the shares of E_0 in this run by their labels."""
+    values = {share: share.of(outcome.energy) for share in shares("terminal")}
+    return {
+        share.label: value
+        for share, value in values.items()
+        if not (isinstance(value, Unknown) and share.key.path[-1] in _IF_ON)
+    }
+
+
+def _accuracy(outcome: Outcome) -> list[str]:
+    """Return expected and achieved error and time of a run that a target chose."""
+    v = outcome.validity
+    if isinstance(v.accuracy_target, Unknown):
+        return []
+    told = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
+    lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
+    for word, error, wall in told:
+        lines += [f"  {word} error of e and E_vib {_percent(error)}, time {_value(wall)} s"]
+    limits = or_none(v.mesh_limit)
+    if limits:
+        e, vibration = (_number(limits[name]) for name in ("e_edge", "E_vib_over_E_0"))
+        lines += [f"  all runs together: e (tip's arms) {e}, E_vib/E_0 {vibration}"]
+    return lines
+
+
+def _percent(value: Num) -> str:
+    return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
+
+
+def _sentences(outcome: Outcome) -> list[str]:
+    return [*outcome.validity.assumptions, *outcome.validity.outside, *outcome.validity.warnings]
+
+
+def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None:
+    """Print rows as a table with aligned columns."""
+    texts = [list(columns), *([str(row[column]) for column in columns] for row in rows)]
+    widths = [max(len(text[i]) for text in texts) for i in range(len(columns))]
+    for text in texts:
+        line = "  ".join(cell.ljust(width) for cell, width in zip(text, widths, strict=True))
+        sys.stdout.write(line.rstrip() + "\n")
+
+
+def _motion(outcome: Outcome, words: str, name: str, unit: str) -> str:
+    value, band = outcome.estimate(KEY_TABLE[name])
+    spread = f" +- {_number(band)}" if band is not None else ""
+    told = "" if isinstance(value, Unknown) else f"{spread} {unit}"
+    return f"  {words:<30} {_value(value)}{told}".rstrip()
+
+
+def _share(label: str, share: Num) -> str:
+    text = f"{'not known':>11}" if isinstance(share, Unknown) else f"{100 * share:9.3f} %"
+    return f"  {label:<30} {text.replace('-0.000', ' 0.000')}"
+
+
+def _unknown(listed: Mapping[str, Num]) -> list[str]:
+    """Return why shares are not known, each reason once."""
+    named: dict[str, list[str]] = {}
+    for label, value in listed.items():
+        if isinstance(value, Unknown):
+            named.setdefault(value.reason, []).append(label)
+    told = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
+    return [line for lines in ([""], *told) for line in lines] if told else []
+
+
+def _vibration_note(outcome: Outcome) -> str:
+    floor = _value(outcome.energy.vibration_floor)
+    return f"  vibration is below its numerical floor (fraction {floor})"
+
+
+def _value(value: Num) -> str:
+    return f"not known: {value.reason}" if isinstance(value, Unknown) else _number(value)
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

@@ -1,0 +1,118 @@
+"""The command ``cost``: what accuracy costs in time for a scene, or for all scenes of the paper."""
+
+from __future__ import annotations
+
+import json
+import sys
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.cost.measure import CostStudy
+    from fem_impact.cost.settings import Mesh
+    from fem_impact.scene.types import Scene
+
+__all__ = ["cost"]
+
+
+PAPER = "paper"
+
+
+def cost(options: Options) -> int:
+    """Run the ladder of settings, judge it, and name the cheapest setting that does."""
+    from fem_impact.assess.drop import quantity
+    from fem_impact.cost.quantities import chosen
+
+    asked = [name.strip() for name in options.of.split(",") if name.strip()]
+    target = _share(options.target) if options.target else None
+    budget = quantity(options.budget, "time", "--budget") if options.budget else None
+    if options.scene == PAPER and (target or budget):
+        remedy = "Leave them out, or name one scene."
+        raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)
+    if options.scene == PAPER:
+        return _paper(options, chosen(asked))
+    scene = changed_scene(options.scene, options.changes)
+    names, family = chosen(asked, scene), _family(scene, options.finest)
+    out = checked_out(options.out or Path("results") / "cost" / scene.id)
+    from fem_impact.cost.document import text_table, write_cost
+    from fem_impact.cost.judge import advice, pair_sentence
+
+    found = _measured(scene, out, options, family)
+    write_cost(found, out, names)
+    answers = advice(found.settings, names, target, budget)
+    if target is not None:
+        answers.append(pair_sentence(found.settings, found.quantities, names, target))
+    if options.json:
+        print_json({**found.to_dict(), "advice": answers})
+    else:
+        told = [line for answer in answers for line in wrapped(answer)]
+        told += [f"all quantities: {out / 'cost.txt'}", f"results: {out}"]
+        sys.stdout.write("\n".join([text_table(found, names), "", *told]) + "\n")
+    return RunError.exit_code if found.failures else 0
+
+
+def _share(text: str) -> float:
+    """Read the error that ``--target`` allows."""
+    from fem_impact.scene.units import parse_share
+
+    try:
+        return parse_share(text, "--target")
+    except SceneError as error:
+        raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
+
+
+def _family(scene: Scene, finest: str) -> list[Mesh]:
+    """Return the meshes that are no finer at the tip than wanted."""
+    from fem_impact.assess.drop import quantity
+    from fem_impact.cost.settings import FAMILY
+
+    least = quantity(finest, "length", "--finest") if finest else 0.0
+    sizes = [mesh.tip_size(scene.projectile.diameter) for mesh in FAMILY]
+    if least > sizes[1]:
+        raise UsageError(
+            "leaves less than two meshes.",
+            key="--finest",
+            value=finest,
+            remedy=f"Give at most {1e3 * sizes[1]:.3g} mm.",
+        )
+    return [mesh for mesh, size in zip(FAMILY, sizes, strict=True) if size >= least]
+
+
+def _measured(scene: Scene, out: Path, options: Options, family: list[Mesh]) -> CostStudy:
+    """Run the ladder, or with ``--stored`` judge what has run."""
+    from fem_impact.cost.measure import judge_stored, measure
+
+    if options.stored:
+        return judge_stored(scene, out, family)
+    with closing(chosen_meter(options)) as meter:
+        return measure(scene, out, meter, family)
+
+
+def _paper(options: Options, names: tuple[str, ...]) -> int:
+    """Measure all sets of the paper, one store each, and write summary.json."""
+    from fem_impact.cost.document import summary_markdown, write_cost
+    from fem_impact.cost.to_target import summarise
+    from fem_impact.files.atomic import write_text
+    from fem_impact.scene.types import MEASURED_SETS
+
+    scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
+    families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
+    out = checked_out(options.out or Path("results") / "cost" / PAPER)
+    costs: dict[str, CostStudy] = {}
+    for name, scene in scenes.items():
+        costs[name] = _measured(scene, out / name, options, families[name])
+        write_cost(costs[name], out / name, names)
+    document = summarise(costs)
+    write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
+    write_text(out / "summary.md", summary_markdown(document))
+    if options.json:
+        print_json(document)
+    else:
+        sys.stdout.write(f"results: {out}\nsummary: {out / 'summary.json'}\n")
+    return RunError.exit_code if any(cost.failures for cost in costs.values()) else 0

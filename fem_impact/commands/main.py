@@ -1,0 +1,85 @@
+"""The ``fem-impact`` command: reads the line, calls one handler, turns errors into exit codes.
+
+Nothing heavy is imported here: a handler imports what it needs when it is called.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+from collections.abc import Callable, Sequence
+from importlib import import_module
+
+from fem_impact.commands.parser import Options, build_parser, read_line
+from fem_impact.errors import FemImpactError, OutputPathError, RunError
+
+__all__ = ["main"]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
+    # a run has no large dense algebra: idle threads of the linear-algebra library only burn time
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # closed by the caller: `>&-`
+    options = read_line(argv)
+    if options.version:
+        return _version()
+    if not options.handler:
+        build_parser().print_help(sys.stderr)
+        return 2
+    return _guarded(_handler(options.handler), options)
+
+
+def _handler(path: str) -> Callable[[Options], int]:
+    """Import ``module:function``, only now."""
+    module, _, name = path.partition(":")
+    function: Callable[[Options], int] = getattr(import_module(module), name)
+    return function
+
+
+def _guarded(handler: Callable[[Options], int], options: Options) -> int:
+    """Call the handler; a user's mistake or a full disk becomes one paragraph and an exit code."""
+    try:
+        code = handler(options)
+        sys.stdout.flush()
+        return code
+    except FemImpactError as error:
+        return _complain(str(error), error.exit_code)
+    except KeyboardInterrupt as stop:
+        return _complain(f"what was computed so far is kept. {stop}".strip(), 130)
+    except MemoryError:
+        return _complain(
+            "out of memory. Use a larger accuracy.tip_size or fewer workers.", RunError.exit_code
+        )
+    except BrokenPipeError:
+        return _reader_left()
+    except OSError as error:
+        return _complain(_disk_words(error), OutputPathError.exit_code)
+
+
+def _complain(message: str, code: int) -> int:
+    word = "interrupted" if code == 130 else "error"
+    sys.stderr.write(f"fem-impact: {word}: {message}\n")
+    return code
+
+
+def _disk_words(error: OSError) -> str:
+    place = f"{error.filename}: " if error.filename else ""
+    words = f"{place}{error.strerror or error}."
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return f"{words} The disk is full: free some space or choose another --out, then run again."
+    return f"{words} Check that the place exists and can be written, or choose another --out."
+
+
+def _reader_left() -> int:
+    """Whoever read our output closed it (``| head``): stop quietly, and keep the interpreter quiet too."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    return 0
+
+
+def _version() -> int:
+    from importlib.metadata import version
+
+    sys.stdout.write(f"fem-impact {version('fem-impact')}\n")
+    return 0

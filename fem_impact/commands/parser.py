@@ -1,0 +1,329 @@
+"""The words of the command line: commands, options, help."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.errors import EXIT_CODES
+
+__all__ = ["Options", "add_rigid_commands", "build_parser", "read_line"]
+
+
+if TYPE_CHECKING:
+    Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+
+_SCENE = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
+_SET = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
+STUDIES = {
+    "sets": "the published series of tests beside the model",
+    "convergence": "their limits for vanishing elements",
+    "gamma": "vibration against slenderness",
+    "criterion": "when a rod may be called rigid",
+    "effects": "effects chosen by the scene beside everything on, and what each costs",
+    "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
+}
+REPORT = {"report": "one page over all studies beside it"}
+_RESULT = "directory that a run or a study wrote"
+
+
+class Options(argparse.Namespace):
+    """What the command line said; every option has a value, whichever command was given."""
+
+    handler: str = ""
+    version: bool = False
+    json: bool = False
+    quiet: bool = False
+    scene: str = ""
+    changes: Sequence[str] = ()
+    fidelity: str = ""
+    ids: Sequence[str] = ()
+    name: str = ""
+    out: Path | None = None
+    problem: str | None = None
+    only: str = ""
+    parameters: bool = False
+    readme: str = ""
+    quick: bool = False
+    workers: int | None = None
+    scheduler: str = ""
+    target: str = ""
+    budget: str = ""
+    of: str = ""
+    finest: str = ""
+    stored: bool = False
+    estimate: bool = False
+    resume: bool = False
+    checkpoint: float = 30.0
+    result: Path
+    results: list[Path]
+    set_id: str | None = None
+    file: Path
+    number: int
+    length: str
+    diameter: str
+    tip: str
+    tip_radius: str | None = None
+    d_c: str | None = None
+    d_d: str | None = None
+    angle: str
+    height: str
+    surface: str
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    codes = "\n".join(f"  {code:>3}  {words}" for code, words in EXIT_CODES.items())
+    parser = argparse.ArgumentParser(
+        prog="fem-impact",
+        description="Where the energy of a dropped steel rod goes: finite elements and rigid theory.",
+        epilog=f"exit codes:\n{codes}",
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("--version", action="store_true", help="print the version")
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+    for add in (
+        _add_run,
+        _add_study,
+        _add_render,
+        _add_report,
+        _add_scenes,
+        _add_check,
+        _add_cost,
+        _add_verify,
+        _add_stress,
+    ):
+        add(commands)
+    add_rigid_commands(commands, _command)
+    return parser
+
+
+def read_line(argv: Sequence[str] | None) -> Options:
+    """Read the command line; one that is not understood ends the program with exit code 2.
+
+    argparse loses words that follow an option after ``ID ...``, as in ``study sets --quick t4``: they come
+    back as unknown and are put where they belong.
+    """
+    parser = build_parser()
+    options, rest = parser.parse_known_args(argv, namespace=Options())
+    if rest and (not options.handler.endswith(":study") or any(word.startswith("-") for word in rest)):
+        parser.error(f"not understood: {' '.join(rest)} (fem-impact COMMAND --help lists the options)")
+    options.ids = [*options.ids, *rest]
+    return options
+
+
+def _command(commands: Commands, name: str, words: str, handler: str) -> argparse.ArgumentParser:
+    """Add one command with the options that all share."""
+    parser = commands.add_parser(name, help=words, description=f"{words[0].upper()}{words[1:]}.")
+    parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
+    parser.set_defaults(handler=handler)
+    return parser
+
+
+def _add_run(commands: Commands) -> None:
+    parser = _command(
+        commands, "run", "compute one scene and write its results", "fem_impact.commands.run:run"
+    )
+    _add_scene_words(parser)
+    parser.add_argument(
+        "--fidelity",
+        choices=["rigid", "modal", "solid"],
+        default="",
+        help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
+    parser.add_argument(
+        "--checkpoint",
+        type=_seconds,
+        default=30.0,
+        metavar="SECONDS",
+        help="time between checkpoints (default: 30)",
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_study(commands: Commands) -> None:
+    parser = _command(
+        commands,
+        "study",
+        "compute many runs and draw conclusions from them",
+        "fem_impact.commands.study:study",
+    )
+    listed = "; ".join(f"{name}: {words}" for name, words in {**STUDIES, **REPORT}.items())
+    parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help=listed)
+    parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
+    parser.add_argument(
+        "--fidelity", choices=["modal", "solid"], default="", help="of scatter (default: modal)"
+    )
+    parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask.distributed cluster to run on")
+    parser.add_argument(
+        "--estimate", action="store_true", help="say how long it takes on 1 to 1000 workers, and stop"
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_render(commands: Commands) -> None:
+    parser = _command(
+        commands, "render", "make a film of the stress waves", "fem_impact.commands.show:render"
+    )
+    several = f"{_RESULT}; several make one film side by side"
+    film = "film to write: .mp4, .webp, .gif, or .png for a folder of frames (default: beside the fields)"
+    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
+    parser.add_argument("--out", type=Path, metavar="FILE", help=film)
+
+
+def _add_report(commands: Commands) -> None:
+    parser = _command(
+        commands, "report", "write the report as one HTML file", "fem_impact.commands.show:report"
+    )
+    parser.add_argument("result", type=Path, metavar="RESULT", help=_RESULT)
+
+
+def _add_scenes(commands: Commands) -> None:
+    _command(commands, "scenes", "list the shipped scenes", "fem_impact.commands.run:scenes")
+
+
+def _add_check(commands: Commands) -> None:
+    words = "check a scene and print it with units, sources and effects, without computing"
+    _add_scene_words(_command(commands, "check", words, "fem_impact.commands.run:check"))
+
+
+def _add_cost(commands: Commands) -> None:
+    words = "show what accuracy costs in time: errors of all settings against the limit"
+    parser = _command(commands, "cost", words, "fem_impact.commands.cost:cost")
+    _add_scene_words(parser)
+    parser.add_argument(
+        "--target",
+        default="",
+        metavar="SHARE",
+        help="name the cheapest setting within an error, such as '2 %%'",
+    )
+    parser.add_argument(
+        "--budget", default="", metavar="TIME", help="name the best setting within a CPU time, such as '30 s'"
+    )
+    parser.add_argument(
+        "--of", default="", metavar="NAMES", help="quantities that count, as --of e,mu (default: e,E_vib)"
+    )
+    parser.add_argument(
+        "--finest", default="", metavar="SIZE", help="leave out finer meshes than this, such as '0.25 mm'"
+    )
+    parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="where to write (default: results/cost/SCENE)"
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_verify(commands: Commands) -> None:
+    words = "run problems with known answers through the solver and judge it"
+    parser = _command(commands, "verify", words, "fem_impact.commands.verify:verify")
+    parser.add_argument(
+        "problem", nargs="?", metavar="NAME", help="one problem, such as bar (default: all of them)"
+    )
+    changed = "change one parameter, such as --set length='80 mm' (a bare number is SI); may be repeated"
+    parser.add_argument(
+        "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
+    )
+    parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
+    parser.add_argument("--readme", metavar="FILE", help="run all problems and write the results into a page")
+
+
+def _add_stress(commands: Commands) -> None:
+    words = "run hard cases and show that each closes its balances, is refused or detected"
+    parser = _command(commands, "stress", words, "fem_impact.commands.verify:stress")
+    parser.add_argument(
+        "--only", default="", metavar="NAME", help="one case, such as angle-60 (default: all of them)"
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/stress)")
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="cases at a time (default: one a core)"
+    )
+    parser.add_argument("--readme", metavar="FILE", help="run all cases and write the table into a page")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_scene_words(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help=_SCENE)
+    parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
+
+
+def _seconds(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
+    return value
+
+
+def _at_least_one(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= 1024:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes (1 to 1024)")
+    return int(text)
+
+
+if TYPE_CHECKING:
+    Command = Callable[[Commands, str, str, str], argparse.ArgumentParser]
+
+_MODULE = "fem_impact.commands.rigid"
+
+
+def add_rigid_commands(commands: Commands, command: Command) -> None:
+    """Add the four commands; `command` adds one with the options that all share."""
+    for add in (_add_audit, _add_coefficients, _add_figure, _add_assess):
+        add(commands, command)
+
+
+def _add_audit(commands: Commands, command: Command) -> None:
+    words = "recompute every printed column of the paper's tables"
+    parser = command(commands, "audit", words, f"{_MODULE}:audit")
+    parser.add_argument("--set", dest="set_id", metavar="ID", help="one measured set, such as t5b")
+    parser.add_argument("--out", type=Path, metavar="CSV", help="write every number with its recomputation")
+
+
+def _add_coefficients(commands: Commands, command: Command) -> None:
+    words = "work out e, mu and e_m of your own camera data, with intervals"
+    parser = command(commands, "coefficients", words, f"{_MODULE}:coefficients")
+    columns = "v_n_m_per_s, v_t_m_per_s, V_n_m_per_s, V_t_m_per_s, Omega_rad_per_s"
+    parser.add_argument("file", type=Path, metavar="FILE.csv", help=f"one test a row; columns {columns}")
+    _add_rod(parser)
+    parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
+    parser.add_argument("--d-c", metavar="LENGTH", help="arm along the slope (default: of the tip's shape)")
+    parser.add_argument("--d-d", metavar="LENGTH", help="arm along the normal (default: of the tip's shape)")
+
+
+def _add_figure(commands: Commands, command: Command) -> None:
+    words = "draw a figure of the paper, with intervals and its data"
+    parser = command(commands, "figure", words, f"{_MODULE}:figure")
+    parser.add_argument("number", type=int, choices=(4, 5, 6, 7), help="of the paper")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/paper)")
+
+
+def _add_assess(commands: Commands, command: Command) -> None:
+    words = "assess a dropped rod: losses, worst case, bound of the friction heat"
+    parser = command(commands, "assess", words, f"{_MODULE}:assess")
+    _add_rod(parser)
+    parser.add_argument("--height", required=True, help='drop height, such as "0.82 m"')
+    parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
+    surfaces = ("machined", "contaminated", "cleaned")
+    parser.add_argument("--surface", required=True, choices=surfaces, help="state of tip and plate")
+    words = "of the answer whether rigid theory may be used: modal (default, seconds) or solid (minutes)"
+    parser.add_argument("--fidelity", choices=["modal", "solid"], default="modal", help=words)
+
+
+def _add_rod(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--length", required=True, help='of the rod, such as "240 mm"')
+    parser.add_argument("--diameter", required=True, help='such as "19 mm"')
+    tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
+    parser.add_argument("--tip", default="B", help=tips)
+    radii = "default: 7 mm for A, 3 mm for B; an added tip needs it"
+    parser.add_argument("--tip-radius", metavar="LENGTH", help=radii)

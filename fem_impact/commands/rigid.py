@@ -1,0 +1,129 @@
+"""The commands that need no finite elements: ``audit``, ``coefficients``, ``figure`` and ``assess``."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.commands.common import checked_file, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.paper.drawn import Drawn
+    from rigid import Arms, Projectile
+
+__all__ = ["assess", "audit", "coefficients", "figure"]
+
+
+def audit(options: Options) -> int:
+    """Recompute the printed columns and print where they disagree."""
+    out = checked_file(options.out) if options.out else None
+    from fem_impact.paper.audit import CSV_COLUMNS, audit_document, audit_text, csv_rows
+    from fem_impact.tables.csv import write_table
+
+    document = audit_document(options.set_id)
+    if out:
+        write_table(out, CSV_COLUMNS, csv_rows(document))
+    _print(document, audit_text, options)
+    return 0
+
+
+def coefficients(options: Options) -> int:
+    """Work out the coefficients of the user's own tests."""
+    from fem_impact.assess.camera import read_camera
+    from fem_impact.assess.own_data import own_coefficients
+    from fem_impact.assess.text import own_text
+    from rigid import RigidError
+
+    rod, alpha = _rod(options), _angle(options)
+    arms, source = _arms(options, rod, alpha)
+    camera = read_camera(options.file)
+    try:
+        document = own_coefficients(camera, rod, alpha, arms, source)
+    except RigidError as error:
+        raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
+    _print({"file": str(options.file), **document}, own_text, options)
+    return 0
+
+
+def figure(options: Options) -> int:
+    """Draw one figure of the paper."""
+    from fem_impact.paper.figures import draw_figure
+
+    drawn = draw_figure(options.number, options.out or Path("results") / "paper")
+    if options.json:
+        print_json(_figure_entry(drawn))
+    else:
+        sys.stdout.write(_figure_text(drawn))
+    return 0
+
+
+def assess(options: Options) -> int:
+    """Assess a dropped rod."""
+    from fem_impact.assess.assess import assess as assessed
+    from fem_impact.assess.drop import DroppedRod, quantity
+    from fem_impact.assess.rigid_enough import rigid_enough
+    from fem_impact.assess.text import assess_text
+
+    height = quantity(options.height, "length", "--height")
+    case = DroppedRod(_rod(options), height, _angle(options), options.surface)
+    document = assessed(case) | {"rigid_theory": rigid_enough(case, options.fidelity)}
+    _print(document, assess_text, options)
+    return 0
+
+
+def _rod(options: Options) -> Projectile:
+    from fem_impact.assess.drop import rod_from_options
+
+    return rod_from_options(options.length, options.diameter, options.tip, options.tip_radius)
+
+
+def _angle(options: Options) -> float:
+    """Return the angle in rad; where the rod has no lowest point it is refused."""
+    from fem_impact.assess.drop import quantity
+
+    alpha = quantity(options.angle, "angle", "--angle")
+    if not 0 <= alpha < math.pi / 2:
+        raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
+    return alpha
+
+
+def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
+    """Return the arms and where they come from; stated ones come as a pair."""
+    import numpy as np
+
+    from fem_impact.assess.drop import quantity
+    from rigid import Arms
+
+    given = (options.d_c, options.d_d)
+    if given == (None, None):
+        return rod.arms(alpha), "lowest point of the tip's shape"
+    if options.d_c is None or options.d_d is None:
+        raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
+    d_c, d_d = (quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
+    return Arms(np.asarray(d_c), np.asarray(d_d)), "as stated"
+
+
+def _print(document: dict[str, Any], text: Callable[[dict[str, Any]], str], options: Options) -> None:
+    if options.json:
+        print_json(document)
+    else:
+        sys.stdout.write(text(document))
+
+
+def _figure_entry(drawn: Drawn) -> dict[str, Any]:
+    statements = [{"claim": s.claim, "found": s.found, "holds": s.holds} for s in drawn.statements]
+    places = {"picture": str(drawn.picture), "data": str(drawn.data)}
+    return {"figure": drawn.number, **places, "sentence": drawn.sentence, "statements": statements}
+
+
+def _figure_text(drawn: Drawn) -> str:
+    lines = [*wrapped(drawn.sentence, hang=""), "", "The paper's statements:"]
+    for s in drawn.statements:
+        lines += wrapped(f"{'holds' if s.holds else 'FAILS'}: {s.claim}: {s.found}", "  ")
+    return "\n".join([*lines, "", f"picture: {drawn.picture}", f"data: {drawn.data}"]) + "\n"

@@ -1,0 +1,223 @@
+"""The command ``run``: one scene."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Iterable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.commands.common import (
+    changed_scene,
+    checked_out,
+    chosen_meter,
+    print_json,
+    print_outcome,
+    print_table,
+)
+from fem_impact.commands.parser import Options
+from fem_impact.effects.registry import BARRIERS
+from fem_impact.errors import RunError, UsageError
+from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.jobs.executors import cores
+from fem_impact.outcome.groups import EffectChoice
+from fem_impact.outcome.keys import keys_of
+from fem_impact.plan.limits import validity
+from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene.library import shipped, source_of
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Scene
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.outcome.record import Outcome
+
+__all__ = ["check", "run", "scenes"]
+
+
+def run(options: Options) -> int:
+    """Compute one scene, write its results and print them."""
+    scene = changed_scene(options.scene, options.changes)
+    if options.resume and options.fidelity in ("rigid", "modal"):
+        problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
+        raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
+    _say_plan(scene, options)
+    out = checked_out(options.out or _default_out(scene, options))
+    from fem_impact.files.run_directory import earlier
+
+    meter, before = chosen_meter(options), earlier(out)
+    try:
+        outcome = _simulation(scene)(
+            scene,
+            fidelity=options.fidelity or None,
+            out=out,
+            progress=meter,
+            resume=options.resume,
+            checkpoint_s=options.checkpoint,
+        )
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
+    finally:
+        meter.close()
+        _say_kept(out, before, options)
+    if options.json:
+        sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
+    else:
+        print_outcome(outcome, out)
+    return 0 if outcome.validity.finished else _stopped(outcome.validity.stopped_because, out)
+
+
+def _simulation(scene: Scene) -> Callable[..., Outcome]:
+    """Return what computes the scene: a scene with a target runs two meshes side by side on two cores."""
+    if scene.accuracy.target is None:
+        from fem_impact.run.simulate import simulate
+
+        return simulate
+    from fem_impact.cost.to_target import simulate_to_target
+
+    return partial(simulate_to_target, workers=cores())
+
+
+def _say_plan(scene: Scene, options: Options) -> None:
+    """Before the work: what the measured costs chose for the error that the scene allows."""
+    if scene.accuracy.target is None:
+        return
+    from fem_impact.cost.to_target import plan
+
+    sentence = plan(scene, options.fidelity or None, cores()).sentence
+    if not options.quiet:
+        sys.stderr.write(f"{sentence}\n")
+
+
+def _way_on(out: Path) -> str:
+    if (out / CHECKPOINT).exists():
+        return "--resume goes on from the last checkpoint."
+    return "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
+
+
+def _say_kept(out: Path, before: list[Path], options: Options) -> None:
+    from fem_impact.files.run_directory import earlier
+
+    for place in earlier(out):
+        if place not in before and not options.quiet:
+            sys.stderr.write(f"An older run that was in {out} is kept in {place}\n")
+
+
+def _default_out(scene: Scene, options: Options) -> Path:
+    """Return results/ID, with the digest's start when the scene was changed, and the fidelity if reduced."""
+    name = f"{scene.id}-{scene.digest()[:8]}" if options.changes else scene.id
+    return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
+
+
+def _stopped(cause: str, out: Path) -> int:
+    sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
+    return RunError.exit_code
+
+
+def scenes(options: Options) -> int:
+    """List the shipped scenes."""
+    rows: list[Any] = [_listed(load(name)) for name in shipped()]
+    if options.json:
+        print_json({"scenes": rows})
+    else:
+        print_table(rows, ("id", "speed", "title"))
+    return 0
+
+
+def check(options: Options) -> int:
+    """Print a scene's full statement: values, sources, effects and validity."""
+    scene = changed_scene(options.scene, options.changes)
+    statement = _statement(scene)
+    if options.json:
+        print_json(statement)
+    else:
+        sys.stdout.write(_readable(scene, statement))
+    return 0
+
+
+def _listed(scene: Scene) -> dict[str, Any]:
+    speed = math.hypot(scene.impact.v_n, scene.impact.v_t)
+    return {
+        "id": scene.id,
+        "title": scene.title,
+        "speed": f"{speed:.2f} m/s",
+        "measured": scene.measured,
+        "digest": scene.digest(),
+    }
+
+
+def _statement(scene: Scene) -> dict[str, Any]:
+    from fem_impact.plan.choose import choices, neglected
+    from fem_impact.plan.limits import coarse_tip
+
+    return {
+        "scene": scene.to_dict(),
+        "digest": scene.digest(),
+        "sources": _sources(scene),
+        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
+        "effects": [_flat(choice.told(choice.share)) for choice in choices(scene)],
+        "validity": list(validity(scene)),
+        "warnings": [*neglected(scene), *coarse_tip(scene)],
+    }
+
+
+def _flat(choice: EffectChoice) -> dict[str, Any]:
+    return {key.name: key.of(choice) for key in keys_of(EffectChoice)}
+
+
+def _sources(scene: Scene) -> dict[str, str]:
+    """Return where each material value and the friction come from, by dotted key."""
+    bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
+    keys = ("E", "nu", "rho", "yield_stress", "ultimate_stress")
+    found = {
+        f"{body}.material.{key}": source_of(steel.name, key) for body, steel in bodies.items() for key in keys
+    }
+    return found | {"surface.friction": scene.surface.source}
+
+
+def _readable(scene: Scene, statement: dict[str, Any]) -> str:
+    from fem_impact.plan.choose import choices
+
+    lines = [scene.to_toml().rstrip(), "", "Sources"]
+    lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
+    lines += ["", "Values used where a scene does not state them"]
+    lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
+    lines += ["", "Effects"]
+    lines += [line for choice in choices(scene) for line in _effect_lines(choice.told(choice.share))]
+    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
+    lines += ["", "Validity"]
+    inside = "inside the measured range of speed, angle, rod, steels and surfaces"
+    lines += _wrapped(statement["validity"] or [inside])
+    return "\n".join([*lines, "", "The scene is valid; its digest:", statement["digest"]]) + "\n"
+
+
+def _wrapped(sentences: Iterable[str]) -> list[str]:
+    return [line for sentence in sentences for line in wrapped(sentence, "  ")]
+
+
+def _effect_lines(effect: EffectChoice) -> list[str]:
+    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
+    verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
+    decided = f"{effect.measure}: {number}, threshold {effect.threshold:g}"
+    told = [decided, _harm(effect), _time(effect)]
+    decision = wrapped("; ".join(words for words in told if words), " " * 8, "")
+    return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
+
+
+def _harm(effect: EffectChoice) -> str:
+    """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    if effect.name in BARRIERS and not effect.on:
+        return ""
+    return (
+        f"leaving it out changes e by about {effect.change_of_e:.1g}, "
+        f"E_vib by {effect.change_of_vibration:.1g} of E_0"
+    )
+
+
+def _time(effect: EffectChoice) -> str:
+    if effect.share is None:
+        return ""
+    share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
+    return f"it takes {share} % of the run time"

@@ -1,0 +1,133 @@
+"""The command ``study``: many runs, in local processes or on a cluster."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Executor
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.commands.common import checked_out, chosen_meter, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import RunError, UsageError, did_you_mean
+
+if TYPE_CHECKING:
+    from fem_impact.jobs.forecast import WorkForecast
+    from fem_impact.progress import ProgressMeter
+    from fem_impact.study.document import Request
+
+__all__ = ["study"]
+
+
+ABOUT_SETS = ("sets", "scatter", "convergence", "effects")
+
+
+def study(options: Options) -> int:
+    """Run the named study and print its result, or say how long it would take."""
+    _check_options(options)
+    ids = _checked_ids(options.ids)
+    out = checked_out(options.out or Path("results") / options.name)
+    if options.name == "report":
+        return _report(options, out)
+    from fem_impact.study.document import Request
+
+    request = Request(out, ids, options.quick, options.fidelity)
+    with closing(chosen_meter(options)) as meter, _workers(options) as executor:
+        if options.estimate:
+            return _estimate(options, request, meter, executor)
+        return _study(options, request, meter, executor)
+
+
+def _report(options: Options, out: Path) -> int:
+    """Write one page over the studies that stand beside ``out``."""
+    from fem_impact.report.all_page import write_all
+
+    if not options.quiet:
+        sys.stderr.write("reading the studies and drawing their figures ...\n")
+    path = write_all(out.parent, out)
+    if options.json:
+        print_json({"path": str(path)})
+    else:
+        sys.stdout.write(f"report: {path}\n")
+    return 0
+
+
+def _study(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
+    from fem_impact.study.catalogue import run_study
+
+    result = run_study(options.name, request, meter, executor)
+    meter.close()
+    if options.json:
+        print_json({**result.document, "notes": [*result.document.get("notes", []), *result.notes]})
+    else:
+        sys.stderr.writelines(f"note: {note}\n" for note in result.notes)
+        sys.stdout.write(f"{result.text.rstrip()}\nresults: {request.out}\n")
+    return RunError.exit_code if result.document["failures"] else 0
+
+
+def _estimate(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
+    from dataclasses import asdict
+
+    from fem_impact.study.catalogue import estimate_study
+
+    found = estimate_study(options.name, request, meter, executor)
+    meter.close()
+    if options.json:
+        print_json(asdict(found))
+    else:
+        sys.stdout.write(_estimate_text(found))
+    return 0
+
+
+def _estimate_text(found: WorkForecast) -> str:
+    from fem_impact.progress import clock_text
+
+    lines = [f"{_jobs(found.jobs)}, {found.stored} of them stored; work left: {clock_text(found.work_s)}"]
+    lines += [_kind_line(kind) for kind in found.kinds]
+    lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in found.wall_s.items()]
+    lines += [f"The longest job takes {clock_text(found.longest_s)}; no number of workers beats that."]
+    return "\n".join(lines) + "\n"
+
+
+def _jobs(count: object) -> str:
+    return f"{count} job" + ("" if count == 1 else "s")
+
+
+def _kind_line(kind: dict[str, object]) -> str:
+    size = kind["tip_size_m"]
+    name = f"{kind['fidelity']}" + (f", tip {float(str(size)) * 1e3:.2g} mm" if size else "")
+    basis = f"median of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
+    return f"  {_jobs(kind['jobs'])} {name}: {kind['cost_s']:.3g} s each ({basis})"
+
+
+@contextmanager
+def _workers(options: Options) -> Iterator[Executor]:
+    from fem_impact.jobs.executors import LocalProcesses, on_scheduler
+
+    lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
+    with lent as executor:
+        yield executor
+
+
+def _check_options(options: Options) -> None:
+    """Refuse what the named study would not look at."""
+    if options.name == "report" and (options.quick or options.estimate or options.scheduler):
+        remedy = "Leave out --quick, --estimate and --scheduler."
+        raise UsageError("reads what others have computed.", key="study report", remedy=remedy)
+    looked_at = (("ID", " ".join(options.ids), ABOUT_SETS), ("--fidelity", options.fidelity, ("scatter",)))
+    for key, given, studies in looked_at:
+        if given and options.name not in studies:
+            problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(studies)}."
+            raise UsageError(problem, key=key, value=given, remedy=f"Leave it out. {remedy}")
+
+
+def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
+    from fem_impact.scene.types import MEASURED_SETS
+
+    for name in ids:
+        if name not in MEASURED_SETS:
+            remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
+            raise UsageError("is not a measured set.", key="ID", value=name, remedy=remedy)
+    return tuple(dict.fromkeys(ids))

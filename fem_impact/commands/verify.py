@@ -1,0 +1,158 @@
+"""``fem-impact verify``: problems with known answers, run and judged."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+from fem_impact.commands.common import checked_out, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import RunError, UsageError, did_you_mean
+from fem_impact.files.atomic import read_text, write_text
+from fem_impact.hard_cases.run import MARKS, Row, page, run_cases, told
+from fem_impact.hard_cases.scenes import CASES
+from fem_impact.jobs.executors import cores
+from fem_impact.outcome.record import utc_now
+from fem_impact.tables.text import wrapped
+from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
+from fem_impact.verify.problem import Problem, Verification
+
+__all__ = ["stress", "verify"]
+
+
+def verify(options: Options) -> int:
+    """Run one problem, or all of them; the exit code says whether every check passed."""
+    if options.parameters and (options.changes or options.readme):
+        raise UsageError("only lists.", key="--parameters", remedy="Leave out --set and --readme, or itself.")
+    if options.parameters:
+        return _show_parameters(options)
+    if options.readme:
+        return _write_page(options)
+    changes = dict(_change(text) for text in options.changes)
+    if changes and not options.problem:
+        raise UsageError(
+            "belongs to one problem.", key="--set", remedy="Name it: fem-impact verify NAME --set ..."
+        )
+    chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
+    done = []
+    for one in chosen:
+        sys.stderr.write(f"{one.name}: {one.words} ...\n")
+        done.append(one.run(changes))
+        if not options.json:
+            sys.stdout.write(_text(done[-1]))
+            sys.stdout.flush()
+    if options.json:
+        documents = [found.document() for found in done]
+        print_json(documents[0] if options.problem else documents)
+    return 0 if all(found.passed for found in done) else RunError.exit_code
+
+
+def _write_page(options: Options) -> int:
+    """Run all problems at their defaults and put the results between the marks of a file."""
+    from fem_impact.files.atomic import read_text, write_text
+    from fem_impact.outcome.record import utc_now
+    from fem_impact.verify.catalogue import page, put_page
+
+    if options.problem or options.changes:
+        raise UsageError("takes all problems at their defaults.", key="--readme")
+    put_page(read_text(options.readme), "")  # before any work
+    done = []
+    for name in PROBLEMS:
+        done.append(problem(name).run())
+        sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
+    write_text(options.readme, put_page(read_text(options.readme), page(done, utc_now()[:10])))
+    if options.json:
+        print_json([found.document() for found in done])
+    return 0 if all(found.passed for found in done) else RunError.exit_code
+
+
+def _change(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise UsageError("is not of the form parameter=value.", key="--set", value=text)
+    return name.strip(), value.strip().strip("\"'")
+
+
+def _show_parameters(options: Options) -> int:
+    if not options.problem:
+        raise UsageError(
+            "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
+        )
+    found = problem(options.problem)
+    if options.json:
+        print_json([_parameter(found, i) for i in range(len(found.parameters))])
+    else:
+        sys.stdout.write(_parameter_text(found))
+    return 0
+
+
+def _parameter(found: Problem, i: int) -> dict[str, object]:
+    p = found.parameters[i]
+    limits = {"default": p.default, "low": p.low, "high": p.high, "multiple": p.multiple}
+    return {"name": p.name, "words": p.words, "unit": p.unit, **limits}
+
+
+def _parameter_text(found: Problem) -> str:
+    rows = [("name", "unit", "default", "range", "meaning")]
+    rows += [
+        (p.name, p.unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.words) for p in found.parameters
+    ]
+    wide = [max(len(row[i]) for row in rows) for i in range(5)]
+    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
+    return f"{found.name}: {found.words}\n" + "\n".join(lines) + "\n"
+
+
+def _text(found: Verification) -> str:
+    verdict = "passed" if found.passed else "FAILED"
+    cost = f"{found.cost.cpu_s:.1f} s of CPU, {found.cost.steps} steps, {found.cost.elements} elements"
+    lines = [f"{found.name}: {verdict} ({cost})"]
+    for c in found.checks:
+        mark = "FAIL" if not c.passed else "ok  " if c.judged else "    "
+        allowed = f"allowed {c.tolerance:g} {c.kind}" if c.judged else f"not judged: {c.note}"
+        unit = "" if c.unit == "1" else f" {c.unit}"
+        values = f"{c.computed:.6g}{unit}, reference {c.reference:.6g}"
+        lines += wrapped(f"{mark} {c.name}: {values},", "  ", " " * 5)
+        lines += wrapped(f"error {c.error:+.2e}, {allowed}", " " * 7, "")
+    return "\n".join(lines) + "\n"
+
+
+def stress(options: Options) -> int:
+    """Run one case, or all of them; the exit code says whether each is as it must be."""
+    names = _chosen(options)
+    if options.readme:
+        put_page(read_text(options.readme), "", MARKS)  # before any work
+    out = checked_out(options.out or Path("results") / "stress")
+    rows = run_cases(names, out, _progress(options, len(names)), options.workers or cores())
+    text = page(rows, utc_now()[:10])
+    if options.readme:
+        write_text(options.readme, put_page(read_text(options.readme), text, MARKS))
+    if options.json:
+        print_json([asdict(row) for row in rows])
+    else:
+        sys.stdout.write(f"{text}\n\nresults: {out}\n")
+    return 0 if all(row.passed for row in rows) else RunError.exit_code
+
+
+def _progress(options: Options, total: int) -> Callable[[Row], None]:
+    """Return what tells of each case when it is done."""
+    count = itertools.count(1)
+
+    def show(row: Row) -> None:
+        if not options.quiet:
+            sys.stderr.write(f"{next(count)} of {total}: {told(row)}\n")
+
+    return show
+
+
+def _chosen(options: Options) -> list[str]:
+    if not options.only:
+        return list(CASES)
+    if options.readme:
+        raise UsageError("takes all cases.", key="--readme", remedy="Leave --only out.")
+    if options.only not in CASES:
+        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
+        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
+    return [options.only]

@@ -1,0 +1,303 @@
+"""Costs that were measured before and ship with the package: how near a scene is to one, and the choice."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cache, partial
+from importlib.resources import files
+from itertools import islice, zip_longest
+from math import hypot, inf, log, sqrt
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cost.judge import Judged, cheapest, wall_seconds, worst
+from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
+from fem_impact.cost.measure import CostStudy
+from fem_impact.cost.quantities import TARGETED
+from fem_impact.cost.settings import Mesh, placed
+from fem_impact.errors import SceneError
+from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import approach, projectile, sliding
+from fem_impact.plan.measured import yardsticks
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.types import Material, Scene
+from fem_impact.solid.checkpoint import INTERVAL
+
+if TYPE_CHECKING:
+    from fem_impact.progress import Progress
+
+__all__ = ["NEARNESS", "SUMMARY", "Plan", "nearest", "plan", "simulate_to_target", "summarise", "summary"]
+
+
+SUMMARY = "fem-impact/cost-summary/2"
+
+STEEL = ("E", "rho", "yield", "ultimate over yield")
+# what a scene may differ by from one whose cost was measured; ratios as differences of logarithms
+NEARNESS = {
+    "length over diameter": 0.1,
+    "diameter": 0.3,
+    "tip radius over diameter": 0.1,
+    "angle (rad)": 0.05,
+    "approach of the contact point": 0.25,
+    "slope of that approach": 0.1,
+    "spin over speed": 0.05,
+    "friction f": 0.05,
+    **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A chosen setting; expected error is relative, expected wall time in s on this machine."""
+
+    target: float
+    setting: Judged
+    like: str
+    expected_error: float
+    expected_wall_s: float
+
+    @property
+    def meshes(self) -> list[Mesh]:
+        """Return the meshes to run, fine first."""
+        return [Mesh(**mesh) for mesh in self.setting.meshes]
+
+    @property
+    def sentence(self) -> str:
+        """Say what was chosen and why."""
+        return (
+            f"accuracy {100 * self.target:.3g} %: {self.setting.name}, expected error "
+            f"{100 * self.expected_error:.2g} % of {' and '.join(TARGETED)}, expected time "
+            f"{self.expected_wall_s:.2g} s (measured on {self.like})"
+        )
+
+
+def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
+    """Return the stored form of several scenes' costs, with one date and one machine for all."""
+    shared = ("created_utc", "versions", "machine")
+    whole = {name: cost.to_dict() for name, cost in costs.items()}
+    first = next(iter(whole.values()))
+    scenes = {
+        name: {k: v for k, v in cost.items() if k not in (*shared, "schema")} for name, cost in whole.items()
+    }
+    return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
+
+
+@cache
+def summary() -> dict[str, Any]:
+    """Return the costs that ship with the package."""
+    text = files("fem_impact.cost").joinpath("data", "summary.json").read_text(encoding="utf-8")
+    return dict(json.loads(text))
+
+
+def _features(scene: Scene) -> dict[str, float]:
+    rod, impact = scene.projectile, scene.impact
+    speed, radius = hypot(impact.v_n, impact.v_t), sqrt(projectile(scene).k2)
+    return {
+        "length over diameter": log(rod.length / rod.diameter),
+        "diameter": log(rod.diameter),
+        "tip radius over diameter": log(max(rod.tip_radius / rod.diameter, 1e-3)),
+        "angle (rad)": impact.angle,
+        "approach of the contact point": log(approach(scene)),
+        "slope of that approach": sliding(scene) / approach(scene),
+        "spin over speed": impact.omega * radius / speed,
+        "friction f": scene.surface.friction if "friction" in scene.active else 0.0,
+        **_steel("rod", rod.material, "rod-plasticity" in scene.active),
+        **_steel("barrier", scene.barrier.material, "barrier-elastoplastic" in scene.active),
+    }
+
+
+def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
+    """Return the features of a body's material; strengths do not count where it stays elastic."""
+    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if yields else (1.0, 1.0)
+    values = (steel.E, steel.rho, *strength)
+    return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
+
+
+def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
+    """Return the largest difference over what is allowed, and its name; infinite for another model."""
+    for name, mine, its in (
+        ("tip", scene.projectile.tip, other.projectile.tip),
+        ("effects", scene.active, other.active),
+        ("element", scene.accuracy.element, other.accuracy.element),
+        ("step", scene.accuracy.step, other.accuracy.step),
+        ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
+        ("max_time", min(scene.accuracy.max_time, other.accuracy.max_time), other.accuracy.max_time),
+    ):
+        if mine != its:
+            return inf, name
+    a, b = _features(scene), _features(other)
+    gaps = {name: 0.0 if a[name] == b[name] else abs(a[name] - b[name]) / NEARNESS[name] for name in NEARNESS}
+    name = max(gaps, key=lambda key: gaps[key])
+    return gaps[name], name
+
+
+def nearest(scene: Scene) -> tuple[str, float, str]:
+    """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
+    found = [
+        (*_distance(scene, Scene.from_dict(held["scene"])), name)
+        for name, held in summary()["scenes"].items()
+    ]
+    distance, differs, name = min(found)
+    return name, distance, differs
+
+
+def plan(scene: Scene, fidelity: str | None = None, workers: int = 1) -> Plan:
+    """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
+
+    Its expected time is that of one or two ``workers``, runs at a time.
+
+    Raises
+    ------
+    SceneError
+        No stored cost is near enough, or none of its settings meets the target.
+    """
+    target = scene.accuracy.target
+    if target is None:
+        raise SceneError("gives no target.", key="accuracy", remedy='Write accuracy = "5 %".')
+    name, distance, differs = nearest(scene)
+    if distance > 1:
+        raise _too_far(scene, name, distance, differs)
+    held = [Judged(**setting) for setting in summary()["scenes"][name]["settings"]]
+    settings = [one for one in held if fidelity in (None, one.fidelity)]
+    found = cheapest(settings, TARGETED, target)
+    if found is None:
+        raise _not_met(scene, name, settings)
+    machine = summary()["machine"]["csr_ns_per_element_step"]
+    seconds = found.cpu_s if workers == 1 else found.two_cores_s
+    pace = yardsticks()["csr_ns_per_element_step"] / machine
+    return Plan(target, found, name, worst(found, TARGETED), seconds * pace)
+
+
+def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
+    how = "is another" if distance == inf else f"is {distance:.2g} times what is allowed away in its"
+    allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
+    return SceneError(
+        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
+        "element, step and block_margin must be the same and max_time no shorter; allowed are differences "
+        "(of logarithms where it is a ratio) of: "
+        f"{allowed}.",
+        key="accuracy",
+        value=_written(scene),
+        remedy="Run `fem-impact cost SCENE` and give the mesh it names: accuracy.tip_size and across.",
+    )
+
+
+def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
+    of, whole = " and ".join(TARGETED), [one for one in settings if one.kind != "effect"]
+    best = min(whole, key=lambda one: worst(one, TARGETED))
+    error = worst(best, TARGETED)
+    if error == inf:
+        problem = f"cannot be met: the {best.fidelity} fidelity does not know {of}."
+        return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
+    return SceneError(
+        f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
+        f"uncertain by {100 * error:.2g} % in {of}.",
+        key="accuracy",
+        value=_written(scene),
+        remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',
+    )
+
+
+def _written(scene: Scene) -> str:
+    return f"{100 * (scene.accuracy.target or 0):.3g} %"
+
+
+Run = Callable[[], Outcome]
+Report = Callable[["Progress"], None]
+
+ALONE = Unknown("one mesh alone cannot estimate its own error")
+
+
+def simulate_to_target(
+    scene: Scene,
+    fidelity: str | None = None,
+    out: Path | None = None,
+    progress: Report | None = None,
+    resume: bool = False,
+    checkpoint_s: float = INTERVAL,
+    workers: int = 1,
+) -> Outcome:
+    """Run the setting that the measured costs choose.
+
+    Every mesh is run at its places of the barrier's grid. What comes back is the finer mesh's outcome at the
+    first, with the limits of two meshes, or the means of one, in its ``validity``. The other runs are
+    kept below ``out``; with two ``workers`` or more a process beside takes every other run.
+
+    Raises
+    ------
+    SceneError
+        As `plan`.
+    """
+    chosen = plan(scene, fidelity, workers)
+    if not chosen.meshes:
+        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
+        return _kept(_stated(alone, chosen, wall_seconds(alone)), out)
+    jobs = [placed(scene, mesh) for mesh in chosen.meshes]
+    work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
+    lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
+    done = _side_by_side(lanes)
+    runs = iter([run for turn in zip_longest(*done) for run in turn if run])
+    meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
+    wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
+    return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), out)
+
+
+def _work(
+    scenes: list[Scene], out: Path | None, progress: Report | None, resume: bool, checkpoint_s: float
+) -> list[Run]:
+    """Return the runs; the first of all writes to ``out`` itself."""
+    folders = [out and (out / f"run-{at}" if at else out) for at in range(len(scenes))]
+    return [
+        partial(simulate, scene, "solid", folder, None if at else progress, resume, checkpoint_s)
+        for at, (scene, folder) in enumerate(zip(scenes, folders, strict=True))
+    ]
+
+
+def _in_turn(work: list[Run]) -> list[Outcome]:
+    return [run() for run in work]
+
+
+def _side_by_side(lanes: list[list[Run]]) -> list[list[Outcome]]:
+    """Do the first lane here and the others in a process beside."""
+    with LocalProcesses(1) as beside:
+        later = [beside.submit(_in_turn, runs) for runs in lanes[1:]]
+        return [_in_turn(lanes[0]), *(runs.result() for runs in later)]
+
+
+def _kept(outcome: Outcome, out: Path | None) -> Outcome:
+    """Write the outcome again, now that it states its accuracy."""
+    if out is not None:
+        outcome.write(out / "outcome.json")
+    return outcome
+
+
+def _plain(scene: Scene) -> Scene:
+    """Return the scene without its target; a reduced model meshes nothing."""
+    return replace(scene, accuracy=replace(scene.accuracy, target=None))
+
+
+def _stated(outcome: Outcome, chosen: Plan, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
+    """Return the outcome with what was asked, expected and achieved."""
+    limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
+    means = mesh_means(meshes[0]) if meshes else ALONE
+    stated = replace(
+        outcome.validity,
+        accuracy_target=chosen.target,
+        accuracy_setting=chosen.setting.name,
+        expected_error=chosen.expected_error,
+        expected_wall=chosen.expected_wall_s,
+        achieved_wall=wall_s,
+        achieved_error=_left_open(meshes) if len(meshes) == 2 else ALONE,
+        mesh_limit=limits or means,
+        mesh_band=bands or ALONE,
+    )
+    return replace(outcome, validity=stated)
+
+
+def _left_open(meshes: Sequence[Placed]) -> float:
+    found = truths(meshes)
+    return max(found[name].uncertainty / found[name].scale for name in TARGETED)

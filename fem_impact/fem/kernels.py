@@ -1,0 +1,201 @@
+"""Compiler settings shared by the compiled kernels, and where their machine code is kept."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+from llvmlite import ir
+from numba import extending, types
+from numba.core import event
+from numba.core.codegen import get_host_cpu_features
+from numba.extending import models, register_model
+
+__all__ = ["add_product", "load", "spread", "store", "three"]
+
+
+SETTINGS: Any = numba.config
+F = TypeVar("F", bound=Callable[..., Any])
+
+# Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
+# vector width of the machine. NaN stays visible, because a diverging run must be seen.
+FAST = {"contract", "arcp", "nsz"}
+KEPT = {"cache": True}
+COUNTLESS = {"_nrt": False}
+
+
+def _cache_folder() -> Path:
+    """Return a folder named after all sources of the solver that hold compiled code.
+
+    The compiler's own check looks at one file at a time: a kernel would keep an outdated copy of a
+    helper that it took from another file.
+    """
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.rglob("*.py")):
+        source = path.read_bytes()
+        if b"fem_impact.fem.kernels import" in source or b"numba" in source:
+            digest.update(source)
+    return Path(__file__).parent / "__pycache__" / f"kernels-{digest.hexdigest()[:16]}"
+
+
+def _keep_compiled_code() -> None:
+    folder = _cache_folder()
+    if "NUMBA_CACHE_DIR" not in os.environ and os.access(Path(__file__).parent, os.W_OK):
+        SETTINGS.CACHE_DIR = str(folder)
+
+
+_keep_compiled_code()
+
+
+def _use_whole_registers() -> None:
+    """Let loops have 512 bits where the machine has them; by itself the compiler takes half of them.
+
+    Older machines than those with AVX-512 VBMI2 (2019) run slower while they do. No bit of a result changes.
+    """
+    features = get_host_cpu_features()
+    if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in features.split(","):
+        SETTINGS.CPU_FEATURES = f"{features},-prefer-256-bit"
+
+
+_use_whole_registers()
+
+
+def compiled_before(name: str = "yielding_kernel.update") -> bool:
+    """Return whether a kernel that an earlier run of these sources compiled lies in the cache."""
+    return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob(f"{name}-*.nbi"))
+
+
+class _Compiling(event.Listener):
+    """Wall and processor time of all compilations so far, s; one within another counts once."""
+
+    def __init__(self) -> None:
+        self.wall, self.cpu = 0.0, 0.0
+        self._depth = 0
+
+    def on_start(self, _: object) -> None:
+        """Begin to measure."""
+        if self._depth == 0:
+            self._begun = time.perf_counter(), time.process_time()
+        self._depth += 1
+
+    def on_end(self, _: object) -> None:
+        """Add what has passed."""
+        self._depth -= 1
+        if self._depth == 0:
+            wall, cpu = self._begun
+            self.wall += time.perf_counter() - wall
+            self.cpu += time.process_time() - cpu
+
+
+COMPILING = _Compiling()
+event.register("numba:compile", COMPILING)
+
+
+def kernel(function: F) -> F:
+    """Compile a hot loop, cached on disk across runs.
+
+    It makes no arrays. So it needs no counts of references to them, which in short loops over views cost as
+    much as the arithmetic.
+    """
+    return _compiled(function, **KEPT, **COUNTLESS)
+
+
+def allocating_kernel(function: F) -> F:
+    """Compile a loop that makes arrays."""
+    return _compiled(function, **KEPT)
+
+
+def inlined(function: F) -> F:
+    """Compile a helper that every caller absorbs."""
+    return _compiled(function, forceinline=True, **COUNTLESS)
+
+
+def _compiled(function: F, **options: Any) -> F:
+    return cast(F, numba.njit(fastmath=FAST, error_model="numpy", **options)(function))
+
+
+VECTOR, LANE = ir.VectorType(ir.DoubleType(), 4), ir.IntType(32)
+intrinsic: Any = extending.intrinsic  # its callers leave out the first argument
+NUMBER = 8  # bytes: places need not be multiples of four
+
+
+class Four(types.Type):
+    """Four float64."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Four")
+
+
+FOUR = Four()
+
+
+@register_model(Four)
+class _Register(models.PrimitiveModel):
+    def __init__(self, manager, of):  # type: ignore[no-untyped-def]
+        super().__init__(manager, of, VECTOR)
+
+
+def _place(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+    """Return the address of four numbers of an array from a place on."""
+    array = context.make_array(signature.args[0])(context, builder, arguments[0])
+    return builder.bitcast(builder.gep(array.data, [arguments[1]]), VECTOR.as_pointer())
+
+
+@intrinsic
+def load(typing, values, place):  # type: ignore[no-untyped-def]
+    """Return four numbers of a contiguous array, counted over all its axes, from ``place`` on."""
+
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        return builder.load(_place(context, builder, signature, arguments), align=NUMBER)
+
+    return FOUR(values, types.intp), code
+
+
+@intrinsic
+def store(typing, values, place, lanes):  # type: ignore[no-untyped-def]
+    """Put four numbers into a contiguous array, counted as for `load`."""
+
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        builder.store(arguments[2], _place(context, builder, signature, arguments), align=NUMBER)
+        return context.get_dummy_value()
+
+    return types.void(values, types.intp, FOUR), code
+
+
+@intrinsic
+def spread(typing, number):  # type: ignore[no-untyped-def]
+    """Return a number four times."""
+
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        none = ir.Constant(VECTOR, ir.Undefined)
+        one = builder.insert_element(none, arguments[0], LANE(0))
+        return builder.shuffle_vector(one, none, ir.Constant(ir.VectorType(LANE, 4), [0] * 4))
+
+    return FOUR(types.float64), code
+
+
+@intrinsic
+def add_product(typing, total, a, b):  # type: ignore[no-untyped-def]
+    """Return total + a b, lane by lane."""
+
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        total, a, b = arguments
+        return builder.fadd(total, builder.fmul(a, b))
+
+    return FOUR(FOUR, FOUR, FOUR), code
+
+
+@intrinsic
+def three(typing, lanes):  # type: ignore[no-untyped-def]
+    """Return the sum of the first three numbers."""
+
+    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
+        a, b, c = (builder.extract_element(arguments[0], LANE(k)) for k in range(3))
+        return builder.fadd(builder.fadd(a, b), c)
+
+    return types.float64(FOUR), code

@@ -1,0 +1,168 @@
+"""Numbering of the unknowns: every vector of the march is flat, and this is who stands where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+import scipy.sparse as sp
+
+from fem_impact.arrays import Array, Ints
+from fem_impact.fem.eigen import MassStiffness
+from fem_impact.fem.kernels import kernel
+from meshes import HexMesh, RodMesh
+
+
+@dataclass(frozen=True, slots=True)
+class DofLayout:
+    """Places of all degrees of freedom in one flat vector.
+
+    Order: rod slices as (component, section node, layer) so that a layer's neighbours are contiguous,
+    free nose nodes, free barrier nodes, hanging nodes, one dummy element that fills up blocks.
+
+    Attributes
+    ----------
+    rod : (n, 3) int64, places of every rod mesh node
+    barrier : (n, 3) int64, places of every barrier mesh node (no rows on a rigid barrier)
+    body_shape : rows (3 * section nodes) and layers of the slices
+    rod_size, free_size, size : ends of the rod's free part, of all free parts, of the vector
+    dummy : (8, 3) int64
+    """
+
+    rod: Ints
+    barrier: Ints
+    body_shape: tuple[int, int]
+    rod_size: int
+    free_size: int
+    size: int
+    dummy: Ints
+
+    @property
+    def barrier_slice(self) -> slice:
+        """Return the barrier's free part."""
+        return slice(self.rod_size, self.free_size)
+
+    def slices_of(self, vector: Array) -> Array:
+        """Return the slices' part of a vector, a view of shape ``body_shape``."""
+        rows, layers = self.body_shape
+        return vector[: rows * layers].reshape(rows, layers)
+
+
+def _triples(start: int, count: int) -> Ints:
+    return start + np.arange(3 * count, dtype=np.int64).reshape(count, 3)
+
+
+def _body_places(n_section: int, n_layers: int) -> Ints:
+    """Return (n_section, n_layers, 3) places of the slice nodes."""
+    grid = np.arange(3 * n_section * n_layers, dtype=np.int64)
+    return grid.reshape(3, n_section, n_layers).transpose(1, 2, 0)
+
+
+def number(rod: RodMesh, barrier: HexMesh | None) -> DofLayout:
+    """Return the numbering of a rod and, if meshed, its barrier."""
+    n_section, n_layers = rod.body_nodes.shape
+    places = np.full((len(rod.mesh.points), 3), -1, dtype=np.int64)
+    places[rod.body_nodes] = _body_places(n_section, n_layers)
+    rest = (places[:, 0] < 0) & ~rod.mesh.is_hanging
+    places[rest] = _triples(3 * n_section * n_layers, int(rest.sum()))
+    rod_size = int(places.max()) + 1
+    hanging_barrier = barrier.is_hanging if barrier is not None else np.zeros(0, dtype=bool)
+    block = np.full((len(hanging_barrier), 3), -1, dtype=np.int64)
+    block[~hanging_barrier] = _triples(rod_size, int((~hanging_barrier).sum()))
+    free_size = rod_size + 3 * int((~hanging_barrier).sum())
+    n_hanging = int(rod.mesh.is_hanging.sum())
+    places[rod.mesh.is_hanging] = _triples(free_size, n_hanging)
+    block[hanging_barrier] = _triples(free_size + 3 * n_hanging, int(hanging_barrier.sum()))
+    end = free_size + 3 * (n_hanging + int(hanging_barrier.sum()))
+    shape = (3 * n_section, n_layers)
+    return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8))
+
+
+# linear over the half section: motions that mirror in the plane b = 0, as the solver's do, and the others
+MIRRORED, TWISTING = (0, 1, 0), (1, 0, 1)
+
+
+@dataclass(frozen=True, slots=True)
+class MassPoints:
+    """Mass points of all layers of slices but the first, whose nodes belong to the nose or may touch.
+
+    Attributes
+    ----------
+    lever, weight : (3 n,) over (component, section node): section coordinate l / sqrt(J) and m l / sqrt(J)
+        of t, b, n, where J = sum(m l^2), so that the linear part of w is lever (weight . w)
+    inward : (3,) c, place of a mass over place of its node, 1 where there are no slices
+    room : (layers,) for the sums over a section
+    """
+
+    lever: Array
+    weight: Array
+    inward: Array
+    room: Array
+
+    @classmethod
+    def of_rod(
+        cls, rod: RodMesh, mass: Array, density: float, linear: tuple[int, int, int] = MIRRORED
+    ) -> MassPoints:
+        """Return the mass points of a rod with row-sum masses ``mass`` (cells, 8), kg.
+
+        The section is taken as the circle of its area. A body without slices has no mass points inside.
+        ``linear`` says which section coordinate, x (0) or y (1), the motions along t, b, n are linear in.
+        """
+        if not rod.body_cells.size:
+            return cls(np.zeros(0), np.zeros(0), np.ones(3), np.zeros(0))
+        cells, tail = rod.body_cells[:, -1], rod.body_nodes[:, -1]
+        upper = rod.mesh.cells[cells, 4:].ravel()
+        m = np.bincount(upper, mass[cells, 4:].ravel(), minlength=len(rod.mesh.points))[tail]
+        level = rod.mesh.points[tail][:, linear].T
+        moment = (m * level**2).sum(axis=1)
+        half_area = mass[cells].sum() / (density * rod.slice_length)
+        round_moment = m.sum() * half_area / (2 * pi)  # m R^2 / 4 with pi R^2 / 2 = half_area
+        root = np.sqrt(moment)[:, None]
+        lever, weight = (level / root).ravel(), (m * level / root).ravel()
+        return cls(lever, weight, np.sqrt(round_moment / moment), np.zeros(rod.body_nodes.shape[1]))
+
+    def draw_in(self, rows: Array) -> None:
+        """Turn places of nodes, (3 n, layers), into places of masses."""
+        add_linear(self.lever, self.weight, self.inward - 1, self.room, rows)
+
+    def spread(self, rows: Array) -> None:
+        """Turn places, displacements or velocities of masses, (3 n, layers), into those of nodes."""
+        add_linear(self.lever, self.weight, 1 / self.inward - 1, self.room, rows)
+
+    def gather(self, rows: Array) -> None:
+        """Turn forces on nodes, (3 n, layers), into forces on masses: the transpose of `spread`."""
+        add_linear(self.weight, self.lever, 1 / self.inward - 1, self.room, rows)
+
+    def section(self) -> sp.csr_matrix:
+        """Return P (3 n, 3 n) of one layer."""
+        blocks = zip(self.lever.reshape(3, -1), self.weight.reshape(3, -1), 1 / self.inward - 1, strict=True)
+        return sp.csr_matrix(sp.block_diag([np.eye(len(l)) + g * np.outer(l, w) for l, w, g in blocks]))
+
+    def matrix(self, layers: int, size: int) -> sp.csr_matrix:
+        """Return P (size, size) over a flat vector that begins with the slices' rows."""
+        if not len(self.lever):
+            return sp.identity(size, format="csr")
+        inside = sp.diags(np.arange(layers) > 0, dtype=np.float64)
+        slices = sp.kron(self.section() - sp.identity(len(self.lever)), inside)
+        rest = size - slices.shape[0]
+        return sp.csr_matrix(sp.block_diag([slices, sp.csr_matrix((rest, rest))]) + sp.identity(size))
+
+    def reduced(self, parts: tuple[sp.csr_matrix, ...], layers: int) -> MassStiffness:
+        """Return P^T K P, N/m, over the masses; the sum of ``parts`` (size, size) is K over the nodes."""
+        return MassStiffness(parts, self.matrix(layers, parts[0].shape[0]))
+
+
+@kernel
+def add_linear(out, into, amount, part, rows):  # type: ignore[no-untyped-def]
+    """Add amount[c] out (into . rows) to the rows of each component c, in all layers but the first."""
+    n, layers = len(out) // 3, rows.shape[1]
+    for c in range(3):
+        part[:] = 0.0
+        for a in range(c * n, (c + 1) * n):
+            for k in range(1, layers):
+                part[k] += into[a] * rows[a, k]
+        for a in range(c * n, (c + 1) * n):
+            share = amount[c] * out[a]
+            for k in range(1, layers):
+                rows[a, k] += share * part[k]

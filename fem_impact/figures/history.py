@@ -1,0 +1,173 @@
+"""Names and colours of the energy accounts over time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent
+from fem_impact.outcome.groups import ContactInterval
+from fem_impact.tables.csv import Table, write_table
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["RUNNING", "AccountArea", "force_figure", "ledger_figure"]
+
+
+@dataclass(frozen=True, slots=True)
+class AccountArea:
+    """One column of history.csv, its label and its colour."""
+
+    key: str
+    label: str
+    colour: str
+
+
+RUNNING = (
+    AccountArea("E_kinetic_rod_J", "kinetic, rod", PALETTE["blue"]),
+    AccountArea("E_strain_rod_J", "strain, rod", PALETTE["sky"]),
+    AccountArea("E_plastic_rod_J", "plastic, rod", PALETTE["purple"]),
+    AccountArea("W_friction_J", "friction", PALETTE["green"]),
+    AccountArea("E_plastic_barrier_J", "plastic, barrier", PALETTE["vermilion"]),
+    AccountArea("E_strain_barrier_J", "strain, barrier", PALETTE["orange"]),
+    AccountArea("E_kinetic_barrier_J", "kinetic, barrier", PALETTE["sand"]),
+    AccountArea("W_radiated_J", "radiated", PALETTE["yellow"]),
+    AccountArea("W_damping_J", "damping", PALETTE["night"]),
+    AccountArea("W_closing_J", "contact closing", PALETTE["grey"]),
+)
+"""Accounts of history.csv, bottom to top; gravity and the residual are not areas."""
+
+COLUMNS = ("time_s", "force_n_N", "force_t_N")
+
+
+def force_figure(
+    history: Table, contacts: Sequence[ContactInterval], path: str | Path, shape: Shape = "wide"
+) -> Path:
+    """Draw normal and tangential contact force on the whole rod, contact intervals shaded.
+
+    Parameters
+    ----------
+    history : Table
+        history.csv, forces in N.
+    contacts : sequence of ContactInterval
+    path : path
+        The picture; the data go to the same name with ``.csv``.
+    shape : "wide" or "narrow"
+
+    Raises
+    ------
+    ResultError
+        A column is missing or holds no numbers.
+    """
+    path = Path(path)
+    time, normal, tangential = (history.numbers(name) for name in COLUMNS)
+    write_table(path.with_suffix(".csv"), COLUMNS, zip(time, normal, tangential, strict=True))
+    with figure(path, shape, 3.6 if shape == "wide" else 4.0) as drawn:
+        axes = drawn.add_subplot()
+        axes.plot(time * 1e6, normal / 1e3, color=PALETTE["blue"], label="normal (out of the barrier)")
+        _dashed(axes, time * 1e6, tangential / 1e3)
+        _shade(axes, contacts)
+        axes.set(xlabel="time, µs", ylabel="contact force on the rod, kN")
+        axes.grid(axis="y")
+        axes.axhline(0.0, color=QUIET, linewidth=0.7)
+        drawn.legend(loc="outside lower center", ncols=2 if shape == "wide" else 1)
+    return path
+
+
+def _dashed(axes: Axes, time: np.ndarray, force: np.ndarray) -> None:
+    dashes = (0, (5, 1.5))
+    axes.plot(time, force, color=PALETTE["vermilion"], linestyle=dashes, label="tangential (up the slope)")
+
+
+def _shade(axes: Axes, contacts: Sequence[ContactInterval]) -> None:
+    for contact in contacts:
+        start, end = contact.start * 1e6, contact.end * 1e6
+        axes.axvspan(start, end, color="#eef2f6", zorder=0)
+        axes.text(
+            (start + end) / 2,
+            1.005,
+            f"{contact.impulse_n:.3g} N s",
+            transform=axes.get_xaxis_transform(),
+            ha="center",
+            va="bottom",
+            fontsize=7.5,
+            color=QUIET,
+        )
+
+
+def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "wide") -> Path:
+    """Draw where the energy is at every time, as fractions of E_0.
+
+    Parameters
+    ----------
+    history : Table
+        history.csv, energies in J.
+    e_0 : float, J
+        Kinetic energy at first contact.
+    path : path
+        The picture; its suffix is the format. The data go to the same name with ``.csv``.
+    shape : "wide" or "narrow"
+        For a desktop or a phone.
+
+    Raises
+    ------
+    ResultError
+        A column is missing or holds no numbers.
+    """
+    path, time = Path(path), history.numbers("time_s")
+    shares = {account.key: history.numbers(account.key) / e_0 for account in RUNNING}
+    gravity = history.numbers("E_gravity_J") / e_0
+    worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
+    _write_data(path, time, shares, gravity, worst)
+    with figure(path, shape, 4.6 if shape == "wide" else 5.4) as drawn:
+        axes = drawn.add_subplot()
+        _areas(axes, time * 1e6, shares)
+        _total(axes, time * 1e6, gravity)
+        _name_axes(axes, time * 1e6, worst)
+        handles, labels = axes.get_legend_handles_labels()
+        columns = 3 if shape == "wide" else 2
+        drawn.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
+    return path
+
+
+def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
+    ends = {key: percent(float(share[-1])) if len(share) else "-" for key, share in shares.items()}
+    # more corners than a page has pixels would only swell the file; the data keep every row
+    kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), 800)).astype(int))
+    axes.stackplot(
+        time[kept],
+        [share[kept] for share in shares.values()],
+        labels=[f"{account.label}  {ends[account.key]}" for account in RUNNING],
+        colors=[account.colour for account in RUNNING],
+        edgecolor="white",
+        linewidth=0.4,
+    )
+
+
+def _total(axes: Axes, time: np.ndarray, gravity: np.ndarray) -> None:
+    label = "E₀ less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E₀"
+    axes.plot(time, 1.0 - gravity, color="black", linewidth=1.0, linestyle=(0, (4, 2)), label=label)
+
+
+def _name_axes(axes: Axes, time: np.ndarray, worst: float) -> None:
+    axes.set(xlabel="time, µs", ylabel="fraction of E₀", ylim=(0.0, None))
+    if len(time) > 1:
+        axes.set_xlim(time[0], time[-1])
+    axes.grid(axis="y")
+    axes.set_title(
+        f"largest residual {worst:.1e} of E₀", fontsize=8.0, color=QUIET, loc="right", weight="normal"
+    )
+
+
+def _write_data(
+    path: Path, time: np.ndarray, shares: dict[str, np.ndarray], gravity: np.ndarray, worst: float
+) -> None:
+    names = [key.removesuffix("_J") + "_over_E_0" for key in shares]
+    columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
+    rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
+    write_table(path.with_suffix(".csv"), columns, rows)

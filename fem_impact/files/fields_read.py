@@ -1,0 +1,115 @@
+"""Fields over time, read back for pictures and checks."""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+
+if TYPE_CHECKING:
+    import h5py
+
+__all__ = ["FieldFile", "read_fields"]
+
+
+T = TypeVar("T")
+_WAITS = (0.02, 0.1, 0.5, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class FieldFile:
+    """What a field file holds; frames are read on demand.
+
+    Parameters
+    ----------
+    path : Path
+    times : (n_frames,) float64, s
+    points : (n, 3) float64, m
+        Reference coordinates.
+    cells : (m, 8) int64
+        Hexahedra in VTK node order.
+    static : mapping of str to (m,) arrays
+        Cell data without time.
+    point_names, cell_names : tuple of str
+        Fields with time.
+    """
+
+    path: Path
+    times: np.ndarray
+    points: np.ndarray
+    cells: np.ndarray
+    static: Mapping[str, np.ndarray]
+    point_names: tuple[str, ...]
+    cell_names: tuple[str, ...]
+
+    def point_data(self, name: str, frame: int) -> np.ndarray:
+        """Return ``(n,)`` or ``(n, k) float32`` point data of one frame. Raises ResultError."""
+        return self._rows("PointData", name, frame, self.point_names)
+
+    def cell_data(self, name: str, frame: int) -> np.ndarray:
+        """Return ``(m,)`` or ``(m, k) float32`` cell data of one frame. Raises ResultError."""
+        return self._rows("CellData", name, frame, self.cell_names)
+
+    def _rows(self, kind: str, name: str, frame: int, names: tuple[str, ...]) -> np.ndarray:
+        if name not in names:
+            held = ", ".join(names) or "none"
+            raise ResultError(f'{self.path}: holds no {kind} "{name}"; it holds {held}.')
+        if not 0 <= frame < len(self.times):
+            raise ResultError(f"{self.path}: frame {frame} is asked for, it holds {len(self.times)}.")
+        count = len(self.points if kind == "PointData" else self.cells)
+        return _opened(self.path, lambda root: _slice(root, kind, name, frame, count))
+
+
+def read_fields(path: str | Path) -> FieldFile:
+    """Open a field file, also while a run still appends to it.
+
+    Raises
+    ------
+    ResultError
+        The file is missing, damaged, or no field file.
+    """
+    return _opened(Path(path), lambda root: _describe(Path(path), root))
+
+
+def _describe(path: Path, root: h5py.Group) -> FieldFile:
+    steps = int(root["Steps"].attrs["NSteps"])
+    moving = {name for name, rows in root["CellData"].items() if rows.maxshape[0] is None}
+    return FieldFile(
+        path,
+        root["Steps"]["Values"][:steps],
+        root["Points"][:],
+        root["Connectivity"][:].reshape(-1, 8),
+        {name: root["CellData"][name][:] for name in root["CellData"] if name not in moving},
+        tuple(root["PointData"]),
+        tuple(sorted(moving)),
+    )
+
+
+def _slice(root: h5py.Group, kind: str, name: str, frame: int, count: int) -> np.ndarray:
+    start = int(root["Steps"][f"{kind}Offsets"][name][frame])
+    rows: np.ndarray = root[kind][name][start : start + count]
+    if len(rows) != count:
+        raise ValueError(f"{kind} {name} of frame {frame} is cut off")
+    return rows
+
+
+def _opened(path: Path, read: Callable[[h5py.Group], T]) -> T:
+    import h5py
+
+    if not path.is_file():
+        raise ResultError(f"{path}: there is no such field file.")
+    for wait in _WAITS:
+        try:
+            with h5py.File(path, "r") as file:
+                return read(file["VTKHDF"])
+        except BlockingIOError:
+            clock.sleep(wait)  # a writer is at work on it
+        except (OSError, KeyError, ValueError, RuntimeError, AttributeError, TypeError) as error:
+            raise ResultError(f"{path}: not a readable field file ({error}).") from error
+    raise ResultError(f"{path}: another program keeps this file locked; try again when it is done.")

@@ -1,0 +1,41 @@
+"""Names of the files in the directory of a run."""
+
+from __future__ import annotations
+
+from datetime import UTC, datetime
+from pathlib import Path
+
+from fem_impact.files.atomic import make_directory
+
+__all__ = ["CHECKPOINT", "COMPUTED", "earlier", "set_aside"]
+
+
+CHECKPOINT = "run.checkpoint"
+COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
+"""What a run computes; its scene, and what is made of these, lie beside them."""
+
+MADE_OF_IT = ("scene.toml", "row.json", "report.html", "figures", "film*")
+
+
+def set_aside(out: Path) -> Path | None:
+    """Move an older run, and all that was made of it, to a directory within ``out``; return that."""
+    computed = [out / name for name in COMPUTED if (out / name).exists()]
+    if not computed:
+        return None
+    place = _free(out, max(path.stat().st_mtime for path in computed))
+    make_directory(place)
+    for path in [*computed, *(found for name in MADE_OF_IT for found in out.glob(name))]:
+        path.rename(place / path.name)
+    return place
+
+
+def earlier(out: Path) -> list[Path]:
+    """Return the directories of older runs, the oldest first."""
+    return sorted(out.glob("earlier-*"))
+
+
+def _free(out: Path, written: float) -> Path:
+    """Return a new name by the time, s since 1970, when the run was last written."""
+    stem = f"earlier-{datetime.fromtimestamp(written, UTC):%Y-%m-%dT%H-%M-%SZ}"
+    names = (stem, *(f"{stem}-{number}" for number in range(2, 1000)))
+    return next(out / name for name in names if not (out / name).exists())

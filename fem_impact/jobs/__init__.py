@@ -1,0 +1,1 @@
+"""Many runs: executors, the store of outcomes, the forecast of their time."""

@@ -1,0 +1,88 @@
+"""What a study would cost before it starts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from concurrent.futures import Executor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.jobs.run import expected_costs, makespan, run_jobs, stored
+from fem_impact.jobs.store import Store
+
+if TYPE_CHECKING:
+    from fem_impact.jobs.job import Job, Kind
+    from fem_impact.progress import ProgressMeter
+
+__all__ = ["WorkForecast", "estimate"]
+
+
+CROWDS = (1, 2, 10, 100, 1000)
+SAMPLE = 8
+"""Jobs of a fidelity that are computed, and kept, when none was measured yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class WorkForecast:
+    """Jobs in all and already stored; of the others the work, s, the longest, s, and the time by workers, s.
+
+    ``kinds`` has one row a kind of job: fidelity, tip size, jobs to do, median cost, measured jobs behind it.
+    """
+
+    jobs: int
+    stored: int
+    work_s: float
+    longest_s: float
+    wall_s: dict[int, float]
+    kinds: list[dict[str, Any]]
+
+
+def estimate(
+    jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
+) -> WorkForecast:
+    """Return how long the jobs that are not stored will take on 1 to 1000 workers.
+
+    Where no job of a fidelity was measured yet, a few are: the cheapest ones, evenly spread. Compilation, the
+    start of workers and sharing a machine's memory among them are not in the figures.
+    """
+    every = list(jobs)
+    with Store.open(store) as base:
+        measured = {fidelity for fidelity, _ in base.costs()}
+    run_jobs(_samples(every, measured), store, progress, executor)
+    with Store.open(store) as base:
+        costs, left = base.costs(), [job for job in every if stored(base, job) is None]
+    expected = expected_costs(left, costs)
+    wall = {n: makespan(expected.values(), n) for n in CROWDS}
+    longest = max(expected.values(), default=0.0)
+    kinds = _kinds(left, expected, costs)
+    return WorkForecast(len(every), len(every) - len(left), sum(expected.values()), longest, wall, kinds)
+
+
+def _samples(jobs: list[Job], measured: set[str]) -> list[Job]:
+    """Return a few jobs of each fidelity that was never measured, those with the coarsest tip."""
+    chosen: list[Job] = []
+    for fidelity in dict.fromkeys(job.fidelity for job in jobs if job.fidelity not in measured):
+        same = [job for job in jobs if job.fidelity == fidelity]
+        coarsest = max(job.kind for job in same)
+        cheap = [job for job in same if job.kind == coarsest]
+        chosen += cheap[:: max(1, len(cheap) // SAMPLE)][:SAMPLE]
+    return chosen
+
+
+def _kinds(
+    jobs: list[Job], expected: dict[str, float], costs: dict[Kind, list[float]]
+) -> list[dict[str, Any]]:
+    found: dict[Kind, list[float]] = {}
+    for job in jobs:
+        found.setdefault(job.kind, []).append(expected[job.name])
+    return [
+        {
+            "fidelity": fidelity,
+            "tip_size_m": size or None,
+            "jobs": len(each),
+            "cost_s": each[0],
+            "measured": len(costs.get((fidelity, size), [])),
+        }
+        for (fidelity, size), each in found.items()
+    ]

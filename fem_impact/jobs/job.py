@@ -1,0 +1,134 @@
+"""One job of a study: a scene and a fidelity, computed once; and what a worker hands back."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.errors import FemImpactError, ResultError
+from fem_impact.run.program import source_digest
+
+if TYPE_CHECKING:
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.scene.types import Scene
+
+__all__ = ["Answer", "Failure", "Job", "Kind", "compute", "read_outcome"]
+
+
+Kind = tuple[str, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """A scene to compute.
+
+    Attributes
+    ----------
+    name : str
+        Unique within its study.
+    scene : Scene
+    fidelity : str
+        As `fem_impact.run.simulate.simulate` takes it.
+    out : Path or None
+        Directory for the files of the run (on a cluster one that all workers share); None keeps the
+        outcome only.
+    """
+
+    name: str
+    scene: Scene
+    fidelity: str = "solid"
+    out: Path | None = None
+
+    @property
+    def key(self) -> str:
+        """Content address of the result: scene, fidelity, sources and library versions."""
+        text = f"{self.scene.digest()} {self.fidelity} {source_digest()}"
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def kind(self) -> Kind:
+        """What jobs of about the same cost share: fidelity and tip size, m, which is 0 without a mesh."""
+        return self.fidelity, self.scene.accuracy.tip_size if self.fidelity == "solid" else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """A job that gave no outcome, and why."""
+
+    name: str
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a worker hands back: the outcome as text or the reason of a failure.
+
+    Attributes
+    ----------
+    program : str
+        Digest of the program that ran.
+    outcome : str
+        JSON text; empty when the job failed.
+    reason : str
+        Empty when it did not.
+    lasting : bool
+        Whether the same program would fail again, so that nobody need try.
+    wall_s : float
+        Wall time, s.
+    """
+
+    program: str
+    outcome: str
+    reason: str
+    lasting: bool
+    wall_s: float
+
+
+def compute(job: Job) -> Answer:
+    """Run a job in this process. A failure is a value, so that a study goes on."""
+    begun = time.perf_counter()
+    ran = source_digest()  # before the run: the sources that are loaded, not those that lie there at its end
+    text, reason, lasting = "", "", False
+    try:
+        text = _run(job)
+    except FemImpactError as error:
+        reason, lasting = str(error), error.exit_code in (3, 6)  # the scene or the run, not the disk
+    except Exception as error:  # whatever went wrong, the other jobs of the study go on
+        reason = repr(error)
+    return Answer(ran, text, reason, lasting, time.perf_counter() - begun)
+
+
+def _run(job: Job) -> str:
+    from fem_impact.run import simulate as simulated
+
+    simulate: Callable[..., Outcome] = simulated.simulate
+    try:
+        return simulate(job.scene, fidelity=job.fidelity, out=job.out, resume=True).to_json()
+    except ResultError:  # a checkpoint of another scene or program
+        return simulate(job.scene, fidelity=job.fidelity, out=job.out).to_json()
+
+
+def read_outcome(job: Job, text: str) -> Outcome | None:
+    """Return a stored outcome, or None if it cannot be read or the files of its run are gone."""
+    from fem_impact.outcome.record import Outcome
+
+    try:
+        found = Outcome.from_json(text, source=job.name)
+        if job.out is None:
+            return found
+        beside = Outcome.read(job.out / "outcome.json")
+    except FemImpactError:
+        return None
+    return found if _same_run(found, beside) else None
+
+
+def _same_run(one: Outcome, other: Outcome) -> bool:
+    return (one.provenance.scene_digest, one.provenance.created_utc, one.cost.wall) == (
+        other.provenance.scene_digest,
+        other.provenance.created_utc,
+        other.cost.wall,
+    )

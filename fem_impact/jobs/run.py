@@ -1,0 +1,170 @@
+"""How long a study will take, and what more workers would give, from what jobs like these have cost."""
+
+from __future__ import annotations
+
+import heapq
+import time
+from collections.abc import Iterable, Mapping
+from concurrent.futures import Executor, Future, as_completed
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+from statistics import median
+from typing import TYPE_CHECKING
+
+from fem_impact.errors import RunError
+from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.jobs.job import Answer, Failure, Job, compute, read_outcome
+from fem_impact.jobs.store import Store
+from fem_impact.progress import CaseProgress
+from fem_impact.run.program import source_digest
+
+if TYPE_CHECKING:
+    from fem_impact.jobs.job import Kind
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.progress import ProgressMeter
+
+__all__ = ["Eta", "Results", "expected_costs", "makespan", "run_jobs", "stored"]
+
+
+GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
+"""s a job, for the order and the ETA until one of its fidelity was measured."""
+
+STEEPNESS = 3.0
+"""A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm (README)."""
+
+
+def expected_costs(jobs: Iterable[Job], measured: Mapping[Kind, list[float]]) -> dict[str, float]:
+    """Return the expected wall time, s, of each job by name, from the times of measured kinds.
+
+    A solid job of a tip size that was not measured is scaled from the nearest one that was.
+    """
+    return {job.name: _expected(job.kind, measured) for job in jobs}
+
+
+def _expected(kind: Kind, measured: Mapping[Kind, list[float]]) -> float:
+    if kind in measured:
+        return median(measured[kind])
+    fidelity, size = kind
+    sizes = [other for name, other in measured if name == fidelity and other > 0]
+    if not sizes:
+        return GUESS[fidelity]
+    near = min(sizes, key=lambda other: max(other / size, size / other))
+    return median(measured[fidelity, near]) * float((near / size) ** STEEPNESS)
+
+
+def makespan(costs: Iterable[float], workers: int) -> float:
+    """Return how long the jobs take, s, when the longest left is always given to the next free worker.
+
+    Examples
+    --------
+    >>> makespan([3.0, 3.0, 2.0, 2.0, 2.0], 2)
+    7.0
+    >>> makespan([3.0, 3.0, 2.0, 2.0, 2.0], 1000)
+    3.0
+    """
+    ends = [0.0] * workers
+    for cost in sorted(costs, reverse=True):
+        heapq.heapreplace(ends, ends[0] + cost)
+    return max(ends)
+
+
+@dataclass(slots=True)
+class Eta:
+    """Tells a meter after every job how much time all jobs still need: time so far over work so far."""
+
+    costs: dict[str, float]
+    total: int
+    meter: ProgressMeter
+    begun: float
+    left: float
+    done: float = 0.0
+
+    @classmethod
+    def start(cls, costs: dict[str, float], total: int, meter: ProgressMeter) -> Eta:
+        """Begin to count now."""
+        return cls(costs, total, meter, time.monotonic(), sum(costs.values()))
+
+    def __call__(self, name: str, count: int) -> None:
+        """Report that ``name`` is done, ``count`` jobs in all."""
+        self.done += self.costs[name]
+        self.left -= self.costs[name]
+        eta = (time.monotonic() - self.begun) * max(self.left, 0.0) / self.done
+        self.meter(CaseProgress(name, count, self.total, eta))
+
+
+Results = dict[str, "Outcome | Failure"]
+
+
+def run_jobs(
+    jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
+) -> Results:
+    """Return outcome or failure of every job by its name, in the order of the jobs.
+
+    Results are kept in ``store`` as they come, so that an interrupted study goes on where it stopped.
+
+    Parameters
+    ----------
+    jobs : names must differ
+    store : SQLite file, made if it is not there
+    progress : told after every job, with the time that all jobs still need
+    executor : any, such as what `on_scheduler` lends; local processes, one a core, when None
+
+    Raises
+    ------
+    RunError
+        A worker holds another version of the program.
+    """
+    wanted = {job.name: _placed(job) for job in jobs}
+    with Store.open(store) as base:
+        found = {name: stored(base, job) for name, job in wanted.items()}
+        results = {name: result for name, result in found.items() if result is not None}
+        costs = expected_costs((wanted[name] for name in wanted if name not in results), base.costs())
+        if costs:
+            # the longest first, so that no worker is left alone with one at the end
+            waiting = [wanted[name] for name in sorted(costs, key=lambda name: -costs[name])]
+            with LocalProcesses() if executor is None else nullcontext(executor) as engine:
+                _compute(waiting, base, engine, results, Eta.start(costs, len(wanted), progress))
+    return {name: results[name] for name in wanted}
+
+
+def _placed(job: Job) -> Job:
+    """Name the place absolutely: a worker may stand in another directory than this process."""
+    return job if job.out is None else replace(job, out=job.out.absolute())
+
+
+def stored(base: Store, job: Job) -> Outcome | Failure | None:
+    """Return the result of a job if the store holds it."""
+    held = base.get(job.key)
+    if held is None:
+        return None
+    outcome, reason = held
+    return Failure(job.name, reason) if reason else read_outcome(job, outcome)
+
+
+def _compute(waiting: list[Job], base: Store, executor: Executor, results: Results, meter: Eta) -> None:
+    futures = {executor.submit(compute, job): job for job in waiting}
+    try:
+        for future in as_completed(futures):
+            job, answer = futures[future], _answer(future)
+            if answer.outcome or answer.lasting:
+                base.put(job, answer)
+            outcome = read_outcome(job, answer.outcome) if answer.outcome else None
+            results[job.name] = outcome or Failure(job.name, answer.reason or "its files cannot be read back")
+            meter(job.name, len(results))
+    finally:
+        for future in futures:
+            future.cancel()
+
+
+def _answer(future: Future[Answer]) -> Answer:
+    try:
+        answer = future.result()
+    except Exception as error:  # the worker died, or the executor gave up on the job
+        return Answer("", "", f"no worker finished it: {error or type(error).__name__}", False, 0.0)
+    if answer.program != source_digest():
+        raise RunError(
+            "a worker computes with another version of fem-impact or of its libraries than this process. "
+            "Install the same on all workers."
+        )
+    return answer

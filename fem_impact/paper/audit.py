@@ -1,0 +1,292 @@
+"""Numbers for JSON and for reading: what is not finite is said so, never written as a number."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.tables.text import wrapped
+from rigid import Estimate, first_order
+from rigid.experiments import (
+    AuditRecord,
+    MeasuredSet,
+    Statistic,
+    audit,
+    audit_statistics,
+    column_arms,
+    correlations,
+    measured_set,
+    set_ids,
+)
+
+__all__ = [
+    "CSV_COLUMNS",
+    "audit_document",
+    "audit_text",
+    "csv_rows",
+    "estimate_entry",
+    "finite",
+    "statistic_entry",
+]
+
+
+def finite(value: Any) -> float | None:
+    """Return a float, or None where it is infinite or undefined."""
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def statistic_entry(found: Statistic) -> dict[str, Any]:
+    """Return mean, SD and 95 % interval of the mean by name."""
+    numbers = {name: finite(getattr(found, name)) for name in ("mean", "sd", "low", "high")}
+    return {**numbers, "tests": found.n}
+
+
+def estimate_entry(found: Estimate) -> dict[str, Any]:
+    """Return value, standard uncertainty, 95 % interval and its sources by name."""
+    numbers = {name: finite(getattr(found, name)) for name in ("value", "sd", "low", "high")}
+    return {**numbers, "parts": {name: finite(part) for name, part in found.parts.items()}}
+
+
+COEFFICIENTS = ("e", "mu", "e_m")
+SCATTER = (*COEFFICIENTS, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
+CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
+
+
+def audit_document(set_id: str | None = None) -> dict[str, Any]:
+    """Audit every printed number of Tables 2 to 6, or of one measured set.
+
+    Parameters
+    ----------
+    set_id : str, optional
+        Such as ``"t5b"``; all thirteen sets unless given.
+
+    Returns
+    -------
+    dict
+        Plain JSON: summary, columns (numbers checked and agreeing), constants of each set, disagreements
+        with explanations, scatter of each set, and `records` with every number.
+
+    Raises
+    ------
+    UsageError
+        There is no such set.
+    """
+    ids = (_checked(set_id),) if set_id else set_ids()
+    records = [r for r in (*audit(), *audit_statistics()) if r.set_id in ids]
+    sets = [measured_set(name) for name in ids]
+    return {
+        "summary": _summary(records),
+        "columns": list(_columns(records)),
+        "constants": [_constants(s) for s in sets],
+        "disagreements": list(_disagreements(records)),
+        "scatter": [_scatter(s) for s in sets],
+        "records": [_entry(r) for r in records],
+    }
+
+
+def csv_rows(document: dict[str, Any]) -> Iterator[list[Any]]:
+    """Yield every audited number in the order of `CSV_COLUMNS`."""
+    for record in document["records"]:
+        cells = [record[name] for name in CSV_COLUMNS]
+        yield [str(cell).lower() if isinstance(cell, bool) else cell for cell in cells]
+
+
+def _checked(set_id: str) -> str:
+    if set_id in set_ids():
+        return set_id
+    remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
+    raise UsageError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
+
+
+def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:
+    apart = [r for r in records if not r.agrees]
+    markers = sum(_is_marker(r) for r in apart)
+    return {
+        "numbers": len(records),
+        "agree": len(records) - len(apart),
+        "marker_velocities_apart": markers,
+        "others_apart": len(apart) - markers,
+        "unexplained": sum(not r.explanation for r in apart),
+    }
+
+
+def _is_marker(r: AuditRecord) -> bool:
+    """Tell whether this is a tip velocity of a single test (they belong to a marker, not to the contact)."""
+    return r.column in ("V_cn", "V_ct") and r.row not in ("mean", "sd")
+
+
+def _columns(records: Sequence[AuditRecord]) -> Iterator[dict[str, Any]]:
+    for which, wanted in (("rows", False), ("mean and SD lines", True)):
+        kept = [r for r in records if (r.row in ("mean", "sd")) is wanted]
+        for name in dict.fromkeys(r.column for r in kept):
+            group = [r for r in kept if r.column == name]
+            agree = sum(r.agrees for r in group)
+            yield {"lines": which, "column": name, "numbers": len(group), "agree": agree}
+
+
+def _constants(s: MeasuredSet) -> dict[str, Any]:
+    """Give what a set's columns were worked out with."""
+    return {
+        "set": s.id,
+        "table": s.table,
+        "d_c_m": float(s.arms.d_c),
+        "d_d_m": float(s.arms.d_d),
+        "mass_kg": s.mass,
+        "k_squared_m2": s.k2,
+        "other_d_c_m": dict(column_arms(s.id)),
+        "reconstructed": s.reconstructed,
+    }
+
+
+def _disagreements(records: Iterable[AuditRecord]) -> Iterator[dict[str, Any]]:
+    """Give what is apart: singly, but the marker's velocities as one entry a set and column."""
+    apart = [r for r in records if not r.agrees]
+    for r in apart:
+        if not _is_marker(r):
+            yield _entry(r)
+    markers = [r for r in apart if _is_marker(r)]
+    for key in dict.fromkeys((r.set_id, r.column) for r in markers):
+        group = [r for r in markers if (r.set_id, r.column) == key]
+        worst = max(group, key=lambda r: abs(r.printed - r.recomputed))
+        yield {**_entry(worst), "row": f"{len(group)} rows, worst {worst.row}"}
+
+
+def _entry(r: AuditRecord) -> dict[str, Any]:
+    values = (
+        r.set_id,
+        r.table,
+        r.row,
+        r.column,
+        r.printed,
+        r.recomputed,
+        r.tolerance,
+        r.agrees,
+        r.explanation,
+    )
+    return dict(zip(CSV_COLUMNS, values, strict=True))
+
+
+def _scatter(s: MeasuredSet) -> dict[str, Any]:
+    """Give scatter, error bar of e_m and correlations of one set."""
+    found = s.statistics()
+    arms: dict[str, Any] = {"d_c": float(s.arms.d_c), "d_d": float(s.arms.d_d), "k2": s.k2}
+    rows = s.recomputed()
+    pairs = correlations({name: rows[name] for name in COEFFICIENTS})
+    return {
+        "set": s.id,
+        **{name: statistic_entry(found[name]) for name in SCATTER},
+        "e_m_of_mean": estimate_entry(first_order(s.motion, **arms)["e_m"]),
+        "correlations": [
+            {"pair": f"{a}, {b}", "r": c.r, "low": c.low, "high": c.high, "p": c.p}
+            for (a, b), c in pairs.items()
+        ],
+    }
+
+
+Document = Mapping[str, Any]
+
+
+def audit_text(document: Document) -> str:
+    """Lay the document of `audit_document` out for reading."""
+    parts = (
+        _summary_text(document),
+        _columns_text(document),
+        _constants_text(document),
+        _apart(document),
+        _scatter_text(document),
+    )
+    return "\n".join(line for part in parts for line in part) + "\n"
+
+
+def _summary_text(document: Document) -> Iterator[str]:
+    s = document["summary"]
+    yield from wrapped(
+        f"{s['agree']} of {s['numbers']} printed numbers follow from the printed velocities within rounding."
+    )
+    yield from wrapped(
+        f"{s['marker_velocities_apart']} tip velocities do not (they are a marker's, not the contact "
+        "point's), "
+        f"{s['others_apart']} other numbers do not; {s['unexplained']} of all these are unexplained."
+    )
+
+
+def _columns_text(document: Document) -> Iterator[str]:
+    for which in ("rows", "mean and SD lines"):
+        found = [c for c in document["columns"] if c["lines"] == which]
+        if found:
+            words = ", ".join(f"{c['column']} {c['agree']}/{c['numbers']}" for c in found)
+            yield from wrapped(f"{which}: {words}", "  ")
+
+
+def _constants_text(document: Document) -> Iterator[str]:
+    yield ""
+    yield "What the columns were worked out with (mm, kg, mm2)"
+    yield f"  {'set':<16}{'table':>6}{'d_c':>8}{'d_d':>8}{'mass':>9}{'k2':>9}  columns with another d_c"
+    for c in document["constants"]:
+        other = ", ".join(f"{name} {1e3 * d:.1f}" for name, d in c["other_d_c_m"].items())
+        other = other or ("velocities worked back from the coefficients" if c["reconstructed"] else "")
+        numbers = (
+            f"{1e3 * c['d_c_m']:8.1f}{1e3 * c['d_d_m']:8.1f}{c['mass_kg']:9.4f}{1e6 * c['k_squared_m2']:9.1f}"
+        )
+        yield f"  {c['set']:<16}{c['table']:>6}{numbers}  {other}".rstrip()
+
+
+def _apart(document: Document) -> Iterator[str]:
+    yield ""
+    yield "Disagreements, by reason (printed | recomputed; rounding allows)"
+    found = document["disagreements"]
+    for why in dict.fromkeys(d["explanation"] for d in found):
+        yield from wrapped(f"- {why or 'no explanation is known'}")
+        yield from (_place(d) for d in found if d["explanation"] == why)
+    if not found:
+        yield "  none"
+
+
+def _place(d: Mapping[str, Any]) -> str:
+    where = f"{d['set']:<16}{d['column']:<7}{_row(d['row']):<20}"
+    return f"    {where}{d['printed']:>9.4g} | {d['recomputed']:<9.4g} ({d['tolerance']:.2g})"
+
+
+def _row(row: str) -> str:
+    return f"test {row}" if row.isdecimal() else row
+
+
+def _scatter_text(document: Document) -> Iterator[str]:
+    yield ""
+    yield from wrapped(
+        "Scatter, mean (SD); e_m of the mean motion with its 95 % interval for a contact point known "
+        "to 0.5 mm"
+    )
+    yield f"  {'set':<16}{'tests':>5}  {'e':<15}{'mu':<15}{'loss/E_0':<15}e_m of the mean motion"
+    for s in document["scatter"]:
+        kept = s["E_r_over_E_0"]
+        loss = f"{1 - kept['mean']:.3f} ({kept['sd']:.3f})"
+        numbers = f"{_spread(s['e']):<15}{_spread(s['mu']):<15}{loss:<15}{_interval(s['e_m_of_mean'])}"
+        yield f"  {s['set']:<16}{s['e']['tests']:>5}  {numbers}"
+    yield from _correlated(document)
+
+
+def _correlated(document: Document) -> Iterator[str]:
+    """Name the pairs of coefficients whose correlation leaves out zero."""
+    pairs = [(s["set"], c) for s in document["scatter"] for c in s["correlations"]]
+    real = [f"{name}: {c['pair']} r = {c['r']:+.2f}" for name, c in pairs if c["low"] > 0 or c["high"] < 0]
+    yield ""
+    words = (
+        f"Correlations of e, mu, e_m beyond their 95 % interval: {'; '.join(real) or 'none'}. Chance "
+        "alone would "
+        f"give about {0.05 * len(pairs):.0f} of {len(pairs)}, and numbers worked out from the same "
+        "velocities share errors."
+    )
+    yield from wrapped(words, hang="")
+
+
+def _spread(s: Mapping[str, Any]) -> str:
+    return f"{s['mean']:.3f} ({s['sd']:.3f})"
+
+
+def _interval(e: Mapping[str, Any]) -> str:
+    mark = "" if e["low"] <= -1 <= e["high"] else "  leaves out -1"
+    return f"{e['value']:+.2f} ({e['low']:+.2f} to {e['high']:+.2f}){mark}"

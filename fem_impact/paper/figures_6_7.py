@@ -1,0 +1,255 @@
+"""Figure 6: the loss that each impulse ratio would bring, and where it stops being possible."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.figures.style import PALETTE, QUIET
+from fem_impact.paper.drawn import Drawn, Statement, canvas, paths, write_data
+from rigid import critical_ratio, predicted_losses
+from rigid.arrays import Floats
+from rigid.experiments import (
+    MeasuredSet,
+    Statistic,
+    angle_sets,
+    drawn_losses,
+    loss_against_angle,
+    measured_set,
+    statistic,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+__all__ = ["figure_6", "figure_7"]
+
+
+MU = np.linspace(0.0, 1.2, 241)
+COLOURS = ("blue", "sky", "green", "orange", "vermilion")
+COLUMNS_6 = (
+    "alpha_deg",
+    "mu",
+    "loss_over_E_0",
+    "loss_low_over_E_0",
+    "loss_high_over_E_0",
+    "E_lt_over_E_0",
+    "mu_c",
+)
+
+
+def figure_6(out: Path) -> Drawn:
+    """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
+    picture, data = paths(out, 6)
+    curves = [_curve(s) for s in angle_sets()]
+    write_data(data, COLUMNS_6, [row for curve in curves for row in _rows(curve)])
+    share = [_share_at_critical(curve) for curve in curves]
+    sentence = (
+        f"At the critical ratio the predicted total loss is {100 * min(share):.0f} to "
+        f"{100 * max(share):.0f} % "
+        "of the largest for any ratio up to it; beyond it (dotted) the loss falls and would end in a gain."
+    )
+    with canvas(picture, 4.6, sentence) as drawn:
+        axes = drawn.add_subplot()
+        for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
+            _draw_6(axes, curve, s, PALETTE[colour])
+        _furnish(axes)
+    return Drawn(6, picture, data, sentence, (_near_maximum(share), _gain(curves), *_surfaces()))
+
+
+def _curve(s: MeasuredSet) -> dict[str, Any]:
+    """Give loss against mu of one set, with the band that the interval of its mean e leaves."""
+    mean = s.statistics()
+    motion = mean["v_n"].mean, mean["v_t"].mean
+    mass = 2.0 / (motion[0] ** 2 + motion[1] ** 2)  # so that losses come as fractions of E_0
+    arms: dict[str, Any] = {"e_m": mean["e_m"].mean, "d_c": s.arms.d_c, "d_d": s.arms.d_d, "k2": s.k2}
+    restitution = np.array([mean["e"].mean, mean["e"].low, mean["e"].high])
+    lost = predicted_losses(*motion, e=restitution[:, None], mu=MU, mass=mass, **arms)
+    total = lost.E_ln + lost.E_lt
+    mu_c = float(critical_ratio(*motion, e=restitution[0], **arms))
+    return {"alpha": float(np.degrees(s.alpha)), "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c}
+
+
+def _rows(curve: dict[str, Any]) -> list[list[float]]:
+    total: Floats = curve["total"]
+    low, high = total.min(axis=0), total.max(axis=0)
+    columns = zip(MU, total[0], low, high, curve["tangential"], strict=True)
+    return [[round(curve["alpha"], 6), *map(float, row), curve["mu_c"]] for row in columns]
+
+
+def _share_at_critical(curve: dict[str, Any]) -> float:
+    """Give the loss at mu_c over the largest at mu <= mu_c."""
+    below = MU <= curve["mu_c"]
+    there = float(np.interp(curve["mu_c"], MU, curve["total"][0]))
+    return there / max(there, float(curve["total"][0][below].max()))
+
+
+def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> None:
+    total: Floats = curve["total"]
+    possible, beyond = curve["mu_c"] >= MU, (curve["mu_c"] <= MU + 0.005) & (total[0] > -0.3)
+    axes.fill_between(
+        MU[possible], total.min(axis=0)[possible], total.max(axis=0)[possible], color=colour, alpha=0.18, lw=0
+    )
+    axes.plot(MU[possible], total[0][possible], color=colour, lw=1.6, label=f"{curve['alpha']:.0f}°")
+    axes.plot(MU[beyond], total[0][beyond], color=colour, lw=1.0, ls=(0, (1, 1.6)))
+    axes.plot(curve["mu_c"], np.interp(curve["mu_c"], MU, total[0]), "s", color=colour, markersize=5)
+    mu, kept = s.statistics()["mu"], s.statistics()["E_r_over_E_0"]
+    bars: dict[str, Any] = {"xerr": mu.high - mu.mean, "yerr": kept.high - kept.mean}
+    axes.errorbar(mu.mean, 1 - kept.mean, **bars, fmt="o", color=colour, mec="black", mew=0.6, capsize=2)
+
+
+def _furnish(axes: Axes) -> None:
+    """Name axes and marks."""
+    axes.axhline(0.0, color=QUIET, linewidth=0.7)
+    axes.set(
+        xlabel="impulse ratio μ",
+        ylabel="total loss $(E_{ln} + E_{lt})/E_0$",
+        xlim=(0, 1.2),
+        ylim=(-0.06, 1.0),
+    )
+    axes.grid()
+    grey = QUIET
+    axes.plot([], [], "s", color=grey, label="critical ratio")
+    axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=grey, mec="black", label="measured, 95 %")
+    axes.plot([], [], color=grey, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 0.03), title="band: 95 % interval of mean e", title_fontsize=8
+    )
+
+
+def _near_maximum(share: list[float]) -> Statement:
+    return Statement(
+        "the loss at the critical ratio is close to the largest",
+        f"{', '.join(f'{100 * x:.1f} %' for x in share)} of it at 17, 25, 37, 45 and 60 degrees",
+        min(share) > 0.9,
+    )
+
+
+def _gain(curves: list[dict[str, Any]]) -> Statement:
+    """Judge the paper's warning that ratios beyond the critical one can give an energy gain."""
+    gains = [f"{c['alpha']:.0f}" for c in curves if (c["tangential"][c["mu_c"] < MU] < 0).any()]
+    return Statement(
+        "beyond the critical ratio a tangential gain of energy becomes possible",
+        f"so it is at {', '.join(gains)} degrees for ratios up to 1.2",
+        bool(gains),
+    )
+
+
+def _surfaces() -> tuple[Statement]:
+    """Judge the rise of the loss with mu from fingermarked to freshly machined surfaces (Table 3)."""
+    dirty, fresh = (measured_set(f"t3-{name}") for name in ("contaminated", "machined"))
+    low, high = _loss_of(dirty, 0.32), _loss_of(fresh, 0.72)
+    return (
+        Statement(
+            "the loss rises from about 50 % to above 90 % of E_0 as mu goes from 0.32 to 0.72 (Table 3)",
+            f"{100 * low:.1f} % and {100 * high:.1f} % by Eq 23-25 with each surface's e and e_m",
+            abs(low - 0.5) < 0.05 and high > 0.9,
+        ),
+    )
+
+
+def _loss_of(s: MeasuredSet, mu: float) -> float:
+    """Give the loss fraction at `mu` with the mean e and e_m of a set."""
+    mean = s.statistics()
+    arms: dict[str, Any] = {"d_c": s.arms.d_c, "d_d": s.arms.d_d, "k2": s.k2}
+    lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **arms)
+    return float(lost.E_ln + lost.E_lt)
+
+
+DEGREES = np.linspace(17.0, 60.0, 173)
+LOOKS = {"total": ("blue", "o"), "E_lt": ("vermilion", "^"), "E_ln": ("green", "s")}
+WORDS = {"total": "total", "E_lt": "tangential $E_{lt}$", "E_ln": "normal $E_{ln}$"}
+ENDS = ("calculated", "low", "high")
+COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS for end in ENDS))
+
+
+def figure_7(out: Path) -> Drawn:
+    """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of resampled tests."""
+    picture, data = paths(out, 7)
+    curves, drawn_curves = _curves()
+    measured = [_measured(s.recomputed()) for s in angle_sets()]
+    write_data(data, COLUMNS_7, [*_curve_rows(curves, drawn_curves), *_measured_rows(measured)])
+    peaks = {name: _peak(curves[name], drawn_curves[name]) for name in ("total", "E_lt")}
+    sentence = (
+        f"With interpolated coefficients the total loss is largest at {_words(peaks['total'])} degrees and "
+        f"the tangential loss at {_words(peaks['E_lt'])} degrees (95 % by resampling the tests; linear "
+        "interpolation between measured angles is a choice)."
+    )
+    with canvas(picture, 4.4, sentence) as drawn:
+        axes = drawn.add_subplot()
+        for name in LOOKS:
+            _draw_7(axes, name, curves[name], drawn_curves[name], [row[name] for row in measured])
+        axes.set(
+            xlabel="inclination α, degrees", ylabel="loss as a fraction of $E_0$", xlim=(15, 62), ylim=(0, 1)
+        )
+        axes.grid()
+        handles, labels = axes.get_legend_handles_labels()
+        order = (0, 3, 1, 4, 2, 5)  # a column of the legend for each loss: curve above measurement
+        legend = [handles[i] for i in order], [labels[i] for i in order]
+        drawn.legend(*legend, loc="outside lower center", ncols=3)
+    return Drawn(7, picture, data, sentence, _statements(peaks))
+
+
+def _curves() -> tuple[dict[str, Floats], dict[str, Floats]]:
+    """Give the calculated losses and those of imagined repetitions."""
+    x = np.radians(DEGREES)
+    best, many = loss_against_angle(x), drawn_losses(x)
+    return tuple({"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln} for p in (best, many))  # type: ignore[return-value]
+
+
+def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
+    """Give the measured losses of one set; the total is what is not kept, so that it assumes no e_m."""
+    found = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
+    return {name: statistic(values) for name, values in found.items()}
+
+
+def _band(many: Floats) -> Floats:
+    return np.percentile(many, [2.5, 97.5], axis=0)
+
+
+def _curve_rows(curves: dict[str, Floats], many: dict[str, Floats]) -> list[list[float | str]]:
+    columns = [column for name in LOOKS for column in (curves[name], *_band(many[name]))]
+    return [["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)]
+
+
+def _measured_rows(measured: list[dict[str, Statistic]]) -> list[list[float | str]]:
+    rows: list[list[float | str]] = []
+    for s, found in zip(angle_sets(), measured, strict=True):
+        ends = [x for name in LOOKS for x in (found[name].mean, found[name].low, found[name].high)]
+        rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
+    return rows
+
+
+def _peak(best: Floats, many: Floats) -> tuple[float, float, float]:
+    """Give the angle of the largest loss, with its 95 % interval, in degrees."""
+    low, high = np.percentile(DEGREES[many.argmax(axis=1)], [2.5, 97.5])
+    return float(DEGREES[best.argmax()]), float(low), float(high)
+
+
+def _draw_7(axes: Axes, name: str, curve: Floats, many: Floats, measured: list[Statistic]) -> None:
+    colour, mark = PALETTE[LOOKS[name][0]], LOOKS[name][1]
+    axes.fill_between(DEGREES, *_band(many), color=colour, alpha=0.18, lw=0)
+    axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{WORDS[name]} by Eq 23-25, 95 % band")
+    angles = [float(np.degrees(s.alpha)) for s in angle_sets()]
+    means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
+    axes.errorbar(
+        angles, means, yerr=half, fmt=mark, color=colour, mec="black", mew=0.5, capsize=3,
+        label=f"{WORDS[name]}, measured mean, 95 %",
+    )  # fmt: skip
+
+
+def _words(peak: tuple[float, float, float]) -> str:
+    return f"{peak[0]:.1f} ({peak[1]:.1f} to {peak[2]:.1f})"
+
+
+def _statements(peaks: dict[str, tuple[float, float, float]]) -> tuple[Statement, ...]:
+    claims = {
+        "total": ("the total loss is largest near 45 degrees", 45.0),
+        "E_lt": ("the tangential loss is largest near 50 degrees", 50.0),
+    }
+    return tuple(
+        Statement(claim, f"at {_words(peaks[name])} degrees", abs(peaks[name][0] - near) < 5.0)
+        for name, (claim, near) in claims.items()
+    )

@@ -1,0 +1,1 @@
+"""Closed forms of contact, beam, heat and hardening."""

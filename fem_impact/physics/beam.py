@@ -1,0 +1,157 @@
+"""The rod as a free beam: its periods, and its modes as the contact point sees them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from math import cos, inf, pi, sin, sqrt
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_impact.arrays import Array
+from fem_impact.physics.contact import projectile, section_frequency, shear_speed
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+__all__ = [
+    "Beam",
+    "BeamFlight",
+    "Rigid",
+    "beam",
+    "bending_frequencies",
+    "bending_period",
+    "stretching_period",
+]
+
+
+ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
+SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)
+STRETCHING = 20  # modes at most
+
+
+class Beam(NamedTuple):
+    """Modes at the contact point: omega (k,) rad/s; displacements along t and n (k,) kg^-1/2."""
+
+    omega: Array
+    along_t: Array
+    along_n: Array
+
+
+def bending_frequencies(scene: Scene) -> Array:
+    """Return circular frequencies of free-free bending, rad/s, ascending.
+
+    The lower root of Timoshenko's dispersion at the wave numbers b of the Euler-Bernoulli modes, r = d/4:
+    w^4 r^2/s - w^2 c0^2 (1 + b^2 r^2 (1 + 1/s)) + b^4 r^2 c0^4 = 0, s = kappa G/E.
+    """
+    rod, s = scene.projectile, SHEAR / (2 * (1 + scene.projectile.material.nu))
+    b2, r2 = (ROOTS / rod.length) ** 2, (rod.diameter / 4) ** 2
+    middle = 1 + b2 * r2 * (1 + 1 / s)
+    root = 2 * b2**2 * r2 / (middle + np.sqrt(middle**2 - 4 * b2**2 * r2**2 / s))
+    return np.asarray(_bar_speed(scene) * np.sqrt(root))
+
+
+def bending_period(scene: Scene) -> float:
+    """Return the first free-free bending period, s."""
+    return 2 * pi / float(bending_frequencies(scene)[0])
+
+
+def stretching_period(scene: Scene) -> float:
+    """Return the first longitudinal period, s: 2 l / c0."""
+    return 2 * scene.projectile.length / _bar_speed(scene)
+
+
+def beam(scene: Scene) -> Beam:
+    """Return the modes of a rod at its contact point; none where it cannot vibrate.
+
+    The end of a bending mode, 2 high for a unit mass, turns by w' (1 - (w/b)^2 rho/(kappa G)) (Timoshenko),
+    which takes its share of the modal mass.
+    """
+    body, alpha, r = projectile(scene), scene.impact.angle, scene.projectile.diameter / 4
+    rho, z = (float(part) for part in body.contact_point(alpha))
+    rho = rho if alpha > 0 else 0.0  # an upright rod strikes with its whole face
+    bent, wave, shear = bending_frequencies(scene), ROOTS / body.length, shear_speed(scene)
+    turn = 2 * wave * (1 - (bent / wave) ** 2 / (SHEAR * shear**2))
+    height = 1 / np.sqrt(body.mass * (1 + (0.5 * r * turn) ** 2))
+    count = np.arange(1, STRETCHING + 1)
+    omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
+    x = np.concatenate([height * (2 - turn * z), 0.0 * count])
+    y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
+    kept = (omega < section_frequency(scene)) & ("vibration" in scene.active)
+    along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
+    return Beam(omega[kept], along_t[kept], along_n[kept])
+
+
+def _bar_speed(scene: Scene) -> float:
+    steel = scene.projectile.material
+    return float((steel.E / steel.rho) ** 0.5)
+
+
+AnyArray = NDArray[Any]
+
+BLOCK = 2048  # steps that are looked at together
+
+
+class Rigid(NamedTuple):
+    """Rigid motion: m/s, m/s, rad/s, and the height, m, of the contact point that it gives."""
+
+    V_n: float
+    V_t: float
+    spin: float
+    height: float
+
+
+@dataclass(slots=True)
+class BeamFlight:
+    """The motion between kicks, exactly, in steps ``dt``, s; ``swing`` is omega q + i dq/dt of each mode.
+
+    Attributes
+    ----------
+    table : (modes, BLOCK + 1) turn of each mode after 0, 1, ... steps
+    give : (modes,) its height over ``swing``
+    g : (2,) what gravity takes from V_n and V_t in a step, m/s
+    longest : 1.5 periods of the slowest mode, s: a free rod that has not come back by then is gone
+    """
+
+    modes: Beam
+    dt: float
+    d_c: float
+    g: tuple[float, float]
+    table: AnyArray = field(init=False)
+    give: AnyArray = field(init=False)
+    longest: float = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Tabulate."""
+        omega = self.modes.omega
+        self.table = np.exp(-1j * self.dt * np.outer(omega, np.arange(BLOCK + 1)))
+        self.give = self.modes.along_n / omega
+        self.longest = 3 * pi / float(omega.min(initial=inf)) + 2 * self.dt
+
+    def depth(self, now: Rigid, swing: AnyArray) -> float:
+        """Return how deep the contact point is, m."""
+        return -now.height - float(self.give @ swing.real)
+
+    def free(self, now: Rigid, swing: AnyArray, crater: float) -> int:
+        """Return the steps, one at least and `BLOCK` at most, until the contact point is in its crater."""
+        n = np.arange(1, BLOCK + 1)
+        below = self._height(now, n) + ((self.give * swing) @ self.table[:, 1:]).real < -crater
+        return int(n[np.argmax(below)]) if below.any() else BLOCK
+
+    def gone(self, now: Rigid, swing: AnyArray, crater: float) -> bool:
+        """Return whether no vibration brings the contact point back: what falls back strikes anew."""
+        return self._away(now) > 0 and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
+
+    def fly(self, now: Rigid, swing: AnyArray, n: int) -> tuple[Rigid, AnyArray]:
+        """Return the motion after ``n`` steps."""
+        V_n, V_t = now.V_n - n * self.g[0], now.V_t - n * self.g[1]
+        return Rigid(V_n, V_t, now.spin, float(self._height(now, n))), self.table[:, n] * swing
+
+    def _height(self, now: Rigid, n: int | AnyArray) -> Any:
+        """Return the height, m, that rigid motion gives the contact point after ``n`` steps, of any shape."""
+        return now.height + self.dt * n * (self._away(now) - 0.5 * self.g[0] * (n + 1))
+
+    def _away(self, now: Rigid) -> float:
+        """Return the speed, m/s, of the contact point off the barrier by rigid motion."""
+        return now.V_n + self.d_c * now.spin

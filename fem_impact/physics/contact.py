@@ -1,0 +1,149 @@
+"""Closed-form size of a contact before it is computed: for mesh zones and for the choice of effects.
+
+Local contact of principal radii R1 (meridian) and R2 (around the rod) under the effective mass m*,
+
+    1/m* = (1 + d_c (d_c - f d_d) / k^2) / m      (frictional impulse along one direction)
+
+at the approach v_n of the contact point either Hertzian, 8/15 E* sqrt(R) d^(5/2) = m* v_n^2 / 2, or fully
+plastic with the limiting pressure p = 2.8 sigma_y of the softer body, pi p R d^2 = m* v_n^2 / 2 (Thornton
+1997, doi:10.1115/1.2787319; Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sin, sqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Material, Scene
+    from rigid import Projectile
+
+
+LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
+SECTION = 1.8412  # first zero of J1': where the round section begins to shear by itself
+FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
+
+
+@dataclass(frozen=True, slots=True)
+class ContactEstimate:
+    """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa."""
+
+    depth: float
+    a_t: float
+    a_b: float
+    duration: float
+    pressure: float
+
+
+def yielding_materials(scene: Scene) -> list[Material]:
+    """Return the materials that may yield in this scene."""
+    named = {"rod-plasticity": scene.projectile.material, "barrier-elastoplastic": scene.barrier.material}
+    return [material for name, material in named.items() if name in scene.active]
+
+
+def principal_radii(scene: Scene) -> tuple[float, float]:
+    """Return (R1, R2), m, of the tip at its lowest point."""
+    rod, alpha = projectile(scene), scene.impact.angle
+    (rho, _), nose = rod.contact_point(alpha), rod.nose
+    sharp = rod.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
+    R1 = rod.diameter / 200 if sharp else rod.tip_radius
+    at_pole = FLATTEST if nose.face > 0 else R1
+    around = float(rho) / sin(alpha) if alpha > 0 else at_pole
+    return R1, min(max(around, R1), FLATTEST)
+
+
+def projectile(scene: Scene) -> Projectile:
+    """Return the rigid projectile of a scene."""
+    from rigid import Projectile
+
+    rod = scene.projectile
+    return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
+
+
+def arms(scene: Scene) -> tuple[float, float]:
+    """Return (d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
+    d_c, d_d = projectile(scene).arms(scene.impact.angle)
+    return float(d_c) if scene.impact.angle > 0 else 0.0, float(d_d)
+
+
+def touch_point(scene: Scene) -> tuple[float, float]:
+    """Return (rho, z), m, of the contact in the rod; that of a whole face is its centre."""
+    rho, z = projectile(scene).contact_point(scene.impact.angle)
+    return float(rho) if scene.impact.angle > 0 else 0.0, float(z)
+
+
+def approach(scene: Scene) -> float:
+    """Return the speed, m/s, at which the contact point comes towards the barrier, spin included."""
+    return -scene.impact.v_n - arms(scene)[0] * scene.impact.omega
+
+
+def sliding(scene: Scene) -> float:
+    """Return the velocity, m/s, of the contact point up the slope before the impact, spin included."""
+    return scene.impact.v_t - arms(scene)[1] * scene.impact.omega
+
+
+def shear_speed(scene: Scene) -> float:
+    """Return the speed of shear waves in the rod, m/s."""
+    steel = scene.projectile.material
+    return sqrt(steel.E / (2 * (1 + steel.nu) * steel.rho))
+
+
+def section_frequency(scene: Scene) -> float:
+    """Return the circular frequency, rad/s, above which the rod's modes deform the section.
+
+    Such modes are local: what they yield to a point load is the business of the contact law.
+    """
+    return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
+
+
+def effective_mass(scene: Scene) -> float:
+    """Return m*, kg, at least that of a frictionless contact."""
+    rod, f = projectile(scene), scene.surface.friction if "friction" in scene.active else 0.0
+    d_c, d_d = arms(scene)
+    frictionless = 1 + d_c**2 / rod.k2
+    return float(rod.mass / min(frictionless, max(1.0, 1 + d_c * (d_c - f * d_d) / rod.k2)))
+
+
+def start_energy(scene: Scene) -> float:
+    """Return E_0, J."""
+    rod, impact = projectile(scene), scene.impact
+    return float(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2 + rod.k2 * impact.omega**2))
+
+
+def normal_share(scene: Scene) -> float:
+    """Return the share of E_0 that the normal impact can take, m* / 2 times the approach squared over E_0."""
+    return 0.5 * effective_mass(scene) * approach(scene) ** 2 / start_energy(scene)
+
+
+def contact_modulus(scene: Scene) -> float:
+    """Return E*, Pa; a rigid barrier has no share."""
+    bodies = [scene.projectile.material]
+    if "barrier-rigid" not in scene.active:
+        bodies.append(scene.barrier.material)
+    return 1 / sum((1 - m.nu**2) / m.E for m in bodies)
+
+
+def contact_estimate(scene: Scene) -> ContactEstimate:
+    """Return the size of the first contact of a scene."""
+    R1, R2 = principal_radii(scene)
+    R, v_n = sqrt(R1 * R2), max(approach(scene), 1e-6)
+    energy, E_star = 0.5 * effective_mass(scene) * v_n**2, contact_modulus(scene)
+    depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
+    elastic = ContactEstimate(
+        depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, 4 / (3 * pi) * E_star * sqrt(depth / R)
+    )
+    softer = yielding_materials(scene)
+    limit = LIMIT_PRESSURE * min((m.yield_stress for m in softer), default=float("inf"))
+    if elastic.pressure <= limit:
+        return elastic
+    depth = sqrt(energy / (pi * limit * R))
+    return ContactEstimate(
+        depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit
+    )
+
+
+def barrier_conforms(scene: Scene) -> bool:
+    """Return whether the barrier flows under all of the contact, so that its surface takes the rod's form."""
+    flows = contact_estimate(scene).pressure >= LIMIT_PRESSURE * scene.barrier.material.yield_stress
+    return flows and "barrier-elastoplastic" in scene.active

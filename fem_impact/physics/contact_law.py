@@ -1,0 +1,90 @@
+"""The local contact: Hertz, Thornton's elastic and perfectly plastic law, and tangential stiffness.
+
+Thornton (1997), doi:10.1115/1.2787319: the contact yields when Hertz' peak pressure reaches p_y = 2.8
+times the yield stress of the softer body; from there on the force rises by pi p_y R a metre of approach,
+and it unloads by Hertz with the flatter radius R_p that the indentation leaves behind. The round contact
+stands for the elliptic one of principal radii R1, R2 by R = sqrt(R1 R2).
+"""
+
+from __future__ import annotations
+
+from math import inf, pi, sqrt
+from typing import TYPE_CHECKING, NamedTuple
+
+from fem_impact.physics.contact import LIMIT_PRESSURE, contact_modulus, principal_radii, yielding_materials
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Material, Scene
+
+__all__ = ["ContactLaw", "contact_law", "restitution", "softer", "thornton"]
+
+
+class ContactLaw(NamedTuple):
+    """Constants of a contact, SI.
+
+    Attributes
+    ----------
+    R, E_star : m, Pa; limit : p_y, Pa, infinite where nothing yields
+    stiffness : F = stiffness d^1.5 while elastic, N/m^1.5
+    yield_depth, yield_force : where yielding begins, m, N
+    slope : dF/dd beyond it, N/m
+    shear : tangential stiffness over contact radius, N/m2
+    friction : Coulomb's f
+    """
+
+    R: float
+    E_star: float
+    limit: float
+    stiffness: float
+    yield_depth: float
+    yield_force: float
+    slope: float
+    shear: float
+    friction: float
+
+
+def softer(scene: Scene) -> Material | None:
+    """Return the material that yields first, or None where nothing may yield."""
+    return min(yielding_materials(scene), key=lambda m: m.yield_stress, default=None)
+
+
+def contact_law(scene: Scene) -> ContactLaw:
+    """Return the contact law of a scene."""
+    R1, R2 = principal_radii(scene)
+    R, E_star, soft = sqrt(R1 * R2), contact_modulus(scene), softer(scene)
+    limit = LIMIT_PRESSURE * soft.yield_stress if soft else inf
+    stiffness = 4 / 3 * E_star * sqrt(R)
+    depth = (pi * limit / (2 * E_star)) ** 2 * R
+    force = stiffness * depth**1.5
+    f = scene.surface.friction if "friction" in scene.active else 0.0
+    return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, _shear(scene), f)
+
+
+def _shear(scene: Scene) -> float:
+    """Return 8 G*, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)."""
+    bodies = [scene.projectile.material]
+    if "barrier-rigid" not in scene.active:
+        bodies.append(scene.barrier.material)
+    return 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies)
+
+
+def restitution(law: ContactLaw, mass: float, speed: float) -> float:
+    """Return Thornton's e (energetic, of the normal direction) of a mass, kg, at a speed, m/s.
+
+    Examples
+    --------
+    >>> from fem_impact.scene import load
+    >>> law = contact_law(load("t5b"))
+    >>> restitution(law, 0.1, 16.0) / restitution(law, 0.1, 1.0) < 0.6
+    True
+    """
+    return thornton(speed / sqrt(2 / mass * 0.4 * law.yield_force * law.yield_depth))
+
+
+def thornton(ratio: float) -> float:
+    """Return e of an elastic-perfectly-plastic sphere at a speed over the yield speed, Thornton's eq 41."""
+    if ratio <= 1:
+        return 1.0
+    y = 1 / ratio
+    losses = (y / (y + 2 * sqrt(6 / 5 - y**2 / 5))) ** 0.25
+    return float(sqrt(6 * sqrt(3) / 5) * sqrt(1 - y**2 / 6) * losses)

@@ -1,0 +1,169 @@
+"""Heat of sliding at the contact: flash temperatures of half-spaces under a heat source.
+
+A patch of radius a takes the flux q for a short time. Three closed forms bound the rise of its surface:
+
+    one-dimensional, from the flux history     T(t) = integral q(s) / sqrt(pi (t - s)) ds / sqrt(k rho c)
+    steady, resting source                     T = q a / k
+    steady, moving at V                        T = 2 q a / (k sqrt(pi (1.273 + Pe))),  Pe = V a / (2 kappa)
+
+(Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed, 2.9 and 10.5; Jaeger 1942; Tian & Kennedy 1994,
+doi:10.1115/1.2927035, which fits the last between both limits.) A source that rests heats most, and heat
+that spreads sideways only cools, so the least of them is an upper estimate for the patch. Heat is shared so
+that both surfaces are equally hot where they touch (Blok), 1/T = 1/T_rod + 1/T_barrier with T_i for all heat
+in body i. Nothing here feeds back on the motion.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fem_impact.arrays import Array
+from fem_impact.physics.contact import approach, contact_estimate, sliding
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+__all__ = [
+    "ASSUMPTIONS",
+    "Flash",
+    "Half",
+    "closed_form",
+    "expected_rise",
+    "flash",
+    "flash_bound",
+    "halves",
+    "moving_rise",
+    "short_rise",
+]
+
+
+HARDNESS = 3.0  # of the ultimate stress: mean pressure that no asperity of the softer body exceeds
+ASSUMPTIONS = (
+    "every touching spot carries the hardness of the softer body, three times its ultimate stress",
+    "it slides at the sum of the tip's tangential speed and its normal speed for three contact times",
+    "all heat stays in the one body that is heated more, and none leaves sideways or to the air",
+    "the properties are those at room temperature; melting, chemical heat and grit are left out",
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Half:
+    """A half-space: conductivity k, W/(m K), and volumetric heat capacity rho c, J/(m3 K)."""
+
+    conductivity: float
+    capacity: float
+
+    @property
+    def diffusivity(self) -> float:
+        """Return kappa, m2/s."""
+        return self.conductivity / self.capacity
+
+    @property
+    def effusivity(self) -> float:
+        """Return sqrt(k rho c), W s^0.5/(m2 K)."""
+        return sqrt(self.conductivity * self.capacity)
+
+
+def moving_rise(q: ArrayLike, a: ArrayLike, V: ArrayLike, body: Half) -> Array:
+    """Return the largest steady rise, K, under a round source of flux q, W/m2, radius a, m, speed V, m/s."""
+    q, a = np.asarray(q), np.asarray(a)
+    peclet = np.asarray(V) * a / (2 * body.diffusivity)
+    return np.asarray(2 * q * a / (body.conductivity * np.sqrt(pi * (1.273 + peclet))))
+
+
+def short_rise(t: ArrayLike, q: ArrayLike, body: Half) -> Array:
+    """Return the rise, K, at times t (n,), s, under fluxes q (n - 1,), W/m2, constant between them."""
+    t, q = np.asarray(t, dtype=np.float64), np.asarray(q, dtype=np.float64)
+    since = np.sqrt(np.maximum(t[:, None] - t[None, :], 0.0))
+    return np.asarray((since[:, :-1] - since[:, 1:]) @ q * 2 / (sqrt(pi) * body.effusivity))
+
+
+@dataclass(frozen=True, slots=True)
+class Flash:
+    """Rise of the patch, K, at the times t, s."""
+
+    t: Array
+    rise: Array
+
+    @property
+    def peak(self) -> float:
+        """Return the highest rise, K."""
+        return float(self.rise.max(initial=0.0))
+
+    def time_above(self, rise: float) -> float:
+        """Return how long the rise is above a given one, s."""
+        mean = 0.5 * (self.rise[1:] + self.rise[:-1])
+        return float(np.diff(self.t)[mean > rise].sum())
+
+
+def flash(t: Array, q: Array, a: Array, V: Array, rod: Half, barrier: Half) -> Flash:
+    """Return the flash temperature of a patch.
+
+    Parameters
+    ----------
+    t : (n,) s; q, a, V : (n - 1,) flux W/m2, patch radius m and sliding speed m/s between the times
+    rod, barrier : the source rests on the rod and moves over the barrier
+    """
+    resting = _least(t, q, a, np.zeros_like(V), rod)
+    moving = _least(t, q, a, V, barrier)
+    total = resting + moving
+    return Flash(t, np.divide(resting * moving, total, out=np.zeros_like(total), where=total > 0))
+
+
+def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
+    """Return the lower of the short and the steady rise; heat that has been put in stays for a while."""
+    steady = np.maximum.accumulate(moving_rise(q, a, V, body))
+    return np.asarray(np.minimum(short_rise(t, q, body), np.concatenate([[0.0], steady])))
+
+
+def halves(scene: Scene) -> tuple[Half, Half]:
+    """Return the thermal half-spaces of rod and barrier."""
+    h = scene.heating
+    return (
+        Half(h.rod_conductivity, scene.projectile.material.rho * h.rod_heat_capacity),
+        Half(h.barrier_conductivity, scene.barrier.material.rho * h.barrier_heat_capacity),
+    )
+
+
+def sliding_speed(scene: Scene) -> float:
+    """Return the tangential speed of the tip at first contact, m/s."""
+    return abs(sliding(scene))
+
+
+def expected_rise(scene: Scene) -> float:
+    """Return the rise, K, of the estimated contact at its mean pressure and half its first sliding speed."""
+    size, f = contact_estimate(scene), scene.surface.friction
+    q = f * size.pressure * 0.5 * sliding_speed(scene)
+    return _steady_flash(scene, q).peak
+
+
+def _steady_flash(scene: Scene, q: float) -> Flash:
+    """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed."""
+    size = contact_estimate(scene)
+    t, one = np.linspace(0.0, size.duration, 101), np.ones(100)
+    a, V = sqrt(size.a_t * size.a_b), 0.5 * sliding_speed(scene)
+    return flash(t, q * one, a * one, V * one, *halves(scene))
+
+
+def closed_form(scene: Scene, friction_work: float) -> tuple[Flash, float, float, float]:
+    """Return flash, power, W, flux, W/m2, and patch, m2, of the estimated contact.
+
+    The friction work, J, is spread evenly over its patch and its time.
+    """
+    size = contact_estimate(scene)
+    patch, power = pi * size.a_t * size.a_b, friction_work / size.duration
+    return _steady_flash(scene, power / patch), power, power / patch, patch
+
+
+def flash_bound(scene: Scene) -> float:
+    """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``."""
+    size, f = contact_estimate(scene), scene.surface.friction
+    softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.material))
+    speed = sliding_speed(scene) + approach(scene)
+    q, t = f * HARDNESS * softer * speed, 3 * size.duration
+    return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves(scene))

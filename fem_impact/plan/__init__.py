@@ -1,0 +1,1 @@
+"""What a scene calls for: active effects, filled slots, zones, sizes, refusals."""

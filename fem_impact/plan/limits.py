@@ -1,0 +1,134 @@
+"""Say where a scene leaves what was measured, so that nobody reads a prediction as a comparison."""
+
+from __future__ import annotations
+
+import math
+from math import sqrt
+
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import approach, arms, contact_estimate
+from fem_impact.scene import library
+from fem_impact.scene.types import Scene
+from fem_impact.scene.units import format_quantity
+
+__all__ = ["validity"]
+
+
+# Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
+LENGTHS = (0.08, 0.24)
+DIAMETER = 0.019
+SPEEDS = (1.30, 6.10)
+ANGLES = (math.radians(17.0), math.radians(60.0))
+TIPS = {("A", 0.007), ("B", 0.003)}
+
+
+def validity(scene: Scene) -> tuple[str, ...]:
+    """Return one sentence for each way in which the scene lies outside the measured range."""
+    sentences = (_length(scene), _section(scene), _speed(scene), _angle(scene), _spin(scene))
+    more = (_steels(scene), _surface(scene), _idealised(scene))
+    return tuple(sentence for sentence in (*sentences, *more) if sentence)
+
+
+def _outside(value: float, ends: tuple[float, float], words: str, dimension: str) -> str:
+    low, high = (format_quantity(end, dimension) for end in ends)
+    slack = 1e-9 * abs(ends[1])
+    if ends[0] - slack <= value <= ends[1] + slack:
+        return ""
+    stated = format_quantity(value, dimension)
+    return f"outside the measured range: {words} {stated}, measured {low} to {high}"
+
+
+def _length(scene: Scene) -> str:
+    return _outside(scene.projectile.length, LENGTHS, "length", "length")
+
+
+def _section(scene: Scene) -> str:
+    rod = scene.projectile
+    if math.isclose(rod.diameter, DIAMETER) and any(
+        rod.tip == tip and math.isclose(rod.tip_radius, radius) for tip, radius in TIPS
+    ):
+        return ""
+    return "outside the measured range: measured were 19 mm rods with a 7 mm nose (A) or a 3 mm edge (B)"
+
+
+def _speed(scene: Scene) -> str:
+    speed = round(math.hypot(scene.impact.v_n, scene.impact.v_t), 3)
+    return _outside(speed, SPEEDS, "speed", "speed")
+
+
+def _angle(scene: Scene) -> str:
+    return _outside(scene.impact.angle, ANGLES, "angle", "angle")
+
+
+def _spin(scene: Scene) -> str:
+    return (
+        "outside the measured range: the measured rods did not turn before impact"
+        if scene.impact.omega
+        else ""
+    )
+
+
+def _steels(scene: Scene) -> str:
+    known = library.materials()
+    same = scene.projectile.material == known["rod-steel"] and scene.barrier.material == known["plate-steel"]
+    return "" if same else "outside the measured range: other materials than the measured steels"
+
+
+def _surface(scene: Scene) -> str:
+    known = library.surfaces().values()
+    if "friction" not in scene.active or scene.surface in known:
+        return ""
+    f, source = scene.surface.friction, scene.surface.source
+    return f"friction f = {f:g} is not the committed value of a surface state ({source})"
+
+
+def _idealised(scene: Scene) -> str:
+    real = ("friction", "rod-plasticity", "barrier-elastoplastic")
+    missing = [name for name in real if name not in scene.active]
+    return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
+
+
+def widest_tip_size(scene: Scene) -> float:
+    """Return the largest ``accuracy.tip_size``, m, two digits, with elements no wider than the contact.
+
+    Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
+    """
+    size = contact_estimate(scene)
+    return float(f"{0.95 * sqrt(2) * min(size.a_t, size.a_b):.1e}")
+
+
+def coarse_tip(scene: Scene) -> tuple[str, ...]:
+    """Return a sentence when the contact may be narrower than an element at the tip."""
+    asked, widest = scene.accuracy.tip_size, widest_tip_size(scene)
+    if asked <= widest or scene.accuracy.target is not None:  # a target chooses its own mesh
+        return ()
+    return (
+        f"The contact, about {sqrt(2) * widest * 1e3:.2g} mm wide, may be narrower than an element at the "
+        f"tip (accuracy.tip_size = {asked * 1e3:.2g} mm): the mesh then sets E_vib and the peak force. "
+        f"Give at most {widest * 1e3:.2g} mm.",
+    )
+
+
+def require_shallow(scene: Scene) -> None:
+    """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
+    depth, radius = contact_estimate(scene).depth, scene.projectile.diameter / 2
+    if depth > radius:
+        raise SceneError(
+            f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
+            f"({radius * 1e3:g} mm): the whole end would flow and break, which the model does not hold.",
+            key="impact.v_n",
+            value=f"{scene.impact.v_n:g} m/s",
+            remedy="Give a lower speed or stronger materials.",
+        )
+
+
+def require_approach(scene: Scene) -> None:
+    """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
+    speed = approach(scene)
+    if speed <= 0:
+        raise SceneError(
+            f"lifts the contact point off the barrier at {-speed:.3g} m/s: another part would strike.",
+            key="impact.omega",
+            value=f"{scene.impact.omega:g} rad/s",
+            remedy=f"Keep it under {abs(scene.impact.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
+        )

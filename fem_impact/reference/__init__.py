@@ -1,0 +1,1 @@
+"""Known answers, found without the solver."""

@@ -1,0 +1,187 @@
+"""Free-free bending modes of a round bar by Timoshenko's theory, in Legendre polynomials.
+
+Deflection w and section angle theta minimise the energy E I theta'^2 + kappa G A (w' - theta)^2 against
+rho A w^2 + rho I theta^2; kappa of a round section from Hutchinson (2001), doi:10.1115/1.1349417.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+
+import numpy as np
+from numpy.polynomial import legendre
+from scipy.linalg import block_diag, eigh
+
+from fem_impact.arrays import Array
+
+__all__ = ["BeamModes", "Frequencies", "bending_modes", "cylinder_frequencies"]
+
+RIGID = 2
+
+
+@dataclass(frozen=True, slots=True)
+class BeamModes:
+    """Bending modes of unit modal mass.
+
+    Attributes
+    ----------
+    omega : (k,) rad/s
+    deflection, angle : (k, n) Legendre coefficients of w, kg^-1/2, and theta, 1/m kg^-1/2, over the bar
+        from -1 (struck end) to 1
+    """
+
+    omega: Array
+    deflection: Array
+    angle: Array
+
+    @property
+    def frequency(self) -> Array:
+        """Return natural frequencies (k,), Hz."""
+        return self.omega / (2 * pi)
+
+    def at(self, place: float) -> tuple[Array, Array]:
+        """Return w and theta (k,) at a place from -1 to 1."""
+        values = legendre.legvander(np.array([place]), self.deflection.shape[1] - 1)[0]
+        return self.deflection @ values, self.angle @ values
+
+
+def shear_factor(nu: float) -> float:
+    """Return kappa of a round section."""
+    return 6 * (1 + nu) ** 2 / (7 + 12 * nu + 4 * nu**2)
+
+
+def _legendre_tables(count: int, length: float) -> tuple[Array, Array, Array]:
+    """Return values and slopes of ``count`` polynomials at Gauss points, and weights, m."""
+    s, weight = legendre.leggauss(count + 2)
+    values = legendre.legvander(s, count - 1)
+    slopes = np.stack([legendre.legval(s, legendre.legder(row)) for row in np.eye(count)], axis=1)
+    return np.asarray(values), np.asarray(slopes * 2 / length), np.asarray(weight * length / 2)
+
+
+def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BeamModes:
+    """Return the lowest elastic bending modes.
+
+    Examples
+    --------
+    >>> bending_modes(219e9, 0.29, 7850.0, 0.24, 9.5e-3).frequency[:3].round().tolist()
+    [1526.0, 4092.0, 7728.0]
+    """
+    n = 2 * count + 12
+    area, second, G = pi * radius**2, pi * radius**4 / 4, E / (2 * (1 + nu))
+    P, D, weight = _legendre_tables(n, length)
+    shear = np.concatenate([D, -P], axis=1)
+    bend = np.concatenate([np.zeros_like(D), D], axis=1)
+    K = E * second * bend.T @ (weight[:, None] * bend)
+    K += shear_factor(nu) * G * area * shear.T @ (weight[:, None] * shear)
+    single = P.T @ (weight[:, None] * P)
+    M = rho * np.block([[area * single, 0 * single], [0 * single, second * single]])
+    square, shape = eigh(K, M)
+    chosen = slice(RIGID, RIGID + count)
+    return BeamModes(np.sqrt(square[chosen]), shape[:n, chosen].T, shape[n:, chosen].T)
+
+
+Terms = list[tuple[int, int]]
+
+SECTION_DEGREE = 5
+AXIAL_DEGREE = 15
+
+
+@dataclass(frozen=True, slots=True)
+class Frequencies:
+    """Lowest natural frequencies, Hz, ascending (k,)."""
+
+    bending: Array
+    longitudinal: Array
+    torsion: Array
+
+
+def _terms(x_parity: int, y_parity: int) -> Terms:
+    """Return exponents (a, b) of x^a y^b with the parities of a component."""
+    degrees = range(SECTION_DEGREE + 1)
+    return [
+        (a, b)
+        for a in degrees
+        for b in degrees
+        if a % 2 == x_parity and b % 2 == y_parity and a + b <= SECTION_DEGREE
+    ]
+
+
+def _power(x: Array, a: int) -> tuple[Array, Array]:
+    return x**a, a * x ** (a - 1) if a else np.zeros_like(x)
+
+
+def _section(terms: Terms) -> tuple[Array, Array, Array, Array]:
+    """Return values, x and y slopes (points, terms) and weights over the unit disc."""
+    s, w = legendre.leggauss(8)
+    r, w_r = 0.5 * (s + 1), 0.5 * w
+    turn = 2 * pi * np.arange(16) / 16
+    x, y = np.outer(r, np.cos(turn)).ravel(), np.outer(r, np.sin(turn)).ravel()
+    weight = np.repeat(w_r * r * 2 * pi / 16, 16)
+    rows = [(*_power(x, a), *_power(y, b)) for a, b in terms]
+    value = np.stack([X * Y for X, _, Y, _ in rows], axis=1)
+    along_x = np.stack([X1 * Y for _, X1, Y, _ in rows], axis=1)
+    along_y = np.stack([X * Y1 for X, _, _, Y1 in rows], axis=1)
+    return value, along_x, along_y, weight
+
+
+def _axis(length: float) -> tuple[Array, Array, Array]:
+    s, w = legendre.leggauss(AXIAL_DEGREE + 3)
+    n = AXIAL_DEGREE + 1
+    slopes = np.stack([legendre.legval(s, legendre.legder(row)) for row in np.eye(n)], axis=1)
+    return (
+        np.asarray(legendre.legvander(s, AXIAL_DEGREE)),
+        np.asarray(slopes * 2 / length),
+        np.asarray(w * length / 2),
+    )
+
+
+def _derivatives(parities: tuple[int, int], radius: float) -> tuple[list[tuple[Array, int]], Array]:
+    """Return a component's value and three slopes over the section, with the axial factor's order."""
+    value, x, y, weight = _section(_terms(*parities))
+    return [(value, 0), (x / radius, 0), (y / radius, 0), (value, 1)], weight * radius**2
+
+
+def _class_frequencies(
+    parities: list[tuple[int, int]], E: float, nu: float, rho: float, length: float, radius: float
+) -> Array:
+    """Return all frequencies of one symmetry class, the rigid ones as zeros, Hz."""
+    tables = [_derivatives(p, radius) for p in parities]
+    weight, axial = tables[0][1], _axis(length)
+    G = E / (2 * (1 + nu))
+    lame = 2 * G * nu / (1 - 2 * nu)
+
+    def product(i: int, p: int, j: int, q: int) -> Array:
+        """Return the integrals of derivative p of component i times derivative q of component j."""
+        (A, a), (B, b) = tables[i][0][p], tables[j][0][q]
+        along = axial[a].T @ (axial[2][:, None] * axial[b])
+        return np.asarray(np.kron(A.T @ (weight[:, None] * B), along))
+
+    def stiffness(i: int, j: int) -> Array:
+        block = lame * product(i, i + 1, j, j + 1) + G * product(i, j + 1, j, i + 1)
+        if i == j:
+            block += G * (product(i, 1, i, 1) + product(i, 2, i, 2) + product(i, 3, i, 3))
+        return block
+
+    K = np.block([[stiffness(i, j) for j in range(3)] for i in range(3)])
+    M = block_diag(*(rho * product(i, 0, i, 0) for i in range(3)))
+    return np.asarray(np.sqrt(np.maximum(eigh(K, M, eigvals_only=True), 0.0)) / (2 * pi))
+
+
+def cylinder_frequencies(
+    E: float, nu: float, rho: float, length: float, radius: float, count: int = 3
+) -> Frequencies:
+    """Return the lowest bending, longitudinal and torsional frequencies.
+
+    Examples
+    --------
+    >>> found = cylinder_frequencies(219e9, 0.29, 7850.0, 0.24, 9.5e-3)
+    >>> found.bending.round(1).tolist(), found.longitudinal[:2].round(1).tolist()
+    ([1526.3, 4092.1, 7728.6], [11000.3, 21978.8])
+    """
+    size = (E, nu, rho, length, radius)
+    bending = _class_frequencies([(0, 0), (1, 1), (1, 0)], *size)
+    stretching = _class_frequencies([(1, 0), (0, 1), (0, 0)], *size)
+    c_s = sqrt(E / (2 * (1 + nu)) / rho)
+    torsion = np.asarray(c_s / (2 * length) * np.arange(1, count + 1), dtype=np.float64)
+    return Frequencies(bending[2 : 2 + count], stretching[1 : 1 + count], torsion)

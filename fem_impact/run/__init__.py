@@ -1,0 +1,1 @@
+"""One call for every fidelity: a scene in, an Outcome out."""

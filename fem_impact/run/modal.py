@@ -1,0 +1,155 @@
+"""From a modal impact to the outcome."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from fem_impact.modal.impact import ModalResult
+from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.run.common import motion, plastic_shares, provenance, restitution, validity
+from fem_impact.scene.types import Scene
+
+__all__ = ["ASSUMPTIONS", "beside_solid", "reduce"]
+
+
+WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
+CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
+NOT_MESHED = Unknown("the reduced model has no elements")
+NO_STRESS = Unknown("a local contact law knows no residual stress")
+KEPT = Unknown("the modes of a rod are computed once and kept")
+
+
+def reduce(scene: Scene, result: ModalResult) -> Outcome:
+    """Return the Outcome of a modal impact."""
+    rod = result.rod
+    moved = motion(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
+    return Outcome(
+        provenance=provenance(scene, "modal", CHOICES, WITHOUT),
+        validity=validity(
+            scene,
+            result.finished,
+            _end(result),
+            "the reduced model has no second mesh",
+            (*ASSUMPTIONS, *beside_solid(scene)),
+            [] if result.finished else ["The impact was not over at max_time."],
+        ),
+        motion=moved,
+        restitution=restitution(scene, moved),
+        energy=_energy(scene, result),
+        contact=_contact(result),
+        heat=unknown(Heat, "heat is followed on the finite elements only"),
+        cost=_cost(result),
+    )
+
+
+def _end(result: ModalResult) -> str:
+    if result.finished:
+        return "The free flight ahead has no further contact."
+    return "Reached max_time before the last separation."
+
+
+def _energy(scene: Scene, result: ModalResult) -> Energy:
+    E_0, vibration = result.E_0, result.vibration / result.E_0
+    floor = abs(result.residual) / E_0
+    plastic_rod, plastic_barrier = plastic_shares(scene, result.plastic / E_0)
+    return Energy(
+        E_0=E_0,
+        rigid=result.kinetic / E_0,
+        vibration=vibration,
+        vibration_check=Unknown("the free flight is exact in modes, so there is nothing to check it against"),
+        vibration_floor=floor,
+        below_floor=vibration < floor,
+        friction=result.friction / E_0,
+        skin=Unknown("a local contact law does not say how deep it flows"),
+        plastic_rod=plastic_rod,
+        plastic_barrier=plastic_barrier,
+        locked_rod=NO_STRESS,
+        locked_barrier=NO_STRESS,
+        radiated=Unknown("a local contact law sends no waves into the barrier"),
+        closing=Unknown("no contact nodes close"),
+        damping=Unknown("the reduced model has no material damping"),
+        gravity=result.fallen / E_0 if "gravity" in scene.active else Unknown("the gravity effect is off"),
+        residual=result.residual / E_0,
+    )
+
+
+def _contact(result: ModalResult) -> Contact:
+    rows = (map(float, row) for row in result.contacts)
+    return Contact(
+        intervals=tuple(
+            ContactInterval(start=start, end=end, impulse_n=normal, impulse_t=tangential)
+            for start, end, normal, tangential in rows
+        ),
+        peak_force=result.force,
+        markers=unknown(Markers, "the camera's markers are followed on the finite elements only"),
+    )
+
+
+def _cost(result: ModalResult) -> RunCost:
+    return replace(
+        unknown(RunCost, NOT_MESHED.reason),
+        steps=result.steps,
+        wall=result.wall,
+        cpu=result.cpu,
+        setup_wall=KEPT,
+        setup_cpu=KEPT,
+        peak_memory=Unknown("the march holds a few vectors; the process is larger than it"),
+        min_step=result.step,
+    )
+
+
+ASSUMPTIONS = (
+    "Contact by Hertz or, with a yielding body, by Thornton's law with 2.8 times the softer yield stress; "
+    "the elliptic contact is replaced by a round one of the same sqrt(R1 R2).",
+    "The indented surface keeps the barrier's direction: no ploughing, so a sliding contact has mu = f.",
+    "Tangential force by Coulomb's limit and Mindlin's stiffness: no plastic shear flow under the tip.",
+    "No hardening, no residual stress, no waves in the barrier.",
+    "A later contact finds the rod and the barrier indented where they touch, as a first one left them.",
+)
+
+COMPARED = ("e", "mu", "Omega", "E_vib")
+UNITS = {"Omega": " rad/s", "E_vib": " of E_0"}
+Pair = tuple[float, float]
+
+
+def beside_solid(scene: Scene) -> tuple[str, ...]:
+    """Return where the reduced model may not be used, as numbers; and those of the measured set itself."""
+    held = _pairs()
+    general = [_largest(name, held) for name in COMPARED]
+    sentences = [
+        f"Beside the finite elements on their finest stored mesh, over {len(held)} measured sets, it is off "
+        f"by up to {', '.join(general)}: do not use it where that matters.",
+    ]
+    if scene.measured in held:
+        own = ", ".join(
+            f"{name} {a:.3g} beside {b:.3g}{UNITS.get(name, '')}"
+            for name, (a, b) in held[scene.measured].items()
+        )
+        sentences.append(f"On {scene.measured}: {own}.")
+    return tuple(sentences)
+
+
+def _largest(name: str, held: dict[str, dict[str, Pair]]) -> str:
+    where = max(held, key=lambda key: abs(held[key][name][0] - held[key][name][1]))
+    a, b = held[where][name]
+    return f"{abs(a - b):.2g}{UNITS.get(name, '')} in {name} ({where})"
+
+
+@cache
+def _pairs() -> dict[str, dict[str, Pair]]:
+    """Return (modal, finest solid) of each quantity by set."""
+    # the file is read, not its package imported: the costs stand above this model
+    text = files("fem_impact").joinpath("cost", "data", "summary.json").read_text(encoding="utf-8")
+    return {name: _pair(cost["settings"]) for name, cost in json.loads(text)["scenes"].items()}
+
+
+def _pair(settings: list[dict[str, Any]]) -> dict[str, Pair]:
+    modal = next(one for one in settings if one["kind"] == "modal")
+    solid = min((one for one in settings if one["kind"] == "mesh"), key=lambda one: one["tip_size_m"])
+    return {name: (modal["value"][name], solid["value"][name]) for name in COMPARED}

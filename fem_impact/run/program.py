@@ -1,0 +1,63 @@
+"""Which program computes: a digest of its sources and libraries, and the stamp of what they made."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from functools import cache
+from importlib import metadata
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
+    from fem_impact.scene.types import Scene
+
+__all__ = ["source_digest", "stamp"]
+
+
+ROOMS = (
+    *("fem_impact/scene", "fem_impact/effects", "fem_impact/physics", "fem_impact/plan", "fem_impact/fem"),
+    *("fem_impact/solid", "fem_impact/modal", "fem_impact/run", "fem_impact/outcome", "meshes", "rigid"),
+)
+"""Packages whose code determines the numbers of an outcome."""
+DATA = ("fem_impact/scene/data", "fem_impact/cost/data/summary.json", "rigid/experiments/data")
+"""Files, and folders of files, that this code reads (expected times of effects are no result)."""
+KINDS = (".toml", ".csv", ".json")
+LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")
+
+
+@cache
+def source_digest() -> str:
+    """Return a digest of sources and library versions: another program never reads a stale result."""
+    digest = hashlib.sha256()
+    for name, file in _sources().items():
+        digest.update(name.encode())
+        digest.update(file.read_bytes())
+    for library in LIBRARIES:
+        digest.update(f"{library} {metadata.version(library)}\n".encode())
+    return digest.hexdigest()
+
+
+def _sources() -> dict[str, Traversable]:
+    """Return every source and data file that can change a number, by its path from the packages."""
+    code = {name: file for room in ROOMS for name, file in _files(room) if name.endswith(".py")}
+    data = {name: file for place in DATA for name, file in _files(place) if name.endswith(KINDS)}
+    return code | data
+
+
+def _files(place: str) -> Iterator[tuple[str, Traversable]]:
+    """Yield the file at a path such as ``rigid/massive.py``, or all files below it, sorted by name."""
+    package, *rest = place.split("/")
+    entry = files(package).joinpath(*rest)
+    if entry.is_file():
+        yield place, entry
+        return
+    for name in sorted(child.name for child in entry.iterdir()):
+        yield from _files(f"{place}/{name}")
+
+
+def stamp(scene: Scene) -> str:
+    """Return what a stored result must have been computed from."""
+    return f"scene {scene.digest()}\nsources {source_digest()}\n"

@@ -1,0 +1,105 @@
+"""The rigid fidelity: one impulse along a sliding path, restitution by Thornton's law."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from functools import partial
+from math import isinf
+from typing import TYPE_CHECKING
+
+import rigid
+from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import approach, arms, effective_mass, projectile
+from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.contact_law import restitution as thornton
+from fem_impact.physics.flash import closed_form
+from fem_impact.run.common import heat, motion, plastic_shares, provenance, restitution, validity
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+__all__ = ["rigid_outcome"]
+
+
+UNKNOWN = "a rigid rod in an impact without duration does not know it"
+WITHOUT = ("vibration", "rate-hardening", "radiation", "gravity", "large-rotation", "material-damping")
+ASSUMPTIONS = (
+    "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
+    "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no tangential give.",
+)
+
+
+def rigid_outcome(scene: Scene) -> Outcome:
+    """Return the outcome by rigid impulse-momentum theory; what it cannot know is null with a reason."""
+    rod, impact = projectile(scene), scene.impact
+    d_c, d_d = arms(scene)
+    e, source = _normal_restitution(scene, approach(scene))
+    f = scene.surface.friction if "friction" in scene.active else 0.0
+    impulse = partial(
+        rigid.sliding_path,
+        *(impact.v_n, impact.v_t),
+        e=e,
+        f=f,
+        d_c=d_c,
+        d_d=d_d,
+        k2=rod.k2,
+        omega=impact.omega,
+    )
+    impulse()  # a first call is slow: the second is timed
+    wall, cpu = time.perf_counter(), time.process_time()
+    path = impulse()
+    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
+    moved, energy = motion(scene, V_n, V_t, Omega, rod.mass, rod.k2), _energy(scene, path, rod)
+    return Outcome(
+        provenance=provenance(scene, "rigid", Unknown(UNKNOWN), WITHOUT),
+        validity=validity(scene, True, "A rigid impact is over at once.", UNKNOWN, (source, *ASSUMPTIONS)),
+        motion=moved,
+        restitution=restitution(scene, moved),
+        energy=energy,
+        contact=Contact(
+            intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
+        ),
+        heat=_heat(scene, energy.friction * energy.E_0),
+        cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
+    )
+
+
+def _heat(scene: Scene, friction_work: float) -> Heat:
+    if "contact-heating" not in scene.active:
+        return unknown(Heat, UNKNOWN)
+    return heat(scene, *closed_form(scene, friction_work), Unknown(UNKNOWN))
+
+
+def _normal_restitution(scene: Scene, speed: float) -> tuple[float, str]:
+    """Return the energetic restitution and the sentence that names its source."""
+    if scene.restitution is not None:
+        return scene.restitution, f"Restitution {scene.restitution:g} (energetic) is the scene's own."
+    law = contact_law(scene)
+    if isinf(law.limit):
+        return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
+    e = thornton(law, effective_mass(scene), speed)
+    return e, (
+        f"Restitution {e:.3f} (energetic) by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
+        f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress."
+    )
+
+
+def _energy(scene: Scene, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
+    impact = scene.impact
+    start = rigid.kinetic_energy(impact.v_n, impact.v_t, impact.omega, mass=rod.mass, k2=rod.k2)
+    kept = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
+    normal, tangential = (rod.mass * sum(w) for w in (path.normal_work, path.tangential_work))
+    plastic_rod, plastic_barrier = plastic_shares(scene, float(-normal / start))
+    return replace(
+        unknown(Energy, UNKNOWN),
+        E_0=float(start),
+        rigid=float(kept / start),
+        friction=float(-tangential / start),
+        plastic_rod=plastic_rod,
+        plastic_barrier=plastic_barrier,
+        residual=float((start + normal + tangential - kept) / start),
+    )

@@ -1,0 +1,207 @@
+"""From the end of a finite-element run to the quantities of the study: its outcome."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+import rigid
+from fem_impact.errors import RunError
+from fem_impact.outcome.groups import (
+    Contact,
+    ContactInterval,
+    EffectChoice,
+    Energy,
+    Heat,
+    RodMotion,
+    RunCost,
+    Validity,
+)
+from fem_impact.outcome.keys import Num, Unknown, known, unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.flash import flash, halves
+from fem_impact.plan.choose import choices, neglected
+from fem_impact.plan.limits import coarse_tip
+from fem_impact.run.common import heat, motion, provenance, restitution, validity
+from fem_impact.run.markers import replay
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+    from fem_impact.solid.run import SolidResult
+
+
+RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
+RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
+STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
+ONE_MESH = "one mesh alone has no limit and no band: run the study, or a second tip size"
+
+
+def reduce(scene: Scene, result: SolidResult) -> Outcome:
+    """Return the Outcome of a run.
+
+    Raises
+    ------
+    RunError
+        If the run ended before the rod touched the barrier: there is no impact to reduce.
+    """
+    if not result.model.book.intervals:
+        past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
+        raise RunError(f"There was no contact in {past}. {result.reason}")
+    moved = _motion(scene, result)
+    coefficients, energy = restitution(scene, moved), _energy(result, moved)
+    return Outcome(
+        provenance=provenance(scene, "solid", _choices(scene, result)),
+        validity=_validity(scene, result),
+        motion=moved,
+        restitution=coefficients,
+        energy=energy,
+        contact=_contact(result, moved),
+        heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
+        cost=_cost(result),
+    )
+
+
+def _choices(scene: Scene, result: SolidResult) -> tuple[EffectChoice, ...]:
+    """Return the choice of effects; measured shares of the run time take the place of expected ones."""
+    return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in choices(scene))
+
+
+def _validity(scene: Scene, result: SolidResult) -> Validity:
+    open_ledger = _open_ledger(result)
+    return validity(
+        scene,
+        result.finished and not open_ledger,
+        open_ledger or result.reason,
+        ONE_MESH,
+        warnings=[*_doubts(result), *neglected(scene), *coarse_tip(scene)],
+    )
+
+
+def _doubts(result: SolidResult) -> list[str]:
+    return [*result.warnings, *_ringing(result), *_unresolved(result)]
+
+
+def _ringing(result: SolidResult) -> list[str]:
+    """Tell of vibration above the modes where it is not small beside theirs."""
+    vibration, E_0 = result.flight.energy, result.E_0
+    above = sum(result.vibration_check or (vibration,)) - vibration
+    if above <= max(RINGING * vibration, LEAST * E_0):
+        return []
+    return [
+        f"E_vib lacks {above / E_0:.1e} of E_0 that vibrates above its {len(result.flight.a)} modes and that "
+        "E_vib_check holds: fine cells of the tip ring by themselves, or the blow was too short for modes. "
+        "Compare twice the accuracy.across, or another accuracy.tip_size or grid_shift."
+    ]
+
+
+def _unresolved(result: SolidResult) -> list[str]:
+    """Tell which effects' shares of the run time are not known, and why."""
+    names = [name for name, share in result.shares.items() if share is None]
+    if not names:
+        return []
+    return [
+        f"The share of the run time of {', '.join(names)} is not known: it was too short for the processor's "
+        "clock beside the rest."
+    ]
+
+
+def _open_ledger(result: SolidResult) -> str:
+    share = result.worst / result.E_0
+    if share <= RESIDUAL_LIMIT:
+        return ""
+    return f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
+
+
+def _motion(scene: Scene, result: SolidResult) -> RodMotion:
+    """Return velocities before and after; gravity's share of the fall since time 0 is taken out."""
+    alpha, m = scene.impact.angle, result.motion
+    fall = rigid.GRAVITY * result.time if "gravity" in scene.active else 0.0
+    V_n, V_t = m.V_n + fall * np.cos(alpha), m.V_t + fall * np.sin(alpha)
+    return motion(scene, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
+
+
+def _energy(result: SolidResult, moved: RodMotion) -> Energy:
+    a, E_0, active = result.accounts, result.E_0, result.scene.active
+    kept = float(rigid.kinetic_energy(moved.V_n, moved.V_t, moved.Omega, mass=moved.mass, k2=moved.k_squared))
+    stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
+    check = result.vibration_check
+    locked = a["strain_rod"] - (check[1] if check else result.flight.strain)
+    locked += a["kinetic_rod"] - result.motion.kinetic if stiff else 0.0  # the nose rings a little
+
+    def share(energy: float) -> float:
+        return float(energy / E_0)
+
+    return Energy(
+        E_0=E_0,
+        rigid=share(kept),
+        vibration=STIFF if stiff else share(vibration),
+        vibration_check=share(sum(check)) if check else STIFF if stiff else _unchecked(result),
+        vibration_floor=STIFF if stiff else share(floor),
+        below_floor=STIFF if stiff else bool(vibration < floor),
+        friction=share(a["friction"]),
+        skin=share(a["friction"] + result.skin_share * a["plastic_barrier"]),
+        plastic_rod=share(a["plastic_rod"]),
+        plastic_barrier=share(a["plastic_barrier"]),
+        locked_rod=share(locked),
+        locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"]),
+        radiated=share(a["radiated"]),
+        closing=share(a["closing"]),
+        damping=share(a["damping"])
+        if "material-damping" in active
+        else Unknown("the material-damping effect is off"),
+        gravity=share(kept - result.motion.kinetic - a["gravity"])
+        if "gravity" in active
+        else Unknown("the gravity effect is off"),
+        residual=share(a["residual"]),
+    )
+
+
+def _unchecked(result: SolidResult) -> Unknown:
+    if result.finished:
+        return Unknown("the strain that the last forces release was not found")
+    return Unknown("the run ended before the last separation was certain")
+
+
+def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
+    """Return flash temperature and bound, and rigid theory's friction loss less the vibration in it."""
+    watch = result.heat
+    if watch is None or not watch.power:
+        return unknown(Heat, "the contact-heating effect is off")
+    power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
+    flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
+    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.scene))
+    peaks = (float(power.max()), float(flux.max()), float(patch.max()))
+    less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
+    return heat(result.scene, found, *peaks, less)
+
+
+def _contact(result: SolidResult, moved: RodMotion) -> Contact:
+    intervals = (
+        ContactInterval(start=i.start, end=i.end, impulse_n=float(i.impulse_n), impulse_t=float(i.impulse_t))
+        for i in result.model.book.intervals
+    )
+    return Contact(
+        intervals=tuple(intervals),
+        peak_force=result.peak_force,
+        markers=replay(result, moved.V_n, moved.V_t),
+    )
+
+
+def _cost(result: SolidResult) -> RunCost:
+    g, cost = result.model.geometry, result.cost
+    rod, barrier = len(g.rod.mesh.cells), len(g.barrier.cells) if g.barrier is not None else 0
+    return RunCost(
+        steps=result.steps,
+        element_steps=result.steps * (rod + barrier),
+        elements_rod=rod,
+        elements_barrier=barrier,
+        elements_yielding=sum(z.count for z in result.model.zones),
+        wall=cost.wall,
+        cpu=cost.cpu,
+        setup_wall=cost.setup_wall,
+        setup_cpu=cost.setup_cpu,
+        peak_memory=cost.memory_MB,
+        min_step=cost.smallest_step,
+        tip_size=g.tip_size,
+    )

@@ -1,0 +1,138 @@
+"""What is shipped with the package: materials and surfaces with their sources, and ready scenes."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.scene import fields
+from fem_impact.scene.library import _near, shipped, stated
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_dict
+
+__all__ = ["load", "replace", "replace_all"]
+
+
+def load(id_or_path: str | Path) -> Scene:
+    """Return a shipped scene by its id, or read a scene file.
+
+    Raises
+    ------
+    UsageError
+        For an unknown id or a missing file.
+    SceneError
+        For any mistake in the file.
+    """
+    name = os.fspath(id_or_path)
+    if name in shipped():
+        return _shipped(name)
+    if not _looks_like_a_file(name):
+        raise UsageError(
+            "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
+        )
+    return Scene.from_toml(name)
+
+
+def _looks_like_a_file(name: str) -> bool:
+    return name.endswith(".toml") or "/" in name or os.sep in name or os.path.lexists(name)
+
+
+@cache
+def _shipped(name: str) -> Scene:
+    from fem_impact.scene.read import read_dict
+
+    return read_dict(stated(name), f"shipped scene {name}")
+
+
+_SUFFIXES = (
+    "_m_per_s",
+    "_rad_per_s",
+    "_kg_per_m3",
+    "_rad",
+    "_Pa",
+    "_W_per_m_K",
+    "_J_per_kg_K",
+    "_K",
+    "_m",
+    "_s",
+)
+
+
+def replace(scene: Scene, key: str, value: Any) -> Scene:
+    """Return a checked copy of the scene with one dotted key changed; see `replace_all`."""
+    return replace_all(scene, {key: value})
+
+
+def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """Return a checked copy of the scene with dotted keys changed, checked together at the end.
+
+    A changed friction makes the surface custom, a changed property renames its material, and a changed rod,
+    impact or surface state no longer repeats a measured set, which the title says: a name never stands for
+    other values. Friction, materials, effects and accuracy are the model's side and leave ``measured`` as it
+    is.
+    """
+    data = to_dict(scene)
+    for key, value in changes.items():
+        _change(data, key, value)
+    return read_dict(data, "--set")
+
+
+def _change(data: dict[str, Any], key: str, value: Any) -> None:
+    *path, last = key.split(".")
+    table = _section(data, path, key)
+    table.pop(_plain(last, table), None)
+    table[last] = value
+    _rename(table, path, last)
+    if path == ["accuracy"]:
+        _keep_one(table, last)
+    other = (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
+    if other and data.pop("measured", None):
+        data["title"] = f"{data['title']} (changed)"
+
+
+def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
+    table = data
+    for name in path:
+        inner = table.get(name)
+        if name == "accuracy" and isinstance(inner, str):
+            remedy = "Give the error that is allowed, or a mesh, not both."
+            raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy, source="--set")
+        if not isinstance(inner, dict):
+            sections = [k for k, v in table.items() if isinstance(v, Mapping)]
+            hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")
+            raise SceneError("is not a key of a scene.", key=key, remedy=hint, source="--set")
+        table = inner
+    return table
+
+
+def _plain(last: str, table: Mapping[str, Any]) -> str:
+    """Return the unit-free twin of an SI key, so that ``length_m`` replaces ``length``."""
+    return next((last.removesuffix(s) for s in _SUFFIXES if last.removesuffix(s) in table), last)
+
+
+def _keep_one(table: dict[str, Any], last: str) -> None:
+    """Let a mesh replace a target, and a target a mesh."""
+    mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
+    for key in mesh if last == "target" else ["target"] if last in mesh else []:
+        table.pop(key, None)
+
+
+def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
+    if path == ["surface"] and last.startswith("friction"):
+        _own_surface(table, last)
+    elif path == ["surface"] and last == "state":
+        for key in ("friction", "friction_low", "friction_high", "source"):
+            table.pop(key, None)
+    elif path[-1:] == ["material"] and last != "name":
+        table["name"] = f"{table['name'].removesuffix(' (changed)')} (changed)"
+
+
+def _own_surface(table: dict[str, Any], last: str) -> None:
+    table |= {"state": "custom", "source": "set by the user"}
+    if last == "friction":
+        table |= {"friction_low": table["friction"], "friction_high": table["friction"]}

@@ -1,0 +1,1 @@
+"""The explicit finite-element model: items, state, time loop, observers."""

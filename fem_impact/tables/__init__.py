@@ -1,0 +1,1 @@
+"""Tables: one form, written for terminal, Markdown, HTML and CSV."""

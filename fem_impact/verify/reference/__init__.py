@@ -1,1 +1,0 @@
-"""Reference solutions by independent means: numpy and scipy only, nothing of the solver."""
