@@ -6,10 +6,9 @@ from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.quality import Quality, quality, volume
-from meshes.refine import levels_for, refine
+from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import sphere
-from meshes.step import step_bound, step_limit
 from meshes.zone import Zone
 
 __all__ = [
@@ -23,14 +22,11 @@ __all__ = [
     "RodMesh",
     "Zone",
     "block",
-    "levels_for",
     "quality",
     "read",
     "refine",
     "rod",
     "sphere",
-    "step_bound",
-    "step_limit",
     "thin_skin_rise",
     "volume",
     "with_thin_skin",

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh, from_cells
 from meshes.quality import require_positive
@@ -14,9 +14,6 @@ from meshes.topology import CORNERS
 from meshes.zone import Zone
 
 __all__ = ["block", "box_cells", "thin_skin_rise", "with_thin_skin"]
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 
 def block(
@@ -45,7 +42,12 @@ def block(
         If the block is empty or does not end at the two planes.
     """
     lo, hi = np.asarray(low, np.float64), np.asarray(high, np.float64)
-    _check(lo, hi, size)
+    if lo.shape != (3,) or hi.shape != (3,) or np.any(hi <= lo):
+        raise MeshError(f"block needs three extents with low < high, not {lo.tolist()} to {hi.tolist()} m")
+    if not size > 0.0:
+        raise MeshError(f"block size must be positive, not {size} m")
+    if lo[1] != 0.0 or hi[2] != 0.0:
+        raise MeshError(f"block must start at b = 0 and end at n = 0, not b = {lo[1]} and n = {hi[2]} m")
     counts = np.maximum(1, np.rint((hi - lo) / size)).astype(np.int64)
     axes = [np.linspace(lo[i], hi[i], counts[i] + 1) for i in range(3)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -95,15 +97,6 @@ def box_cells(counts: IntArray) -> IntArray:
     starts = np.stack(np.meshgrid(*[np.arange(c) for c in counts], indexing="ij"), axis=-1).reshape(-1, 1, 3)
     stride = np.array([(counts[1] + 1) * (counts[2] + 1), counts[2] + 1, 1])
     return np.asarray((starts + CORNERS[None]) @ stride, dtype=np.int64)
-
-
-def _check(low: FloatArray, high: FloatArray, size: float) -> None:
-    if low.shape != (3,) or high.shape != (3,) or np.any(high <= low):
-        raise MeshError(f"block needs three extents with low < high, not {low.tolist()} to {high.tolist()} m")
-    if not size > 0.0:
-        raise MeshError(f"block size must be positive, not {size} m")
-    if low[1] != 0.0 or high[2] != 0.0:
-        raise MeshError(f"block must start at b = 0 and end at n = 0, not b = {low[1]} and n = {high[2]} m")
 
 
 def _tag(corners: FloatArray) -> IntArray:

@@ -1,16 +1,14 @@
-"""A rod's nose by itself, with loose points in place of the slices."""
+"""The nose of a rod by itself, with points that belong to no cell in place of the slices."""
 
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from meshes.arrays import FloatArray
 from meshes.rod import RodMesh
 
 __all__ = ["without_slices"]
-
-FloatArray = npt.NDArray[np.float64]
 
 
 def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:

@@ -1,6 +1,6 @@
-"""Mesh files through meshio: the one module that knows it."""
+"""Mesh files, written and read by meshio."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from uuid import uuid4
@@ -20,7 +20,7 @@ _FORMATS = {".vtu": "vtu", ".msh": "gmsh"}
 
 @dataclass(frozen=True, slots=True)
 class MeshFile:
-    """What a file holds.
+    """Content of a mesh file.
 
     Attributes
     ----------
@@ -69,7 +69,13 @@ def write(
         point_data=dict(point_data or {}),
         cell_data={name: [values] for name, values in cells.items()},
     )
-    _atomic(target, lambda at: meshio.write(at, stored, file_format=kind, binary=True))
+    # written beside the target and moved into place, so that no reader meets half a file
+    part = target.with_name(f".{target.stem}-{uuid4().hex}{target.suffix}")
+    try:
+        meshio.write(part, stored, file_format=kind, binary=True)
+        part.replace(target)
+    finally:
+        part.unlink(missing_ok=True)
 
 
 def read(path: str | Path) -> MeshFile:
@@ -111,13 +117,3 @@ def _require_rows(path: Path, data: Data, count: int, what: str) -> None:
     for name, values in data.items():
         if len(values) != count:
             raise MeshError(f"{path}: {name!r} has {len(values)} rows for {count} {what}")
-
-
-def _atomic(target: Path, writer: Callable[[Path], None]) -> None:
-    """Write beside the target and move into place, so that no reader meets half a file."""
-    part = target.with_name(f".{target.stem}-{uuid4().hex}{target.suffix}")
-    try:
-        writer(part)
-        part.replace(target)
-    finally:
-        part.unlink(missing_ok=True)

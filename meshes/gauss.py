@@ -1,21 +1,16 @@
-"""Trilinear shape functions at the 2 x 2 x 2 Gauss points of the unit cell [-1, 1]^3 (weights 1)."""
+"""Gradients at the 2 x 2 x 2 Gauss points of the trilinear unit cell [-1, 1]^3 (weights 1)."""
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray
 from meshes.hexmesh import HexMesh
 from meshes.topology import CORNERS
 
-__all__ = ["GRADIENTS", "SHAPES", "jacobians", "weighted_volumes"]
-
-FloatArray = npt.NDArray[np.float64]
+__all__ = ["GRADIENTS", "jacobians"]
 
 _SIGNS = 2.0 * CORNERS - 1.0
 _POINTS = _SIGNS / np.sqrt(3.0)
 _FACTORS = 1.0 + _POINTS[:, None, :] * _SIGNS[None, :, :]
-
-#: (8, 8) shape function of each corner at each Gauss point.
-SHAPES: FloatArray = _FACTORS.prod(axis=2) / 8.0
 
 #: (8, 8, 3) derivative of each shape function with respect to the unit coordinates.
 GRADIENTS: FloatArray = np.stack(
@@ -26,8 +21,3 @@ GRADIENTS: FloatArray = np.stack(
 def jacobians(mesh: HexMesh) -> FloatArray:
     """(m, 8, 3, 3) dx_i / dxi_j at the Gauss points, m."""
     return np.asarray(np.einsum("qaj,mai->mqij", GRADIENTS, mesh.points[mesh.cells], optimize=True))
-
-
-def weighted_volumes(mesh: HexMesh) -> FloatArray:
-    """(m, 8) volume that each Gauss point stands for, m3; exact in the sum over a cell."""
-    return np.asarray(np.linalg.det(jacobians(mesh)))

@@ -1,4 +1,4 @@
-"""The mesh record shared by all builders, and how it is made from plain cells."""
+"""The mesh of hexahedra that all builders make, and its making from plain cells."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,13 +7,21 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse as sp
 
+from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.topology import FACES
 
-__all__ = ["OUTER", "SKIN", "SYMMETRY", "HexMesh", "face_keys", "from_cells", "match_faces", "outer_faces"]
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+__all__ = [
+    "OUTER",
+    "SKIN",
+    "SYMMETRY",
+    "HexMesh",
+    "face_keys",
+    "from_cells",
+    "half_body_tags",
+    "match_faces",
+    "outer_faces",
+]
 
 SKIN = 0
 SYMMETRY = 1
@@ -49,12 +57,12 @@ class HexMesh:
 
     @property
     def is_hanging(self) -> npt.NDArray[np.bool_]:
-        """(n,) True where a node follows others by its tie."""
+        """(n,) True where a node is tied to others."""
         return np.asarray(self.tie.diagonal() == 0.0)
 
     @property
     def free_skin(self) -> IntArray:
-        """(k,) nodes of the SKIN that follow no others."""
+        """(k,) nodes of the SKIN that are not tied to others."""
         skin = np.unique(self.faces_with(SKIN))
         return np.asarray(skin[~self.is_hanging[skin]])
 
@@ -69,7 +77,7 @@ class HexMesh:
 
 
 def face_keys(quads: IntArray) -> IntArray:
-    """One number a quadrilateral, the same for every rotation and sense: its lowest node and the opposite."""
+    """(k,) keys of quadrilaterals from lowest and opposite node: the same for every rotation and sense."""
     first = quads.argmin(axis=1)
     rows = np.arange(len(quads))
     return np.asarray((quads[rows, first] << 31) | quads[rows, (first + 2) % 4])
@@ -94,12 +102,17 @@ def match_faces(mesh: HexMesh) -> npt.NDArray[np.int8]:
     known = face_keys(mesh.faces)
     order = np.argsort(known)
     at = np.minimum(np.searchsorted(known[order], keys), len(known) - 1)
-    found = known[order][at] == keys
-    return np.where(found, mesh.face_tag[order][at], -1).astype(np.int8).reshape(-1, 6)
+    outer = known[order][at] == keys
+    return np.where(outer, mesh.face_tag[order][at], -1).astype(np.int8).reshape(-1, 6)
+
+
+def half_body_tags(corners: FloatArray) -> IntArray:
+    """(k,) tags of outer faces with corners (k, 4, 3) of a half body: SYMMETRY at y = 0, SKIN elsewhere."""
+    return np.where((corners[:, :, 1] == 0.0).all(axis=1), SYMMETRY, SKIN)
 
 
 def from_cells(points: FloatArray, cells: IntArray, tag: Callable[[FloatArray], IntArray]) -> HexMesh:
-    """Make an unrefined mesh, its outer faces found and tagged.
+    """Make an unrefined mesh with its outer faces and their tags.
 
     Parameters
     ----------

@@ -1,19 +1,17 @@
-"""The meridian of a tip: a polyline that grid lines are laid along and nodes are snapped to."""
+"""The meridian of a tip: a polyline along which grid lines lie and onto which nodes are moved."""
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 
 __all__ = ["Meridian", "closest_on"]
 
-FloatArray = npt.NDArray[np.float64]
-
-# A turn of the polyline above this is an edge of the body, not a step of a smooth curve.
+# A turn of the polyline above this, rad, is an edge of the body, not a step of a smooth curve.
 CORNER = np.deg2rad(12.0)
-# A grid can turn from face to side where the line itself has turned by this much, so far from the axis.
+# A grid can turn from face to side where the line has turned by FIRST to LAST, rad, outside OFF_AXIS radii.
 FIRST, LAST = np.deg2rad([16.0, 64.0])
 OFF_AXIS = 0.66
 
@@ -36,7 +34,7 @@ class Meridian:
     line: FloatArray
 
     def __post_init__(self) -> None:
-        """Refuse a line that bounds no tip."""
+        """Convert to an array, and refuse a line that bounds no tip."""
         line = np.array(self.line, dtype=np.float64)
         object.__setattr__(self, "line", line)
         if line.ndim != 2 or line.shape[1] != 2 or len(line) < 2:
@@ -69,7 +67,7 @@ class Meridian:
         return np.asarray(np.arctan2(step[:, 1], step[:, 0]))
 
     def extended(self, height: float) -> "Meridian":
-        """Go on along the cylinder up to `height` (m)."""
+        """Extend the line along the cylinder up to `height` (m)."""
         if height <= self.height:
             return self
         return Meridian(np.concatenate([self.line, [[self.radius, height]]]))
@@ -87,10 +85,10 @@ class Meridian:
     def shoulder(self, near: FloatArray | None = None, cell: float = 0.0) -> float:
         """Arc length where a grid turns from the face to the side, m.
 
-        Half-way, where the line has turned by 45 degrees, and for pointed tips not nearer to the axis than
-        0.6 of the radius, which keeps the face cells wide. With `near`, (rho, z) in m, it moves so that the
-        place closest to that is the middle of a `cell` (m): next to the turn if that can lie there, otherwise
-        some whole cells away; nothing moves on an edge, or where the line is too flat, steep or sharp.
+        It lies where the line has turned by 45 degrees, but at least 0.6 of the radius from the axis, so that
+        the face cells of pointed tips stay wide. With `near`, (rho, z) in m, it moves so that the place
+        closest to that is the middle of a `cell` (m): next to the turn where possible, else some whole cells
+        away. It does not move on an edge, or where the line is too flat, steep or sharp.
         """
         middle = max(
             self._turned(np.pi / 4.0), float(np.interp(0.6 * self.radius, self.line[:, 0], self.arc))
@@ -122,7 +120,7 @@ class Meridian:
         return float(np.interp(angle, slope[pair], middle[pair]))
 
     def inward(self, arc: float, reach: float) -> FloatArray:
-        """(2,) unit vector into the body, square to the mean of the chords over `reach` (m) to both sides."""
+        """(2,) unit vector into the body, normal to the mean of the chords over `reach` (m) to both sides."""
         sides = self.at(np.array([arc - reach, arc, arc + reach]))
         step = np.diff(sides, axis=0)
         step = step / np.hypot(*step.T)[:, None]

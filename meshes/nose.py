@@ -2,32 +2,30 @@
 
 The plug carries the inner part of the section and ends in the point C of the half plane; the layer
 leaves the face, turns around the edge and runs up the side. Plug, face layer and side layer meet in C,
-one layer deep, so the grid at the surface itself is regular all along the meridian. The turn lies where the
-rod touches, and cells next to it are one pitch long on both sides: meshes of any pitch are alike there.
+one layer deep, so that the grid at the surface is regular along the whole meridian. The turn lies where the
+rod touches, and cells next to it are one pitch long on both sides, whatever the pitch.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray
 from meshes.meridian import Meridian
 from meshes.section import Section
 
-__all__ = ["Nose", "inner_corner", "lay_nose"]
+__all__ = ["NoseMesh", "inner_corner", "lay_nose"]
 
-FloatArray = npt.NDArray[np.float64]
-
-# Depth of C below the surface over the depth that gives an even layer: by the same scan as the section.
+# Depth of C below the surface over the depth that gives an even layer, from the same scan as the section.
 DEPTH = 0.85
-# Over the arc of the face: how far the nodes inside its outermost cells may move outwards, because cells lean
-# with them, and how far in they may lie, because the rest of the face is theirs.
+# Over the arc of the face, for the inner nodes of its outermost cells: largest outward shift, by which cells
+# lean, and smallest distance from the axis, which is left to the other cells of the face.
 LEAN = 0.145
 FURTHEST_IN = 0.56
 
 
 @dataclass(frozen=True, slots=True)
-class Nose:
+class NoseMesh:
     """Nodes of the nose in the half plane, (rho, z) in m.
 
     Attributes
@@ -45,7 +43,7 @@ class Nose:
     side: FloatArray
 
 
-def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pitch: float) -> Nose:
+def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pitch: float) -> NoseMesh:
     """Lay the nose grid.
 
     Parameters
@@ -74,7 +72,7 @@ def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pit
     bottom = np.stack([corner[0] * share, pole + (corner[1] - pole) * share], axis=1)
     fade = np.linspace(0.0, 1.0, rows + 1)
     wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer, 0.0])
-    return Nose(face, _filled(bottom, wall, share, height), side)
+    return NoseMesh(face, _filled(bottom, wall, share, height), side)
 
 
 def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
@@ -84,19 +82,14 @@ def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
     """
     curve = meridian.extended(meridian.height + meridian.radius)
     layer = (1.0 - plug) * meridian.radius
-    depth = _depth(curve, split, layer)
-    return np.asarray(curve.at(np.array(split)) + depth * curve.inward(split, 0.5 * layer))
-
-
-def _depth(meridian: Meridian, split: float, layer: float) -> float:
-    """Distance of C from the surface: from the edge of a sharp corner, from the arc of a round one."""
-    end = meridian.at(np.array(split))
-    rounding = float(np.hypot(meridian.radius - end[0], end[1]))
-    return DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
+    end = curve.at(np.array(split))
+    rounding = float(np.hypot(curve.radius - end[0], end[1]))  # 0 for a sharp edge
+    depth = DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
+    return np.asarray(end + depth * curve.inward(split, 0.5 * layer))
 
 
 def _along(start: float, end: float, rows: int, pitch: float, corners: FloatArray) -> FloatArray:
-    """(rows + 1,) arc lengths: a pitch, then even steps; or even ones with a row on each edge."""
+    """(rows + 1,) arc lengths, m: one pitch, then equal steps; with edges, equal steps between them."""
     even = np.linspace(start, end, rows + 1)
     inside = corners[(corners > start + 0.3 * (even[1] - start)) & (corners < end - 0.3 * (even[1] - start))]
     if not len(inside):

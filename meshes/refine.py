@@ -1,8 +1,8 @@
 """Local refinement of a mesh around a zone, 2:1 balanced, with ties at the level changes."""
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import BoolArray, FloatArray
 from meshes.errors import MeshError
 from meshes.hexmesh import HexMesh
 from meshes.split import Forest, Snap
@@ -10,34 +10,18 @@ from meshes.ties import hanging_births, tie_matrix
 from meshes.topology import FACES
 from meshes.zone import Zone
 
-__all__ = ["levels_for", "reach", "refine"]
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
-
-
-def levels_for(base_size: float, target_size: float) -> int:
-    """Halvings that bring `base_size` to `target_size` (m) as nearly as they can, never above 1.2 times it.
-
-    Examples
-    --------
-    >>> levels_for(2.4e-3, 0.3e-3), levels_for(2.4e-3, 0.52e-3), levels_for(1e-3, 2e-3)
-    (3, 2, 0)
-    """
-    if base_size <= 0.0 or target_size <= 0.0:
-        raise MeshError(f"sizes must be positive, not {base_size} m and {target_size} m")
-    return max(0, int(np.ceil(np.log2(base_size / (1.2 * target_size)))))
+__all__ = ["reach", "refine"]
 
 
 def reach(size: FloatArray | float, level: int, levels: int, buffer: int = 2) -> FloatArray:
-    """How far from the zone cells are split into `level`, so that `buffer` cells lie around the next finer.
+    """Distance from the zone up to which cells are split into `level`: `buffer` cells around finer ones.
 
     Parameters
     ----------
     size : (m,) float64 or float, m
         Size of the cells to be split.
     level, levels : int
-        Level that the split makes; the finest level.
+        Level of the cells after the split; the finest level.
     buffer : int
         Whole cells kept between two level changes.
 
@@ -60,9 +44,9 @@ def refine(
 ) -> HexMesh:
     """Split the cells in and around a zone.
 
-    Nodes and leaves that are not split keep their numbers and order; new ones follow. A new node of a
-    SKIN face whose every cell is split is put onto the exact surface by `snap`; a hanging node lies
-    exactly on the coarse face, with the same weights in its tie, so linear fields pass the change.
+    Nodes and unsplit cells keep their numbers and order; new ones follow. A new node of a SKIN face whose
+    cells are all split is moved onto the exact surface by `snap`; a hanging node lies on the coarse face
+    with the weights of its tie, so that linear fields are continuous across the change of level.
 
     Parameters
     ----------
@@ -91,13 +75,22 @@ def refine(
     forest = Forest.plant(mesh, snap, fixed)
     for level in range(1, levels + 1):
         forest.split(_marks(forest, zone, level, levels, buffer))
-    return _harvest(forest)
+    hanging = hanging_births(forest)
+    hangs = np.zeros(len(forest.points), np.bool_)
+    for nodes, _ in hanging:
+        hangs[nodes] = True
+    forest.place_all(hangs)
+    outer = forest.tags >= 0
+    tie = tie_matrix(len(forest.points), hanging)
+    faces, tags = forest.cells[:, FACES][outer], forest.tags[outer]
+    return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags)
 
 
 def _marks(forest: Forest, zone: Zone, level: int, levels: int, buffer: int) -> BoolArray:
-    """(m,) leaves to split for one level, balance kept."""
+    """(m,) True for the leaves to split for one level, those for the 2:1 balance included."""
     corners = forest.points[forest.cells]
-    size = _size(corners)
+    diagonals = corners[:, [0, 1, 2, 3]] - corners[:, [6, 7, 4, 5]]
+    size = np.linalg.norm(diagonals, axis=2).mean(axis=1) / np.sqrt(3.0)  # edge of a cube of that diagonal, m
     near = zone.gap(corners, 1e-6 * size) <= reach(size, level, levels, buffer)
     marked = _balanced(forest, near & (forest.level == level - 1))
     if np.any(marked & forest.frozen):
@@ -109,14 +102,8 @@ def _marks(forest: Forest, zone: Zone, level: int, levels: int, buffer: int) -> 
     return marked
 
 
-def _size(corners: FloatArray) -> FloatArray:
-    """(m,) edge of the cube with the diagonals of a cell (their mean), m."""
-    diagonals = corners[:, [0, 1, 2, 3]] - corners[:, [6, 7, 4, 5]]
-    return np.asarray(np.linalg.norm(diagonals, axis=2).mean(axis=1) / np.sqrt(3.0))
-
-
 def _balanced(forest: Forest, marked: BoolArray) -> BoolArray:
-    """Grow the marks until no split leaves a neighbour (face, edge or corner) two levels behind."""
+    """Extend the marks until no split leaves a neighbour (face, edge or corner) two levels coarser."""
     extended = np.concatenate([forest.cells, forest.known_mids()], axis=1)
     while True:
         split_level = np.full(len(forest.points) + 1, -1, np.int64)
@@ -126,16 +113,3 @@ def _balanced(forest: Forest, marked: BoolArray) -> BoolArray:
         if (grown == marked).all():
             return marked
         marked = grown
-
-
-def _harvest(forest: Forest) -> HexMesh:
-    """Decide which nodes hang, put all into their final place and close the record."""
-    hanging = hanging_births(forest)
-    hangs = np.zeros(len(forest.points), np.bool_)
-    for nodes, _ in hanging:
-        hangs[nodes] = True
-    forest.place_all(hangs)
-    outer = forest.tags >= 0
-    tie = tie_matrix(len(forest.points), hanging)
-    faces, tags = forest.cells[:, FACES][outer], forest.tags[outer]
-    return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags)

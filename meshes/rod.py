@@ -3,21 +3,18 @@
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
-from meshes.hexmesh import SKIN, SYMMETRY, HexMesh, from_cells
+from meshes.hexmesh import HexMesh, from_cells, half_body_tags
 from meshes.meridian import Meridian
-from meshes.nose import Nose, inner_corner, lay_nose
+from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import require_positive
 from meshes.refine import reach, refine
 from meshes.section import Section, section
 from meshes.zone import Zone
 
 __all__ = ["RodMesh", "rod"]
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +79,7 @@ def rod(
     wanted = pitch if slice_length is None else slice_length
     if not nose and zone is not None:
         raise MeshError("a rod of slices alone cannot be refined: leave the zone out or keep the nose")
-    near = None if zone is None else _meridional(zone.centre)
+    near = None if zone is None else np.array([np.hypot(*zone.centre[:2]), zone.centre[2]])
     split = shape.shoulder(near, pitch / 2**levels)
     start = _body_start(shape, split, half.plug, pitch, zone, levels, buffer) if nose else 0.0
     count = _slices(length, start, wanted, pitch)
@@ -92,7 +89,7 @@ def rod(
     body_nodes = np.arange(len(points)).reshape(count + 1, -1).T
     if nose:
         points, cells = _with_nose(half, shape, start, split, pitch, points, cells)
-    mesh = from_cells(points, cells, _tag)
+    mesh = from_cells(points, cells, half_body_tags)
     require_positive(mesh)
     if zone is not None and levels:
         frozen = np.arange(len(cells)) < body_cells.size
@@ -102,15 +99,10 @@ def rod(
     return RodMesh(mesh, body_nodes, body_cells, slab, start)
 
 
-def _meridional(point: FloatArray) -> FloatArray:
-    """(2,) distances of a point from the axis and from the tip, m."""
-    return np.array([np.hypot(point[0], point[1]), point[2]])
-
-
 def _body_start(
     shape: Meridian, split: float, plug: float, pitch: float, zone: Zone | None, levels: int, buffer: int
 ) -> float:
-    """Where the slices can begin: past the tip's shape and past all cells that are to be split, m."""
+    """Height z, m, at which the slices begin: above the tip's shape and all cells that are to be split."""
     inner = float(inner_corner(shape, split, plug)[1])
     start = max(shape.height + pitch, inner + 1.5 * pitch, 2.0 * shape.radius / 3.0)
     if zone is None or levels == 0:
@@ -131,7 +123,7 @@ def _slices(length: float, start: float, wanted: float, pitch: float) -> int:
 
 
 def _body(half: Section, radius: float, start: float, slab: float, count: int) -> tuple[FloatArray, IntArray]:
-    """Points and cells of the slices, layer after layer, with the exact area of the round section."""
+    """Points and cells of the slices, layer after layer; the section has the exact area of the circle."""
     z = start + slab * np.arange(count + 1)
     flat = half.swell * radius * half.unit
     layers = np.broadcast_to(flat, (count + 1, *flat.shape))
@@ -174,7 +166,7 @@ def _between(low: IntArray, high: IntArray, quads: IntArray) -> IntArray:
     return np.concatenate([low[quads], high[quads]], axis=1)
 
 
-def _revolved(half: Section, grid: Nose) -> FloatArray:
+def _revolved(half: Section, grid: NoseMesh) -> FloatArray:
     """(n, 3) nodes of the nose without its last row: face, plug rows, side rows."""
     inner = half.plug_nodes
     around, rim = half.direction[:inner], half.direction[inner:]
@@ -187,8 +179,3 @@ def _revolved(half: Section, grid: Nose) -> FloatArray:
 def _turn(meridian: FloatArray, direction: FloatArray) -> FloatArray:
     """(k, 3) points from (rho, z) and the direction of their half plane."""
     return np.concatenate([meridian[:, :1] * direction, meridian[:, 1:]], axis=1)
-
-
-def _tag(corners: FloatArray) -> IntArray:
-    """SYMMETRY at y = 0, SKIN elsewhere."""
-    return np.where((corners[:, :, 1] == 0.0).all(axis=1), SYMMETRY, SKIN)

@@ -4,16 +4,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
 
 __all__ = ["Section", "core_and_rings", "section"]
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-
-# Proportions found by a scan for the longest step of nose and body together at 8 cells across.
+# Proportions with the longest stable step of nose and body together at 8 cells across, from a scan.
 CORE = 0.43
 BULGE = 0.25
 PLUG = 0.75
@@ -26,15 +23,15 @@ class Section:
     Attributes
     ----------
     unit : (n, 2) float64
-        Node places.
+        Positions of the nodes.
     quads : (k, 4) int64
         Cells, counter-clockwise; those inside the circle of radius `plug` first.
     plug : float
         Radius of the circle inside the outer ring.
     inner : float
-        Where the ring inside that circle begins on the symmetry plane, over the circle's radius.
+        Inner radius, on the symmetry plane, of the ring inside that circle, over the circle's radius.
     plug_nodes, plug_quads : int
-        How many nodes and cells lie in or on that circle.
+        Numbers of nodes in or on that circle and of cells inside it.
     """
 
     unit: FloatArray
@@ -87,7 +84,7 @@ def section(across: int) -> Section:
         If `across` is odd or below 6: an inner and an outer ring around a core need that many.
     """
     core, rings = core_and_rings(across)
-    plug = max(PLUG, 1.0 - 2.0 / across)  # cells of fine sections are alike in depth
+    plug = max(PLUG, 1.0 - 2.0 / across)  # in fine sections the outer ring is one cell deep
     unit = np.concatenate([_core(core), _rings(core, rings, plug)])
     quads = _quads(core, rings)
     outer = 2 * core
@@ -96,7 +93,7 @@ def section(across: int) -> Section:
 
 
 def _core(n: int) -> FloatArray:
-    """((n + 1) (n / 2 + 1), 2) nodes of the core, x fastest: between a square and a disc."""
+    """((n + 1) (n / 2 + 1), 2) nodes of the core, x fastest: a mean of a square and a disc."""
     x, y = np.meshgrid(np.linspace(-1.0, 1.0, n + 1), np.linspace(0.0, 1.0, n // 2 + 1))
     square = np.stack([x, y], axis=-1)
     disc = np.stack([x * np.sqrt(1.0 - 0.5 * y**2), y * np.sqrt(1.0 - 0.5 * x**2)], axis=-1)

@@ -6,40 +6,37 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
+from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.hexmesh import SKIN, HexMesh, face_keys, match_faces
 from meshes.topology import CHILD_KEEPS_FACE, CHILDREN, EDGES, FACE_EDGES, FACES
 
 __all__ = ["Birth", "Forest", "KeyMap", "Snap", "edge_keys", "place"]
-
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
-BoolArray = npt.NDArray[np.bool_]
 
 #: Moves points onto the exact surface: (k, 3) m to (k, 3) m.
 Snap = Callable[[FloatArray], FloatArray]
 
 
 def edge_keys(pairs: IntArray) -> IntArray:
-    """One number an edge, the same for both senses."""
+    """(...) keys of edges from their two nodes, the same for both senses."""
     return np.asarray((pairs.min(axis=-1) << 31) | pairs.max(axis=-1))
 
 
 class KeyMap:
-    """Node of an edge or face, by key; grows, never forgets, so neighbours split later share nodes."""
+    """Node by edge or face key; only added to, so that later splits reuse nodes."""
 
     def __init__(self) -> None:
         self.keys: IntArray = np.empty(0, np.int64)
         self.nodes: IntArray = np.empty(0, np.int64)
 
     def find(self, keys: IntArray) -> IntArray:
-        """Nodes of keys, -1 where unknown; any shape."""
+        """Nodes of keys of any shape, -1 where unknown."""
         if not len(self.keys):
             return np.full(keys.shape, -1, np.int64)
         at = np.minimum(np.searchsorted(self.keys, keys), len(self.keys) - 1)
         return np.where(self.keys[at] == keys, self.nodes[at], -1)
 
     def add(self, keys: IntArray, start: int) -> IntArray:
-        """Give numbers to the keys not known yet from `start`; return where each first stood (flat)."""
+        """Give the unknown keys numbers from `start`; return the flat index at which each first stands."""
         fresh, first = np.unique(keys, return_index=True)
         new = self.find(fresh) < 0
         fresh, first = fresh[new], first[new]
@@ -52,7 +49,7 @@ class KeyMap:
 
 @dataclass(frozen=True, slots=True)
 class Birth:
-    """New nodes of one kind, made together: consecutive numbers from `start`, and what they lie between.
+    """New nodes of one kind, made together: consecutive numbers from `start`, and their parents.
 
     Attributes
     ----------
@@ -93,7 +90,7 @@ class Birth:
 def place(
     points: FloatArray, birth: Birth, hanging: BoolArray, on_skin: BoolArray, snap: Snap | None
 ) -> None:
-    """Put new nodes into place: hanging ones on the coarse face, free skin ones on the surface."""
+    """Place new nodes: hanging ones on the coarse face, free ones of the skin on the exact surface."""
     nodes = birth.nodes
     points[nodes] = np.where(hanging[nodes, None], birth.flat(points), birth.middle(points))
     moved = nodes[on_skin[nodes] & ~hanging[nodes]]
@@ -103,7 +100,7 @@ def place(
 
 @dataclass(slots=True)
 class Forest:
-    """The growing mesh: leaves only, with all edges and faces ever split."""
+    """The mesh while it is refined: its unsplit cells (leaves), and all edges and faces that were split."""
 
     points: FloatArray
     cells: IntArray
@@ -128,19 +125,23 @@ class Forest:
         return mask
 
     def known_mids(self) -> IntArray:
-        """(m, 18) nodes that exist in the middle of each leaf's edges and faces, -1 where none."""
+        """(m, 18) nodes in the middle of each leaf's 12 edges and 6 faces, -1 where there is none yet."""
         mids = self.edges.find(edge_keys(self.cells[:, EDGES]))
         faces = self.cells[:, FACES]
         keys = face_keys(faces.reshape(-1, 4)).reshape(len(self.cells), 6)
         return np.concatenate([mids, self.quads.find(keys)], axis=1)
 
     def split(self, marked: BoolArray) -> None:
-        """Replace the marked leaves by their eight children, kept leaves first and in order."""
+        """Replace the marked leaves by eight children each; the other leaves come first, in their order."""
         if not marked.any():
             return
         parents = self.cells[marked]
         first_birth = len(self.births)
-        nodes = np.concatenate([parents, self._mids(parents)], axis=1)
+        mids = self._edge_nodes(parents)
+        centres = self._face_nodes(parents, mids)
+        birth = Birth(len(self.points), parents, mids, centres)
+        self._grow(birth)
+        nodes = np.concatenate([parents, mids, centres, birth.nodes[:, None]], axis=1)  # (k, 27)
         tags = np.where(CHILD_KEEPS_FACE[None], self.tags[marked][:, None, :], np.int8(-1))
         self.cells = np.concatenate([self.cells[~marked], nodes[:, CHILDREN].reshape(-1, 8)])
         self.level = np.concatenate([self.level[~marked], np.repeat(self.level[marked] + 1, 8)])
@@ -149,18 +150,10 @@ class Forest:
         self.place_all(np.zeros(len(self.points), np.bool_), first_birth)
 
     def place_all(self, hanging: BoolArray, first: int = 0) -> None:
-        """Put the nodes of all births from `first` on into place, in the order they were born."""
+        """Place the nodes of all births from `first` on, in their order."""
         skin = self.on_skin()
         for birth in self.births[first:]:
             place(self.points, birth, hanging, skin, self.snap)
-
-    def _mids(self, parents: IntArray) -> IntArray:
-        """(k, 19) middle nodes of the parents, made where missing."""
-        mids = self._edge_nodes(parents)
-        centres = self._face_nodes(parents, mids)
-        birth = Birth(len(self.points), parents, mids, centres)
-        self._grow(birth)
-        return np.concatenate([mids, centres, birth.nodes[:, None]], axis=1)
 
     def _edge_nodes(self, parents: IntArray) -> IntArray:
         pairs = parents[:, EDGES].reshape(-1, 2)

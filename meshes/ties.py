@@ -1,20 +1,18 @@
-"""Ties of hanging nodes: exactly the interpolation of the coarse face they lie on."""
+"""Ties of hanging nodes: the interpolation of the coarse edge or face on which they lie."""
 
 import numpy as np
-import numpy.typing as npt
 import scipy.sparse as sp
 
+from meshes.arrays import IntArray
 from meshes.hexmesh import face_keys
 from meshes.split import Forest, edge_keys
 from meshes.topology import EDGES, FACES
 
 __all__ = ["hanging_births", "tie_matrix"]
 
-IntArray = npt.NDArray[np.int64]
-
 
 def hanging_births(forest: Forest) -> list[tuple[IntArray, IntArray]]:
-    """Nodes that lie on a whole edge or face of a leaf, with the corners they follow.
+    """Nodes that lie on an unsplit edge or face of a leaf, with the corners that they are tied to.
 
     Returns
     -------
@@ -22,22 +20,22 @@ def hanging_births(forest: Forest) -> list[tuple[IntArray, IntArray]]:
     """
     edges = np.unique(edge_keys(forest.cells[:, EDGES]))
     quads = np.unique(face_keys(forest.cells[:, FACES].reshape(-1, 4)))
-    found = []
+    hanging = []
     for birth in forest.births:
         size = birth.corners.shape[1]
         if size == 8:
             continue
         keys = edge_keys(birth.corners) if size == 2 else face_keys(birth.corners)
         hangs = np.isin(keys, edges if size == 2 else quads)
-        found.append((birth.nodes[hangs], birth.corners[hangs]))
-    return found
+        hanging.append((birth.nodes[hangs], birth.corners[hangs]))
+    return hanging
 
 
 def tie_matrix(count: int, hanging: list[tuple[IntArray, IntArray]]) -> sp.csr_matrix:
-    """Weights of every node in the free nodes.
+    """Weights of every node in the free nodes: 1 of itself, or equal shares of the corners it is tied to.
 
-    There is no tie of a tie: a master that hung itself would lie on a cell two levels coarser than the
-    finest cells around it, which the balance over faces, edges and corners excludes.
+    No corner is tied itself: it would lie on a cell two levels coarser than the finest cells around it,
+    which the balance over faces, edges and corners excludes.
 
     Returns
     -------

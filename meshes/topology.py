@@ -4,11 +4,10 @@ The 27 nodes of a split cell stand in the order 8 corners, 12 edge middles, 6 fa
 """
 
 import numpy as np
-import numpy.typing as npt
+
+from meshes.arrays import BoolArray, IntArray
 
 __all__ = ["CHILDREN", "CHILD_KEEPS_FACE", "CORNERS", "EDGES", "FACES", "FACE_EDGES"]
-
-IntArray = npt.NDArray[np.int64]
 
 #: (8, 3) corner places in the unit cube.
 CORNERS: IntArray = np.array(
@@ -26,31 +25,21 @@ FACES: IntArray = np.array(
     [[0, 4, 7, 3], [1, 2, 6, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 3, 2, 1], [4, 5, 6, 7]], dtype=np.int64
 )
 
-
-def _face_edges() -> IntArray:
-    """(6, 4) edges whose two ends both lie on a face."""
-    on_face = np.array([np.isin(EDGES, face).all(axis=1) for face in FACES])
-    return np.nonzero(on_face)[1].reshape(6, 4)
-
-
-def _lattice() -> IntArray:
-    """(27, 3) places of the nodes of a split cell on the lattice 0, 1, 2."""
-    corners = CORNERS.astype(float)
-    parts = [corners, corners[EDGES].mean(axis=1), corners[FACES].mean(axis=1), corners.mean(axis=0)[None]]
-    return np.rint(2.0 * np.concatenate(parts)).astype(np.int64)
+#: (6, 4) edges whose two ends both lie on each face.
+FACE_EDGES: IntArray = np.nonzero([np.isin(EDGES, face).all(axis=1) for face in FACES])[1].reshape(6, 4)
 
 
 def _children() -> IntArray:
     """(8, 8) columns of the 27 nodes that each child takes, in VTK order."""
-    column = {tuple(place): i for i, place in enumerate(_lattice().tolist())}
+    edges, faces = CORNERS[EDGES].sum(axis=1), CORNERS[FACES].sum(axis=1) // 2
+    lattice = np.concatenate([2 * CORNERS, edges, faces, [[1, 1, 1]]])  # (27, 3) node places, 0 to 2
     places = CORNERS[:, None, :] + CORNERS[None, :, :]
-    return np.array([[column[tuple(p)] for p in child] for child in places.tolist()], dtype=np.int64)
+    return np.asarray((places[:, :, None] == lattice).all(axis=-1).argmax(axis=-1))
 
 
-FACE_EDGES: IntArray = _face_edges()
 CHILDREN: IntArray = _children()
 
-#: (8, 6) whether face f of child c lies on face f of its parent.
-CHILD_KEEPS_FACE: npt.NDArray[np.bool_] = np.array(
+#: (8, 6) True where face f of child c lies on face f of its parent.
+CHILD_KEEPS_FACE: BoolArray = np.array(
     [[CORNERS[c, f // 2] == f % 2 for f in range(6)] for c in range(8)], dtype=np.bool_
 )

@@ -1,15 +1,13 @@
-"""The place that a mesh is refined around: an oriented box."""
+"""The zone around which a mesh is refined: an oriented box."""
 
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from meshes.arrays import FloatArray
 from meshes.errors import MeshError
 
 __all__ = ["Zone"]
-
-FloatArray = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +34,7 @@ class Zone:
     high: FloatArray
 
     def __post_init__(self) -> None:
-        """Take plain sequences as well, and refuse a box that is none."""
+        """Convert plain sequences to arrays, and refuse axes or extents that make no box."""
         for name in ("centre", "axes", "low", "high"):
             object.__setattr__(self, name, np.array(getattr(self, name), dtype=np.float64))
         if not np.allclose(self.axes @ self.axes.T, np.eye(3), atol=1e-9):
@@ -45,11 +43,11 @@ class Zone:
             raise MeshError(f"zone low {self.low.tolist()} exceeds high {self.high.tolist()}: swap them")
 
     def local(self, points: FloatArray) -> FloatArray:
-        """Coordinates along the box axes, from its centre: (..., 3) to (..., 3)."""
+        """(..., 3) coordinates along the axes of the box, from its centre, m, of points (..., 3), m."""
         return (points - self.centre) @ self.axes.T
 
     def distance(self, points: FloatArray) -> FloatArray:
-        """Euclidean distance to the box, 0 inside: (..., 3) m to (...) m."""
+        """(...) distances to the box, m, 0 inside, of points (..., 3), m."""
         x = self.local(points)
         return np.asarray(np.linalg.norm(np.maximum(np.maximum(self.low - x, x - self.high), 0.0), axis=-1))
 

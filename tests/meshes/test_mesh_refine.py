@@ -1,6 +1,3 @@
-import doctest
-import importlib
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -131,14 +128,6 @@ def test_no_levels_change_nothing():
     assert (same.cells == mesh.cells).all()
     assert (same.points == mesh.points).all()
     assert len(same.faces) == len(mesh.faces)
-
-
-def test_levels_for_examples_hold():
-    result = doctest.testmod(importlib.import_module("meshes.refine"))
-    assert result.attempted == 1
-    assert result.failed == 0
-    with pytest.raises(meshes.MeshError, match="positive"):
-        meshes.levels_for(0.0, 1.0)
 
 
 def test_middles_follow_curved_edges_and_faces():

@@ -72,9 +72,8 @@ def test_the_python_of_the_section_runs(capsys):
 
 def test_the_table_of_the_section_names_what_there_is():
     table = re.search(r"^\| in `rigid` \|.*?\n\n", README, re.DOTALL | re.MULTILINE).group()
-    names = [
-        name for row in table.strip().splitlines()[2:] for name in re.findall("`([^`]+)`", row.split("|")[1])
-    ]
+    firsts = [row.split("|")[1] for row in table.strip().splitlines()[2:]]
+    names = re.findall("`([^`]+)`", " ".join(firsts))
     assert "solve_free" in names
     assert [name for name in names if name != "rigid.experiments" and name not in rigid.__all__] == []
 
