@@ -1,4 +1,4 @@
-"""The ``fem-impact`` command: reads the line, calls one handler, turns errors into exit codes.
+"""The ``fem-impact`` command: reads the command line, calls one handler, turns errors into exit codes.
 
 Nothing heavy is imported here: a handler imports what it needs when it is called.
 """
@@ -39,7 +39,7 @@ def _handler(path: str) -> Callable[[Options], int]:
 
 
 def _guarded(handler: Callable[[Options], int], options: Options) -> int:
-    """Call the handler; a user's mistake or a full disk becomes one paragraph and an exit code."""
+    """Call the handler; errors of the user and of the disk become one message and an exit code."""
     try:
         code = handler(options)
         sys.stdout.flush()
@@ -55,25 +55,25 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
     except BrokenPipeError:
         return _reader_left()
     except OSError as error:
-        return _complain(_disk_words(error), OutputPathError.exit_code)
+        return _complain(_disk_message(error), OutputPathError.exit_code)
 
 
 def _complain(message: str, code: int) -> int:
-    word = "interrupted" if code == 130 else "error"
-    sys.stderr.write(f"fem-impact: {word}: {message}\n")
+    kind = "interrupted" if code == 130 else "error"
+    sys.stderr.write(f"fem-impact: {kind}: {message}\n")
     return code
 
 
-def _disk_words(error: OSError) -> str:
+def _disk_message(error: OSError) -> str:
     place = f"{error.filename}: " if error.filename else ""
-    words = f"{place}{error.strerror or error}."
+    fault = f"{place}{error.strerror or error}."
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
-        return f"{words} The disk is full: free some space or choose another --out, then run again."
-    return f"{words} Check that the place exists and can be written, or choose another --out."
+        return f"{fault} The disk is full: free some space or choose another --out, then run again."
+    return f"{fault} Check that the place exists and can be written, or choose another --out."
 
 
 def _reader_left() -> int:
-    """Whoever read our output closed it (``| head``): stop quietly, and keep the interpreter quiet too."""
+    """Stop without a message: the reader of the output closed it (``| head``)."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     return 0
 

@@ -1,4 +1,4 @@
-"""The words of the command line: commands, options, help."""
+"""Commands, options and help of the command line."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _RESULT = "directory that a run or a study wrote"
 
 
 class Options(argparse.Namespace):
-    """What the command line said; every option has a value, whichever command was given."""
+    """Options of the command line, each with a value whichever command was given."""
 
     handler: str = ""
     version: bool = False
@@ -75,7 +75,7 @@ class Options(argparse.Namespace):
 
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of all commands."""
-    codes = "\n".join(f"  {code:>3}  {words}" for code, words in EXIT_CODES.items())
+    codes = "\n".join(f"  {code:>3}  {meaning}" for code, meaning in EXIT_CODES.items())
     parser = argparse.ArgumentParser(
         prog="fem-impact",
         description="Where the energy of a dropped steel rod goes: finite elements and rigid theory.",
@@ -103,20 +103,21 @@ def build_parser() -> argparse.ArgumentParser:
 def read_line(argv: Sequence[str] | None) -> Options:
     """Read the command line; one that is not understood ends the program with exit code 2.
 
-    argparse loses words that follow an option after ``ID ...``, as in ``study sets --quick t4``: they come
-    back as unknown and are put where they belong.
+    argparse does not assign arguments that follow an option after ``ID ...``, as in
+    ``study sets --quick t4``: it returns them as unknown, and they are added to the ids.
     """
     parser = build_parser()
     options, rest = parser.parse_known_args(argv, namespace=Options())
-    if rest and (not options.handler.endswith(":study") or any(word.startswith("-") for word in rest)):
+    unknown = [argument for argument in rest if argument.startswith("-")]
+    if unknown or (rest and not options.handler.endswith(":study")):
         parser.error(f"not understood: {' '.join(rest)} (fem-impact COMMAND --help lists the options)")
     options.ids = [*options.ids, *rest]
     return options
 
 
-def _command(commands: Commands, name: str, words: str, handler: str) -> argparse.ArgumentParser:
+def _command(commands: Commands, name: str, summary: str, handler: str) -> argparse.ArgumentParser:
     """Add one command with the options that all share."""
-    parser = commands.add_parser(name, help=words, description=f"{words[0].upper()}{words[1:]}.")
+    parser = commands.add_parser(name, help=summary, description=f"{summary[0].upper()}{summary[1:]}.")
     parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
     parser.set_defaults(handler=handler)
     return parser
@@ -126,7 +127,7 @@ def _add_run(commands: Commands) -> None:
     parser = _command(
         commands, "run", "compute one scene and write its results", "fem_impact.commands.run:run"
     )
-    _add_scene_words(parser)
+    _add_scene_options(parser)
     parser.add_argument(
         "--fidelity",
         choices=["rigid", "modal", "solid"],
@@ -152,7 +153,7 @@ def _add_study(commands: Commands) -> None:
         "compute many runs and draw conclusions from them",
         "fem_impact.commands.study:study",
     )
-    listed = "; ".join(f"{name}: {words}" for name, words in {**STUDIES, **REPORT}.items())
+    listed = "; ".join(f"{name}: {summary}" for name, summary in {**STUDIES, **REPORT}.items())
     parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help=listed)
     parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
     parser.add_argument(
@@ -192,14 +193,14 @@ def _add_scenes(commands: Commands) -> None:
 
 
 def _add_check(commands: Commands) -> None:
-    words = "check a scene and print it with units, sources and effects, without computing"
-    _add_scene_words(_command(commands, "check", words, "fem_impact.commands.run:check"))
+    summary = "check a scene and print it with units, sources and effects, without computing"
+    _add_scene_options(_command(commands, "check", summary, "fem_impact.commands.run:check"))
 
 
 def _add_cost(commands: Commands) -> None:
-    words = "show what accuracy costs in time: errors of all settings against the limit"
-    parser = _command(commands, "cost", words, "fem_impact.commands.cost:cost")
-    _add_scene_words(parser)
+    summary = "show what accuracy costs in time: errors of all settings against the limit"
+    parser = _command(commands, "cost", summary, "fem_impact.commands.cost:cost")
+    _add_scene_options(parser)
     parser.add_argument(
         "--target",
         default="",
@@ -223,8 +224,8 @@ def _add_cost(commands: Commands) -> None:
 
 
 def _add_verify(commands: Commands) -> None:
-    words = "run problems with known answers through the solver and judge it"
-    parser = _command(commands, "verify", words, "fem_impact.commands.verify:verify")
+    summary = "run problems with known answers through the solver and judge it"
+    parser = _command(commands, "verify", summary, "fem_impact.commands.verify:verify")
     parser.add_argument(
         "problem", nargs="?", metavar="NAME", help="one problem, such as bar (default: all of them)"
     )
@@ -237,8 +238,8 @@ def _add_verify(commands: Commands) -> None:
 
 
 def _add_stress(commands: Commands) -> None:
-    words = "run hard cases and show that each closes its balances, is refused or detected"
-    parser = _command(commands, "stress", words, "fem_impact.commands.verify:stress")
+    summary = "run hard cases and show that each closes its balances, is refused or detected"
+    parser = _command(commands, "stress", summary, "fem_impact.commands.verify:stress")
     parser.add_argument(
         "--only", default="", metavar="NAME", help="one case, such as angle-60 (default: all of them)"
     )
@@ -250,7 +251,7 @@ def _add_stress(commands: Commands) -> None:
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
-def _add_scene_words(parser: argparse.ArgumentParser) -> None:
+def _add_scene_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("scene", metavar="SCENE", help=_SCENE)
     parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
 
@@ -284,15 +285,15 @@ def add_rigid_commands(commands: Commands, command: Command) -> None:
 
 
 def _add_audit(commands: Commands, command: Command) -> None:
-    words = "recompute every printed column of the paper's tables"
-    parser = command(commands, "audit", words, f"{_MODULE}:audit")
+    summary = "recompute every printed column of the paper's tables"
+    parser = command(commands, "audit", summary, f"{_MODULE}:audit")
     parser.add_argument("--set", dest="set_id", metavar="ID", help="one measured set, such as t5b")
     parser.add_argument("--out", type=Path, metavar="CSV", help="write every number with its recomputation")
 
 
 def _add_coefficients(commands: Commands, command: Command) -> None:
-    words = "work out e, mu and e_m of your own camera data, with intervals"
-    parser = command(commands, "coefficients", words, f"{_MODULE}:coefficients")
+    summary = "work out e, mu and e_m of your own camera data, with intervals"
+    parser = command(commands, "coefficients", summary, f"{_MODULE}:coefficients")
     columns = "v_n_m_per_s, v_t_m_per_s, V_n_m_per_s, V_t_m_per_s, Omega_rad_per_s"
     parser.add_argument("file", type=Path, metavar="FILE.csv", help=f"one test a row; columns {columns}")
     _add_rod(parser)
@@ -302,22 +303,22 @@ def _add_coefficients(commands: Commands, command: Command) -> None:
 
 
 def _add_figure(commands: Commands, command: Command) -> None:
-    words = "draw a figure of the paper, with intervals and its data"
-    parser = command(commands, "figure", words, f"{_MODULE}:figure")
+    summary = "draw a figure of the paper, with intervals and its data"
+    parser = command(commands, "figure", summary, f"{_MODULE}:figure")
     parser.add_argument("number", type=int, choices=(4, 5, 6, 7), help="of the paper")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/paper)")
 
 
 def _add_assess(commands: Commands, command: Command) -> None:
-    words = "assess a dropped rod: losses, worst case, bound of the friction heat"
-    parser = command(commands, "assess", words, f"{_MODULE}:assess")
+    summary = "assess a dropped rod: losses, worst case, bound of the friction heat"
+    parser = command(commands, "assess", summary, f"{_MODULE}:assess")
     _add_rod(parser)
     parser.add_argument("--height", required=True, help='drop height, such as "0.82 m"')
     parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
     surfaces = ("machined", "contaminated", "cleaned")
     parser.add_argument("--surface", required=True, choices=surfaces, help="state of tip and plate")
-    words = "of the answer whether rigid theory may be used: modal (default, seconds) or solid (minutes)"
-    parser.add_argument("--fidelity", choices=["modal", "solid"], default="modal", help=words)
+    fidelities = "of the answer whether rigid theory may be used: modal (default, seconds) or solid (minutes)"
+    parser.add_argument("--fidelity", choices=["modal", "solid"], default="modal", help=fidelities)
 
 
 def _add_rod(parser: argparse.ArgumentParser) -> None:
