@@ -11,9 +11,9 @@ from typing import Any, TypeVar, cast
 
 import numba
 from llvmlite import ir
+from llvmlite.binding import get_host_cpu_features
 from numba import extending, types
 from numba.core import event
-from numba.core.codegen import get_host_cpu_features
 from numba.extending import models, register_model
 
 __all__ = ["add_product", "load", "spread", "store", "three"]
@@ -57,7 +57,7 @@ def _use_whole_registers() -> None:
 
     Older machines than those with AVX-512 VBMI2 (2019) run slower while they do. No bit of a result changes.
     """
-    features = get_host_cpu_features()
+    features = get_host_cpu_features().flatten()
     if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in features.split(","):
         SETTINGS.CPU_FEATURES = f"{features},-prefer-256-bit"
 

@@ -5,7 +5,8 @@ What only some effects need is imported where it is built.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -43,19 +44,16 @@ START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
 PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 
-def _bodies(scene: Scene, spec: ModelSpec, geometry: Geometry, layout: DofLayout) -> list[MeshedBody]:
-    rod, barrier = geometry.rod.mesh, geometry.barrier
-    yields = geometry.may_yield["rod"] & (spec.rod_law is not None)
-    steel, kind = scene.projectile.material, scene.accuracy.element
-    found = [make_body("rod", rod, geometry.rod_points, layout.rod, steel, yields, kind)]
-    _complete_mass(found[0], geometry, scene, 0.0 if spec.vibrating else _rest_mass(scene, geometry))
-    if barrier is not None:
-        yields = geometry.may_yield["barrier"] & (spec.barrier_law is not None)
-        steel = scene.barrier.material
-        found.append(make_body("barrier", barrier, barrier.points, layout.barrier, steel, yields, kind))
-        if geometry.skin_rows:
-            found[1].mass[:] *= skin_weight(barrier, geometry.tip_size)[:, None]
-    return found
+def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
+    """Refuse a tip without a fine zone where one is needed (SceneError)."""
+    if levels_of(scene) == 0 and (spec.meshed_barrier or spec.rod_law is not None):
+        base = scene.projectile.diameter / scene.accuracy.across
+        raise SceneError(
+            "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
+            key="accuracy.tip_size",
+            value=scene.accuracy.tip_size,
+            remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
+        )
 
 
 def skin_weight(barrier: HexMesh, h: float) -> Array:
@@ -66,27 +64,6 @@ def skin_weight(barrier: HexMesh, h: float) -> Array:
     """
     z = barrier.points[barrier.cells][:, :, 2]
     return np.asarray(np.maximum(1.0, HEAVY * h / np.ptp(z, axis=1)) ** 2)
-
-
-def _complete_mass(rod: MeshedBody, geometry: Geometry, scene: Scene, rest: float) -> None:
-    """Give the nose's cells what their flat faces cut off the round skin: the true mass of the rod."""
-    nose = np.ones(len(rod.mass), dtype=bool)
-    nose[geometry.rod.body_cells] = False
-    missing = projectile(scene).mass / 2 - rod.mass.sum() - rest
-    rod.mass[nose] *= 1 + missing / rod.mass[nose].sum()
-
-
-def _rest_mass(scene: Scene, geometry: Geometry) -> float:
-    from fem_impact.solid.rigid_rest import rest_mass
-
-    rod = scene.projectile
-    return rest_mass(geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
-
-
-def _place_rest(mass: Array, scene: Scene, geometry: Geometry, layout: DofLayout) -> None:
-    from fem_impact.solid.rigid_rest import POINTS
-
-    mass[layout.rod[-POINTS:]] = _rest_mass(scene, geometry) / POINTS
 
 
 def assemble_masses(bodies: list[MeshedBody], layout: DofLayout) -> Array:
@@ -106,112 +83,49 @@ def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
     return inverse
 
 
-def _start(
-    bodies: list[MeshedBody], layout: DofLayout, scene: Scene, mass: Array, drawn: MassPoints
-) -> tuple[Array, Array]:
-    """Return positions and velocities of the masses at time 0; omega turns n towards t."""
-    x, v = np.zeros(layout.size), np.zeros(layout.size)
-    x[layout.dummy] = dummy_element()
-    for body in bodies:
-        x[body.places] = body.points
-    drawn.draw_in(layout.slices_of(x))
-    rod, impact = bodies[0], scene.impact
-    arm = x[rod.places] - mass_centre(mass, x, rod.places)
-    speed = np.zeros_like(arm)
-    speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
-    speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
-    v[rod.places] = speed
-    return x, v
+@dataclass(frozen=True, slots=True)
+class Block:
+    """A meshed barrier and the half-space around it.
 
-
-def _elastic_rod(
-    body: MeshedBody,
-    geometry: Geometry,
-    layout: DofLayout,
-    mass: Array,
-    x: Array,
-    drawn: MassPoints,
-    spec: ModelSpec,
-) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
-    n, free = layout.rod_size, body.places[~body.mesh.is_hanging]
-    nose, whole = nose_and_whole(body, geometry.rod, drawn, layout)
-    product = NodeProduct.of(nose, free)
-    frame = TurningFrame.at(x[:n], mass[:n], free) if spec.turning_frame else FixedFrame(x[:n].copy())
-    if not spec.vibrating:
-        from fem_impact.solid.rigid_rest import ElasticNose
-
-        return ElasticNose(product, frame, np.zeros(n), np.zeros(n)), whole
-    slices = slices_of(body, geometry.rod)
-    return ElasticRod(slices, drawn, product, frame, layout, np.zeros(n), np.zeros(n)), whole
-
-
-def _rest(geometry: Geometry, layout: DofLayout, mass: Array) -> RigidRest:
-    """Return the rigid body behind the nose: the nose's last section and the points behind it."""
-    from fem_impact.solid.rigid_rest import POINTS, RigidRest
-
-    places = np.concatenate([layout.rod[geometry.rod.body_nodes[:, 0]], layout.rod[-POINTS:]])
-    return RigidRest(places, mass[places[:, 0]])
-
-
-def elastic_block(
-    body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic"
-) -> tuple[ElasticBlock, sp.csr_matrix, tuple[sp.dia_matrix, Array]]:
-    """Return the block's linear part, the stiffness of all its cells, and the half-space around it.
-
-    That is springs and dashpots.
+    Attributes
+    ----------
+    linear : the item of its linear part
+    stiffness : (size, size) of all its cells, N/m
+    springs, pots : (size, size), N/m, and (size,), N s/m, of the half-space
     """
+
+    linear: ElasticBlock
+    stiffness: sp.csr_matrix
+    springs: sp.dia_matrix
+    pots: Array
+
+
+def elastic_block(body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic") -> Block:
+    """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it."""
     from fem_impact.fem.boundary import spread_boundary
 
     place = layout.barrier_slice
-    shifted = body.places - place.start
-    T = tie_operator(body.mesh.tie, shifted, place.stop - place.start)
+    shifted, n = body.places - place.start, place.stop - place.start
+    T = tie_operator(body.mesh.tie, shifted, n)
     m = body.material
     spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
     springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
-    n = place.stop - place.start
     linear = stiffness_of(body, ~body.yields, n, place.start)
     K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
-    block = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
-    return block, linear + stiffness_of(body, body.yields, n, place.start), (springs, pots)
+    item = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
+    return Block(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
 
 
-def _block(
-    barrier: list[MeshedBody],
-    spec: ModelSpec,
-    layout: DofLayout,
-    x: Array,
-    inverse_mass: Array,
-    share: float,
-) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
-    """Return the items of a meshed barrier and its step; nothing without one."""
-    if not barrier:
-        return [], [], {}
-    effect = "barrier-elastoplastic" if spec.barrier_law else "barrier-elastic"
-    block, whole, outside = elastic_block(barrier[0], layout, x, effect)
-    step = stable_step(whole, inverse_mass[layout.barrier_slice], share)
-    pots = [dashpots(barrier[0], layout, inverse_mass, whole, outside)] if spec.radiating else []
-    return [block], pots, {"barrier": step}
-
-
-def dashpots(
-    body: MeshedBody,
-    layout: DofLayout,
-    inverse_mass: Array,
-    whole: sp.csr_matrix,
-    outside: tuple[sp.dia_matrix, Array],
-) -> Dashpots:
-    """Return the radiating boundary of a block.
-
-    ``whole`` is the stiffness of all its cells, ``outside`` springs and dashpots of the half-space around it.
-    """
+def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: Block) -> Dashpots:
+    """Return the radiating boundary of a block."""
     from fem_impact.fem.boundary import radiating_share
 
-    (springs, pots), place, m = outside, layout.barrier_slice, body.material
+    place, m = layout.barrier_slice, body.material
     nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
     loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
-    held, K = inverse_mass[place] == 0, sp.csr_matrix(whole + springs)
-    damping = pots * radiating_share(K, pots, held, loaded, (m.E, m.nu, m.rho))
+    held, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
+    damping = block.pots * radiating_share(K, block.pots, held, loaded, (m.E, m.nu, m.rho))
     places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
     return Dashpots(places, damping[places - place.start], inverse_mass[places])
@@ -238,18 +152,6 @@ def facing_skin(body: MeshedBody) -> Ints:
     return np.asarray(found[:, ::-1] if body.name == "rod" else found)
 
 
-def _contact(
-    bodies: list[MeshedBody], geometry: Geometry, spec: ModelSpec, x: Array, inverse_mass: Array
-) -> PlaneContact | SurfaceContact:
-    f = spec.friction or 0.0
-    if len(bodies) == 1:
-        skin = geometry.rod.mesh.free_skin
-        if not spec.vibrating:  # the rigid section takes no contact
-            skin = np.setdiff1d(skin, geometry.rod.body_nodes)
-        return PlaneContact(bodies[0].places[skin], inverse_mass, f)
-    return surface_contact(bodies, inverse_mass, f, geometry.tip_size, x, geometry.conforming)
-
-
 def surface_contact(
     bodies: list[MeshedBody], inverse_mass: Array, f: float, h: float, x: Array, conforming: bool
 ) -> SurfaceContact:
@@ -260,42 +162,225 @@ def surface_contact(
     return SurfaceContact.of(rod.rounded(x), barrier, inverse_mass, f, PLAY * h, BAND * h, x)
 
 
-def _weight(
-    gravity: float, alpha: float, mass: Array, x: Array, rod: MeshedBody, layout: DofLayout
-) -> Weight:
-    down = np.zeros((len(rod.places), 3))
-    down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
-    direction = np.zeros(layout.size)
-    direction[rod.places] = down
-    n = layout.rod_size
-    return Weight(gravity * mass[:n] * direction[:n], x[:n].copy())
+class Builder:
+    """The parts of a scene's model; each is made when it is first asked for, from others, and kept."""
 
+    def __init__(self, scene: Scene, spec: ModelSpec, gap: float) -> None:
+        self.scene, self.spec, self.gap = scene, spec, gap
 
-def _damping(
-    loss: float,
-    linear: ElasticRod | ElasticNose,
-    K: MassStiffness,
-    mass: Array,
-    inverse_mass: Array,
-    free: Ints,
-    steps: Mapping[str, float],
-) -> ModalDamping:
-    from fem_impact.solid.elastic import ModalDamping
+    @cached_property
+    def geometry(self) -> Geometry:
+        """Return the meshes."""
+        return build_geometry(self.scene, self.gap, self.spec.meshed_barrier, self.spec.vibrating)
 
-    n = K.shape[0]
-    modes = rod_modes(K, mass[:n], inverse_mass[:n] == 0)
-    return ModalDamping.of(modes, linear.frame, inverse_mass[:n], free, loss, steps["rod"])
+    @cached_property
+    def layout(self) -> DofLayout:
+        """Return the places of the unknowns."""
+        return number(self.geometry.rod, self.geometry.barrier)
 
+    @cached_property
+    def rest_mass(self) -> float:
+        """Return the mass, kg, of half the rigid cylinder behind the nose; 0 where the rod vibrates."""
+        if self.spec.vibrating:
+            return 0.0
+        from fem_impact.solid.rigid_rest import rest_mass
 
-def require_fine_zone(scene: Scene, spec: ModelSpec) -> None:
-    """Refuse a tip without a fine zone where one is needed (SceneError)."""
-    if levels_of(scene) == 0 and (spec.meshed_barrier or spec.rod_law is not None):
-        base = scene.projectile.diameter / scene.accuracy.across
-        raise SceneError(
-            "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
-            key="accuracy.tip_size",
-            value=scene.accuracy.tip_size,
-            remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
+        rod = self.scene.projectile
+        return rest_mass(self.geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
+
+    @cached_property
+    def rod(self) -> MeshedBody:
+        """Return the meshed rod of true mass: its nose's cells get what flat faces cut off the round skin."""
+        g, yields = self.geometry, self.geometry.may_yield["rod"] & (self.spec.rod_law is not None)
+        steel, kind = self.scene.projectile.material, self.scene.accuracy.element
+        rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, kind)
+        nose = np.ones(len(rod.mass), dtype=bool)
+        nose[g.rod.body_cells] = False
+        missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
+        rod.mass[nose] *= 1 + missing / rod.mass[nose].sum()
+        return rod
+
+    @cached_property
+    def barrier(self) -> MeshedBody | None:
+        """Return the barrier if it is meshed."""
+        g, mesh = self.geometry, self.geometry.barrier
+        if mesh is None:
+            return None
+        yields = g.may_yield["barrier"] & (self.spec.barrier_law is not None)
+        steel, kind = self.scene.barrier.material, self.scene.accuracy.element
+        barrier = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, kind)
+        if g.skin_rows:
+            barrier.mass[:] *= skin_weight(mesh, g.tip_size)[:, None]
+        return barrier
+
+    @cached_property
+    def bodies(self) -> list[MeshedBody]:
+        """Return the meshed bodies."""
+        return [self.rod, self.barrier] if self.barrier else [self.rod]
+
+    @cached_property
+    def mass(self) -> Array:
+        """Return the lumped masses (size,), kg."""
+        mass = assemble_masses(self.bodies, self.layout)
+        if not self.spec.vibrating:
+            from fem_impact.solid.rigid_rest import POINTS
+
+            mass[self.layout.rod[-POINTS:]] = self.rest_mass / POINTS
+        return mass
+
+    @cached_property
+    def inverse_mass(self) -> Array:
+        """Return (size,), 1/kg, 0 where nothing may move."""
+        return invert(self.mass, self.bodies)
+
+    @cached_property
+    def drawn(self) -> MassPoints:
+        """Return where the rod's masses sit."""
+        return MassPoints.of_rod(self.geometry.rod, self.rod.mass, self.rod.material.rho)
+
+    @cached_property
+    def x(self) -> Array:
+        """Return the positions (size,) of the masses at time 0, m."""
+        x = np.zeros(self.layout.size)
+        x[self.layout.dummy] = dummy_element()
+        for body in self.bodies:
+            x[body.places] = body.points
+        self.drawn.draw_in(self.layout.slices_of(x))
+        return x
+
+    @cached_property
+    def v(self) -> Array:
+        """Return the velocities (size,) of the masses at time 0, m/s; omega turns n towards t."""
+        v, impact = np.zeros(self.layout.size), self.scene.impact
+        arm = self.x[self.rod.places] - mass_centre(self.mass, self.x, self.rod.places)
+        speed = np.zeros_like(arm)
+        speed[:, 0] = impact.v_t + impact.omega * arm[:, 2]
+        speed[:, 2] = impact.v_n - impact.omega * arm[:, 0]
+        v[self.rod.places] = speed
+        return v
+
+    @cached_property
+    def frame(self) -> FixedFrame | TurningFrame:
+        """Return the frame of the rod's linear part."""
+        x = self.x[: self.layout.rod_size]
+        if self.spec.turning_frame:
+            return TurningFrame.at(x, self.mass[: len(x)], self.free_nodes)
+        return FixedFrame(x.copy())
+
+    @cached_property
+    def free_nodes(self) -> Ints:
+        """Return the unknowns (k, 3) of the rod's nodes that do not hang."""
+        return self.rod.places[~self.rod.mesh.is_hanging]
+
+    @cached_property
+    def elastic_rod(self) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
+        """Return the rod's linear part, and its elastic stiffness over its masses."""
+        n, mesh = self.layout.rod_size, self.geometry.rod
+        nose, whole = nose_and_whole(self.rod, mesh, self.drawn, self.layout)
+        product, d, y = NodeProduct.of(nose, self.free_nodes), np.zeros(n), np.zeros(n)
+        if not self.spec.vibrating:
+            from fem_impact.solid.rigid_rest import ElasticNose
+
+            return ElasticNose(product, self.frame, d, y), whole
+        slices = slices_of(self.rod, mesh)
+        return ElasticRod(slices, self.drawn, product, self.frame, self.layout, d, y), whole
+
+    @cached_property
+    def block(self) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
+        """Return the items of a meshed barrier and its stable step, s, by its name; nothing without one."""
+        if self.barrier is None:
+            return [], [], {}
+        effect = "barrier-elastoplastic" if self.spec.barrier_law else "barrier-elastic"
+        block = elastic_block(self.barrier, self.layout, self.x, effect)
+        inverse, share = self.inverse_mass, self.scene.accuracy.step
+        step = stable_step(block.stiffness, inverse[self.layout.barrier_slice], share)
+        pots = [dashpots(self.barrier, self.layout, inverse, block)] if self.spec.radiating else []
+        return [block.linear], pots, {"barrier": step}
+
+    @cached_property
+    def steps(self) -> dict[str, float]:
+        """Return the stable step of each body with its safety factor, s."""
+        # the block first: what its assembly takes for a while, the rod's, which stays, takes up again
+        _, _, steps = self.block
+        _, stiffness = self.elastic_rod
+        inverse = self.inverse_mass[: self.layout.rod_size]
+        return steps | {"rod": stable_step(stiffness, inverse, self.scene.accuracy.step)}
+
+    @cached_property
+    def zones(self) -> list[YieldingZone]:
+        """Return the zone of each body that yields."""
+        laws = (self.spec.rod_law, self.spec.barrier_law)
+        pairs = zip(self.bodies, laws, strict=False)
+        return [yielding_zone(body, law, self.layout) for body, law in pairs if law]
+
+    @cached_property
+    def contact(self) -> PlaneContact | SurfaceContact:
+        """Return the contact; a rigid section behind the nose takes none."""
+        g, f = self.geometry, self.spec.friction or 0.0
+        if self.barrier:
+            return surface_contact(self.bodies, self.inverse_mass, f, g.tip_size, self.x, g.conforming)
+        skin = g.rod.mesh.free_skin
+        if not self.spec.vibrating:
+            skin = np.setdiff1d(skin, g.rod.body_nodes)
+        return PlaneContact(self.rod.places[skin], self.inverse_mass, f)
+
+    def weight(self, gravity: float) -> Weight:
+        """Return gravity on the rod, m/s2."""
+        n, alpha = self.layout.rod_size, self.scene.impact.angle
+        down = np.zeros((len(self.rod.places), 3))
+        down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
+        direction = np.zeros(self.layout.size)
+        direction[self.rod.places] = down
+        return Weight(gravity * self.mass[:n] * direction[:n], self.x[:n].copy())
+
+    def damping(self, loss: float) -> ModalDamping:
+        """Return the damping of the rod's modes with a loss factor."""
+        from fem_impact.solid.elastic import ModalDamping
+
+        _, K = self.elastic_rod
+        inverse = self.inverse_mass[: K.shape[0]]
+        modes = rod_modes(K, self.mass[: K.shape[0]], inverse == 0)
+        return ModalDamping.of(modes, self.frame, inverse, self.free_nodes, loss, self.steps["rod"])
+
+    def rigid_rest(self) -> RigidRest:
+        """Return the rigid body behind the nose: the nose's last section and the points behind it."""
+        from fem_impact.solid.rigid_rest import POINTS, RigidRest
+
+        rod = self.layout.rod
+        places = np.concatenate([rod[self.geometry.rod.body_nodes[:, 0]], rod[-POINTS:]])
+        return RigidRest(places, self.mass[places[:, 0]])
+
+    def forces(self) -> list[Force]:
+        """Return what pushes, in the order in which forces are added."""
+        (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
+        weight = [] if gravity is None else [self.weight(gravity)]
+        return [linear, *weight, *block, *self.zones]
+
+    def impulses(self) -> list[Impulse]:
+        """Return what changes velocities, in the order of a step: the contact has the last word."""
+        (_, pots, _), loss = self.block, self.spec.loss_factor
+        rest = [] if self.spec.vibrating else [self.rigid_rest()]
+        damping = [] if loss is None else [self.damping(loss)]
+        return [*rest, *damping, *pots, self.contact]
+
+    def model(self) -> Model:
+        """Return the model."""
+        steps, (linear, stiffness) = self.steps, self.elastic_rod
+        return Model(
+            geometry=self.geometry,
+            layout=self.layout,
+            mass=self.mass,
+            inverse_mass=self.inverse_mass,
+            drawn=self.drawn,
+            forces=self.forces(),
+            impulses=self.impulses(),
+            rod=linear,
+            zones=self.zones,
+            contact=self.contact,
+            hanging=Hanging.of([(body.mesh.tie, body.places) for body in self.bodies]),
+            rod_stiffness=stiffness if self.spec.vibrating else None,
+            steps=steps,
+            start=(self.x, self.v),
         )
 
 
@@ -310,51 +395,4 @@ def build(scene: Scene, spec: ModelSpec, gap: float = START_GAP) -> Model:
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
     require_fine_zone(scene, spec)
-    geometry = build_geometry(scene, gap, spec.meshed_barrier, spec.vibrating)
-    layout = number(geometry.rod, geometry.barrier)
-    bodies = _bodies(scene, spec, geometry, layout)
-    mass = assemble_masses(bodies, layout)
-    if not spec.vibrating:
-        _place_rest(mass, scene, geometry, layout)
-    inverse_mass = invert(mass, bodies)
-    rod = bodies[0]
-    drawn = MassPoints.of_rod(geometry.rod, rod.mass, rod.material.rho)
-    x, v = _start(bodies, layout, scene, mass, drawn)
-    # the block first: what its assembly takes for a while, the rod's, which stays, takes up again
-    block, pots, steps = _block(bodies[1:], spec, layout, x, inverse_mass, scene.accuracy.step)
-    linear, rod_stiffness = _elastic_rod(rod, geometry, layout, mass, x, drawn, spec)
-    forces: list[Force] = [linear]
-    impulses: list[Impulse] = [] if spec.vibrating else [_rest(geometry, layout, mass)]
-    zones = [
-        yielding_zone(b, law, layout)
-        for b, law in zip(bodies, (spec.rod_law, spec.barrier_law), strict=False)
-        if law
-    ]
-    if spec.gravity is not None:
-        forces.append(_weight(spec.gravity, scene.impact.angle, mass, x, rod, layout))
-    n = layout.rod_size
-    steps["rod"] = stable_step(rod_stiffness, inverse_mass[:n], scene.accuracy.step)
-    if spec.loss_factor is not None:
-        free = rod.places[~rod.mesh.is_hanging]
-        impulses.append(_damping(spec.loss_factor, linear, rod_stiffness, mass, inverse_mass, free, steps))
-    forces += block
-    impulses += pots
-    contact = _contact(bodies, geometry, spec, x, inverse_mass)
-    impulses.append(contact)
-    hanging = Hanging.of([(b.mesh.tie, b.places) for b in bodies])
-    return Model(
-        geometry=geometry,
-        layout=layout,
-        mass=mass,
-        inverse_mass=inverse_mass,
-        drawn=drawn,
-        forces=[*forces, *zones],
-        impulses=impulses,
-        rod=linear,
-        zones=zones,
-        contact=contact,
-        hanging=hanging,
-        rod_stiffness=rod_stiffness if spec.vibrating else None,
-        steps=steps,
-        start=(x, v),
-    )
+    return Builder(scene, spec, gap).model()

@@ -124,10 +124,10 @@ def body_model(body: FreeBody) -> Model:
     n, place = layout.rod_size, layout.barrier_slice
     steps = {"rod": stable_step(stiffness, inverse[:n])}
     if block:
-        elastic, whole, outside = build.elastic_block(parts[1], layout, x)
-        steps["barrier"] = stable_step(whole, inverse[place])
-        forces.append(elastic)
-        impulses.append(build.dashpots(parts[1], layout, inverse, whole, outside))
+        around = build.elastic_block(parts[1], layout, x)
+        steps["barrier"] = stable_step(around.stiffness, inverse[place])
+        forces.append(around.linear)
+        impulses.append(build.dashpots(parts[1], layout, inverse, around))
     contact = _contact(body, parts, inverse, x)
     return Model(
         geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0),
