@@ -22,6 +22,7 @@ from pathlib import Path
 from fem_impact.cost.limits import truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
 from fem_impact.cost.settings import FAMILY, FEWER_PLACES, Mesh
+from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 
 PRESENT = Path(__file__).parents[2]
@@ -33,7 +34,7 @@ NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
 def outcome(model, name, mesh, out, place=0.0):
-    """Return the outcome of a set by one model, made in a process of its own unless it lies in ``out``."""
+    """Return the file of a set's outcome, made by one model in its own process unless it lies in ``out``."""
     kind = "present" if model == PRESENT else "plain"
     folder = out / f"{kind}-{name}-{mesh.across}-{mesh.levels}{f'-at-{place:g}' if place else ''}"
     if not (folder / "outcome.json").exists():
@@ -44,7 +45,7 @@ def outcome(model, name, mesh, out, place=0.0):
         command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(folder)]
         alone = {"PYTHONPATH": str(model), "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}
         subprocess.run(command, cwd=model, env=os.environ | alone, check=True, stdout=subprocess.DEVNULL)
-    return json.loads((folder / "outcome.json").read_text(encoding="utf-8"))
+    return folder / "outcome.json"
 
 
 def at_equal_error(plain, present):
@@ -62,14 +63,16 @@ def at_equal_error(plain, present):
 
 
 def off(run, quantity, truth):
-    """Return the distance from the limit over the scale."""
-    return abs(NAMED[quantity].value(run) - truth.value) / truth.scale
+    """Return the distance from the limit over the scale; ``run`` are flat keys, of an older version too."""
+    return abs(sum(run[key.name] for key in NAMED[quantity].keys) - truth.value) / truth.scale
 
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    truth = truths([[outcome(PRESENT, name, mesh, out, place) for place in FEWER_PLACES] for mesh in FAMILY])
-    runs = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
+    placed = [[outcome(PRESENT, name, mesh, out, place) for place in FEWER_PLACES] for mesh in FAMILY]
+    truth = truths([[Outcome.read(path) for path in paths] for paths in placed])
+    files = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
+    runs = {model: [json.loads(path.read_text("utf-8")) for path in paths] for model, paths in files.items()}
     lines = []
     for quantity in TARGETED:
         limit = truth[quantity]

@@ -5,24 +5,21 @@ import sys
 import types
 from dataclasses import dataclass, field
 
+import outcome_maker
 import pytest
 
 import fem_impact.study
-from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.outcome.record import KEYS
 from fem_impact.progress import Progress
 
 
 def an_outcome(**changed):
-    """Return a complete outcome; what a test does not set is a plausible value of its kind."""
-    kinds = {"text": "text", "texts": [], "flag": True, "count": 3, "number": 0.25}
-    values = {key.name: kinds[key.kind] for key in KEYS if key.kind in kinds and not key.nullable}
-    values |= {"versions": {}, "contacts": [], "schema_version": 2, "finished": True, "fidelity": "solid"}
-    values |= {"scene_id": "t5b", "E_vib_below_floor": False, "E_0_J": 0.39, "mu": 0.5, "bands": {"mu": 0.01}}
-    values |= changed
-    unknown = {
-        key.name: "not in the stand-in" for key in KEYS if key.nullable and values.get(key.name) is None
-    }
-    return Outcome(values, reasons=unknown)
+    """Return a complete outcome; what a test does not set is a plausible value of its kind, or not known."""
+    nulls = {key.name: None for key in KEYS if key.nullable}
+    plain = {"scene_id": "t5b", "E_vib_below_floor": False, "E_0_J": 0.39, "mu": 0.5}
+    limits = {"mesh_limit": {"mu": 0.5}, "mesh_band": {"mu": 0.01}, "contacts": []}
+    why = {"reasons": dict.fromkeys(nulls, "not in the stand-in")}
+    return outcome_maker.outcome(**nulls | plain | limits | why | changed)
 
 
 @dataclass

@@ -12,6 +12,7 @@ from fem_impact.cost.measure import measure
 from fem_impact.cost.settings import placed
 from fem_impact.cost.to_target import NEARNESS, nearest, plan, summarise, summary
 from fem_impact.errors import SceneError
+from fem_impact.outcome.keys import Unknown
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Scene
@@ -133,12 +134,14 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     chosen = plan(scene)
     outcome = achieve.simulate_to_target(scene, out=tmp_path)
     assert chosen.setting.kind == "pair"
-    assert outcome["accuracy_target"] == 0.05
-    assert outcome["accuracy_setting"] == chosen.setting.name
-    assert outcome["expected_error"] == chosen.expected_error
-    assert outcome["achieved_wall_s"] == pytest.approx(chosen.setting.wall_s)
-    assert 0 < outcome["achieved_error"] < 1
-    assert outcome["extrapolated"]["e_edge"] == pytest.approx(chosen.setting.value["e"])
+    assert outcome.validity.accuracy_target == 0.05
+    assert outcome.validity.accuracy_setting == chosen.setting.name
+    assert outcome.validity.expected_error == chosen.expected_error
+    assert outcome.validity.achieved_wall == pytest.approx(chosen.setting.wall_s)
+    assert 0 < outcome.validity.achieved_error < 1
+    scale = stored.summary()["scenes"]["t5b"]["quantities"]["e"]["scale"]
+    assert outcome.validity.mesh_band["e_edge"] == pytest.approx(chosen.setting.band["e"] * scale)
+    assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(chosen.setting.value["e"])
     assert (tmp_path / "outcome.json").exists()
 
 
@@ -146,16 +149,16 @@ def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
     scene = asking(0.05)
     one, two = (achieve.simulate_to_target(scene, workers=workers) for workers in (1, 2))
     assert plan(scene, workers=2).expected_wall_s < plan(scene).expected_wall_s
-    assert two["achieved_wall_s"] < one["achieved_wall_s"]
-    assert two["extrapolated"] == one["extrapolated"]
-    assert two["achieved_error"] == one["achieved_error"]
+    assert two.validity.achieved_wall < one.validity.achieved_wall
+    assert two.validity.mesh_limit == one.validity.mesh_limit
+    assert two.validity.achieved_error == one.validity.achieved_error
 
 
 def test_a_reduced_run_does_not_claim_an_achieved_error(costs):
     outcome = achieve.simulate_to_target(asking(0.2))
-    assert (outcome["fidelity"], outcome["accuracy_setting"]) == ("modal", "modal")
-    assert outcome["achieved_error"] is None
-    assert "alone" in outcome.reason("achieved_error")
+    assert (outcome.provenance.fidelity, outcome.validity.accuracy_setting) == ("modal", "modal")
+    assert isinstance(outcome.validity.achieved_error, Unknown)
+    assert "alone" in outcome.validity.achieved_error.reason
 
 
 def test_simulate_hands_over_a_scene_with_a_target(monkeypatch):
@@ -198,10 +201,11 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
     outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
     assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
     fine, coarse = (placed(load("t5b"), mesh) for mesh in plan(asking(0.05)).meshes)
-    assert outcome["scene_digest"] == fine[0].digest()
-    means = [sum(run(scene)["e_edge"] for scene in scenes) / len(scenes) for scenes in (fine, coarse)]
+    assert outcome.provenance.scene_digest == fine[0].digest()
+    every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
+    means = [sum(values) / len(values) for values in every]
     ratio = coarse[0].accuracy.tip_size / fine[0].accuracy.tip_size
-    assert outcome["extrapolated"]["e_edge"] == pytest.approx(pair_limit(*means, ratio)[0])
+    assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(pair_limit(*means, ratio)[0])
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
@@ -209,6 +213,7 @@ def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
     chosen = stored.Plan(0.2, Judged(**single), "t5b", 0.15, 1.0)
     monkeypatch.setattr(achieve, "plan", lambda *_: chosen)
     outcome = achieve.simulate_to_target(asking(0.2))
-    assert outcome["achieved_error"] is None
-    assert outcome["extrapolated"]["e_edge"] == pytest.approx(single["value"]["e"])
-    assert outcome["extrapolated"]["e_edge"] != outcome["e_edge"]
+    assert isinstance(outcome.validity.achieved_error, Unknown)
+    assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(single["value"]["e"])
+    assert outcome.validity.mesh_limit["e_edge"] != outcome.restitution.edge.e
+    assert isinstance(outcome.validity.mesh_band, Unknown)

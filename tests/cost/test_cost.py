@@ -9,6 +9,7 @@ from importlib import import_module
 import numpy as np
 import pytest
 from cost_fakes import LIMIT, SLOPE, TIP, WIGGLE, Here, run
+from outcome_maker import altered
 
 import fem_impact.run.simulate
 from fem_impact.cost.document import text_table, write_cost
@@ -254,8 +255,8 @@ def test_two_meshes_assume_an_order_and_say_none():
 
 def test_two_meshes_that_agree_by_chance_prove_nothing():
     two = zip(runs_on(FAMILY[-1]), (0.01, -0.01), strict=True)
-    fine = [run.replace(e_edge=0.3 + off) for run, off in two]
-    same = [fine, [run.replace(tip_size_m=2 * run["tip_size_m"]) for run in fine]]
+    fine = [altered(run, e_edge=0.3 + off) for run, off in two]
+    same = [fine, [altered(run, tip_size_m=2 * run.cost.tip_size) for run in fine]]
     weight = 0.5 / (2**LOWEST - 1)
     both = ((1 + weight) ** 2 + weight**2) ** 0.5
     assert truths(same)["e"].uncertainty == pytest.approx(EVEN[2] * 0.01 * both)
@@ -269,7 +270,7 @@ def test_the_scatter_of_a_limit_is_that_of_its_means():
     ends = []
     for _ in range(60):
         moved = [
-            [run.replace(e_edge=run["e_edge"] + error * by) for run in runs]
+            [altered(run, e_edge=run.restitution.edge.e + error * by) for run in runs]
             for runs, error, by in zip(meshes, errors, generator.normal(size=4), strict=True)
         ]
         ends.append(truths(moved)["e"].value - LIMIT["e_edge"])

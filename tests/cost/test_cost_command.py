@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from cost_fakes import Here, run
+from outcome_maker import altered
 
 import fem_impact.cost
 import fem_impact.run.simulate
@@ -88,12 +89,11 @@ def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
     monkeypatch.setattr(fem_impact.cost, "plan", lambda *_: chosen)
     stated = {"accuracy_target": 0.2, "accuracy_setting": "modal", "expected_error": 0.15}
     stated |= {"expected_wall_s": 0.01, "achieved_wall_s": 0.02}
-    stated |= {"extrapolated": {"e_edge": 0.31, "E_vib_over_E_0": 0.02}}
+    stated |= {"mesh_limit": {"e_edge": 0.31, "E_vib_over_E_0": 0.02}}
 
     def answer(scene, **_):
-        return run(scene, "modal").replace(
-            reasons={"achieved_error": "one run alone"}, **stated | {"achieved_error": None}
-        )
+        reasons = {"achieved_error": "one run alone"}
+        return altered(run(scene, "modal"), **stated | {"achieved_error": None, "reasons": reasons})
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", answer)
     code, out, err = cli("run", "t5b", "--set", "accuracy=20 %")

@@ -151,12 +151,12 @@ def test_every_effect_of_the_scenes_is_told():
         stated = load(set_id)
         for choice in choices(stated):
             told = choice.told()
-            assert told["on"] == (told["name"] in stated.active)
-            assert told["forced"] == ("auto" not in stated.effects)
-            effect = EFFECTS[told["name"]]
-            assert told["sentence"] == (effect.sentence if told["on"] else effect.absence)
-            assert told["change_of_e"] >= 0
-            assert 0 <= told["change_of_E_vib_over_E_0"] <= 1
+            assert told.on == (told.name in stated.active)
+            assert told.forced == ("auto" not in stated.effects)
+            effect = EFFECTS[told.name]
+            assert told.sentence == (effect.sentence if told.on else effect.absence)
+            assert told.change_of_e >= 0
+            assert 0 <= told.change_of_vibration <= 1
 
 
 def test_numbers_of_a_scene():

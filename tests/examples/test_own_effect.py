@@ -68,7 +68,7 @@ def test_an_added_effect_is_chosen_by_its_number(moon):
     assert EFFECT.name not in fast.active
     assert EFFECT.name in slow.active
     (choice,) = [choice for choice in choices(slow) if choice.name == EFFECT.name]
-    assert choice.told()["sentence"] == "The Moon pulls the rod down."
+    assert choice.told().sentence == "The Moon pulls the rod down."
     left_out = slow.replace("effects", ["auto", f"-{EFFECT.name}"])
     assert any(EFFECT.name in words for words in neglected(left_out))
 

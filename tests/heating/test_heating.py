@@ -118,15 +118,15 @@ def test_the_watch_finds_all_heat_and_the_patch(barrier, tip):
     heat = float(np.array(watch.power) @ np.diff(watch.t))
     assert heat == pytest.approx(result.accounts["friction"], rel=0.01)  # the last window is still open
     found, size = reduce(stated, result), contact_estimate(stated)
-    assert found["contact_patch_m2"] == pytest.approx(pi * size.a_t * size.a_b, rel=0.35)
+    assert found.heat.patch == pytest.approx(pi * size.a_t * size.a_b, rel=0.35)
     # the blow turns the rod and the tip slides faster and faster
     last = abs(result.motion.V_t - result.motion.Omega * arms(stated)[1])
     pushed = 2 * 0.2 * result.model.book.impulse[1]
     assert heat == pytest.approx(pushed * 0.5 * (6.0 + last), rel=0.1)
     assert np.average(watch.speed, weights=watch.power) == pytest.approx(heat / pushed, rel=0.15)
-    assert found["flash_temperature_K"] == found["flash_rise_K"] + 293.15
-    less = found["E_lt_edge_over_E_0"] - found["E_vib_over_E_0"]
-    assert found["E_lt_less_vibration_over_E_0"] == pytest.approx(less)
+    assert found.heat.temperature == found.heat.rise + 293.15
+    less = found.restitution.edge.E_lt - found.energy.vibration
+    assert found.heat.less_vibration == pytest.approx(less)
 
 
 def test_round_off_is_no_sliding_speed():
@@ -144,27 +144,27 @@ def test_heat_does_not_act_on_the_motion():
     assert plain.heat is None
     assert watched.accounts == plain.accounts
     outcome = reduce(solid_scenes.scene(*effects, **changes), plain)
-    assert outcome.reason("flash_rise_K") == "the contact-heating effect is off"
+    assert outcome.heat.rise.reason == "the contact-heating effect is off"
     # a list without auto forces off what it does not name, and the outcome says so
-    missed = {words.split()[0] for words in outcome["warnings"] if "is left out by the scene" in words}
+    missed = {words.split()[0] for words in outcome.validity.warnings if "is left out by the scene" in words}
     assert missed == {"rod-plasticity", "barrier-elastoplastic", "rate-hardening"}
     # every effect that is on has its share of the run time, and only those
-    shares = {choice["name"]: choice["share"] for choice in outcome["effect_choices"]}
+    shares = {choice.name: choice.share for choice in outcome.provenance.effect_choices}
     assert {name for name in shares if shares[name] is not None} == set(effects)
     assert 0.05 < shares["vibration"] < 1.0
-    heated = reduce(solid_scenes.scene(*effects, "contact-heating", **changes), watched)["effect_choices"]
-    assert next(0.0 < choice["share"] < 0.5 for choice in heated if choice["name"] == "contact-heating")
+    heated = reduce(solid_scenes.scene(*effects, "contact-heating", **changes), watched).provenance
+    assert next(0.0 < c.share < 0.5 for c in heated.effect_choices if c.name == "contact-heating")
 
 
 def test_closed_form_of_the_rigid_fidelity():
     stated = replace(load("t5b"), effects=("auto", "contact-heating"))
     found = simulate(stated, "rigid")
-    power = found["W_friction_over_E_0"] * found["E_0_J"] / found["friction_power_W"]
-    assert found["friction_flux_W_per_m2"] * found["contact_patch_m2"] == found["friction_power_W"]
+    power = found.energy.friction * found.energy.E_0 / found.heat.power
+    assert found.heat.flux * found.heat.patch == found.heat.power
     assert 5e-5 < power < 2e-4  # the contact time, s
-    assert 100 < found["flash_rise_K"] < found["flash_bound_K"]
-    assert found["flash_bound_K"] == pytest.approx(293.15 + flash_bound(stated))
-    assert 0.2 < expected_rise(stated) / found["flash_rise_K"] < 5
+    assert 100 < found.heat.rise < found.heat.bound
+    assert found.heat.bound == pytest.approx(293.15 + flash_bound(stated))
+    assert 0.2 < expected_rise(stated) / found.heat.rise < 5
 
 
 def test_the_bound_by_hand():
@@ -203,5 +203,5 @@ def test_ignition_is_the_users():
     stated = load("t5b").replace("heating.ignition", "60 degC")
     assert stated.heating.ignition == pytest.approx(333.15)
     assert (
-        simulate(replace(stated, effects=("auto", "contact-heating")), "rigid")["time_above_ignition_s"] > 0
+        simulate(replace(stated, effects=("auto", "contact-heating")), "rigid").heat.time_above_ignition > 0
     )

@@ -9,9 +9,10 @@ import pytest
 
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.impact import solve as modal_solve
-from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import effective_mass, projectile
-from fem_impact.run.common import coefficient_keys
+from fem_impact.run.common import motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS, Scene
@@ -26,12 +27,13 @@ REDUCED = ("rigid", "modal")
 def test_a_record_is_whole_and_reads_back(fidelity, tmp_path):
     scene = load("t6-60")
     outcome = simulate(scene, fidelity, out=tmp_path)
-    assert outcome["fidelity"] == fidelity
-    assert list(Outcome.read(tmp_path / "outcome.json").items()) == list(outcome.items())
+    assert outcome.provenance.fidelity == fidelity
+    assert Outcome.read(tmp_path / "outcome.json") == outcome
     assert Scene.from_toml(tmp_path / "scene.toml") == scene
     assert (tmp_path / "contacts.csv").exists() == (fidelity == "modal")
-    assert all(outcome["reasons"][key.name] for key in KEYS if outcome[key.name] is None)
-    assert outcome["assumptions"]
+    nulls = {name for name, value in outcome.to_dict().items() if value is None}
+    assert nulls == set(outcome.reasons) and all(outcome.reasons.values())
+    assert outcome.validity.assumptions
 
 
 @pytest.mark.parametrize("fidelity", REDUCED)
@@ -39,30 +41,30 @@ def test_a_record_is_whole_and_reads_back(fidelity, tmp_path):
 def test_the_shares_of_the_energy_add_up(fidelity, name):
     outcome = simulate(load(name), fidelity)
     shares = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "residual")
-    total = sum(outcome[f"{share}_over_E_0"] or 0.0 for share in shares)
+    total = sum(outcome.to_dict()[f"{share}_over_E_0"] or 0.0 for share in shares)
     assert total == pytest.approx(1, abs=2e-3)  # gravity works a little while the rod touches
-    assert abs(outcome["residual_over_E_0"]) < 1e-5
-    lost = sum(outcome[f"E_{kind}_edge_over_E_0"] for kind in ("ln", "lt"))
-    spin = outcome["mass_kg"] * outcome["k_squared_m2"] * outcome["Omega_rad_per_s"] ** 2 / 2
-    closed = spin * (1 + 1 / outcome["e_m_edge"]) / outcome["E_0_J"]
-    assert lost + outcome["E_r_over_E_0"] - 1 == pytest.approx(closed, abs=1e-9)
+    assert abs(outcome.energy.residual) < 1e-5
+    lost = outcome.restitution.edge.E_ln + outcome.restitution.edge.E_lt
+    spin = outcome.motion.mass * outcome.motion.k_squared * outcome.motion.Omega**2 / 2
+    closed = spin * (1 + 1 / outcome.restitution.edge.e_m) / outcome.energy.E_0
+    assert lost + outcome.energy.rigid - 1 == pytest.approx(closed, abs=1e-9)
 
 
 @pytest.mark.parametrize("omega", [20.0, -30.0])
 def test_coefficients_and_losses_take_a_spin_before_the_impact(omega):
     """A rigid rod's impulse acts at its contact point: e_m = -1, and the losses are all that is lost."""
     outcome = simulate(replace_all(load("t5b"), {"impact.omega": f"{omega} rad/s"}), "rigid")
-    assert outcome["e_m_edge"] == pytest.approx(-1, abs=1e-9)
-    assert outcome["e_m_impulse"] == pytest.approx(-1, abs=1e-9)
-    assert outcome["d_c_impulse_m"] == pytest.approx(outcome["d_c_edge_m"])
-    kept = sum(outcome[f"{name}_over_E_0"] for name in ("E_ln_edge", "E_lt_edge", "E_r"))
+    assert outcome.restitution.edge.e_m == pytest.approx(-1, abs=1e-9)
+    assert outcome.restitution.impulse.e_m == pytest.approx(-1, abs=1e-9)
+    assert outcome.restitution.impulse.d_c == pytest.approx(outcome.restitution.edge.d_c)
+    kept = outcome.restitution.edge.E_ln + outcome.restitution.edge.E_lt + outcome.energy.rigid
     assert kept == pytest.approx(1, abs=1e-9)
-    d_c, d_d = outcome["d_c_edge_m"], outcome["d_d_edge_m"]
-    left = outcome["V_n_m_per_s"] + d_c * outcome["Omega_rad_per_s"]
-    assert outcome["e_edge"] == pytest.approx(-left / (outcome["v_n_m_per_s"] + d_c * omega))
-    before = {"v_n": outcome["v_n_m_per_s"], "v_t": outcome["v_t_m_per_s"]}
-    body = {"e": outcome["e_edge"], "d_c": d_c, "d_d": d_d, "k2": outcome["k_squared_m2"]}
-    after = solve(**before, **body, mu=outcome["mu_c"], omega=omega)
+    d_c, d_d = outcome.restitution.edge.d_c, outcome.restitution.edge.d_d
+    left = outcome.motion.V_n + d_c * outcome.motion.Omega
+    assert outcome.restitution.edge.e == pytest.approx(-left / (outcome.motion.v_n + d_c * omega))
+    before = {"v_n": outcome.motion.v_n, "v_t": outcome.motion.v_t}
+    body = {"e": outcome.restitution.edge.e, "d_c": d_c, "d_d": d_d, "k2": outcome.motion.k_squared}
+    after = solve(**before, **body, mu=outcome.restitution.mu_c, omega=omega)
     assert after.V_t - d_d * after.Omega == pytest.approx(0, abs=1e-9)
 
 
@@ -72,48 +74,44 @@ def test_an_upright_rod_does_not_turn_and_has_no_moment(fidelity, tip):
     upright = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
     scene = replace_all(load("t5b"), {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], **upright})
     outcome = simulate(scene, fidelity)
-    assert outcome["Omega_rad_per_s"] == pytest.approx(0, abs=1e-6)
-    assert outcome["e_m_edge"] is None
-    assert "no moment" in outcome["reasons"]["e_m_edge"]
-    assert 0 < outcome["e_edge"] < 1
+    assert outcome.motion.Omega == pytest.approx(0, abs=1e-6)
+    assert isinstance(outcome.restitution.edge.e_m, Unknown)
+    assert "no moment" in outcome.restitution.edge.e_m.reason
+    assert 0 < outcome.restitution.edge.e < 1
 
 
 def test_what_gravity_adds_is_told_and_closes_the_sum():
     slow = {"impact.v_n": "-0.1 m/s", "impact.v_t": "-0.1 m/s"}
     outcome = simulate(replace_all(load("quick"), slow), "modal")
     parts = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "residual")
-    assert outcome["W_gravity_over_E_0"] > 0.01
-    total = sum(outcome[f"{part}_over_E_0"] for part in parts)
-    assert total == pytest.approx(1 + outcome["W_gravity_over_E_0"], abs=1e-9)
-    assert simulate(load("quick"), "modal")["W_gravity_over_E_0"] is None
+    assert outcome.energy.gravity > 0.01
+    total = sum(outcome.to_dict()[f"{part}_over_E_0"] for part in parts)
+    assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-9)
+    assert isinstance(simulate(load("quick"), "modal").energy.gravity, Unknown)
 
 
 def test_only_effects_of_the_model_are_named():
     every = replace(
         load("t5b"), effects=("auto", "radiation", "gravity", "material-damping", "large-rotation")
     )
-    assert simulate(every, "rigid")["effects"] == [
-        *("friction", "rod-plasticity", "barrier-elastoplastic", "contact-heating")
-    ]
-    assert simulate(every, "modal")["effects"] == [
-        *("vibration", "friction", "rod-plasticity", "barrier-elastoplastic", "gravity", "large-rotation")
-    ]
+    rigid, modal = (simulate(every, fidelity).provenance.effects for fidelity in REDUCED)
+    plastic = ("rod-plasticity", "barrier-elastoplastic")
+    assert rigid == ("friction", *plastic, "contact-heating")
+    assert modal == ("vibration", "friction", *plastic, "gravity", "large-rotation")
 
 
 def test_a_thick_rod_has_modes_too():
     thick = {"projectile.length": "300 mm", "projectile.diameter": "60 mm"}
-    assert simulate(replace_all(load("t5b"), thick), "modal")["E_vib_over_E_0"] > 0
+    assert simulate(replace_all(load("t5b"), thick), "modal").energy.vibration > 0
 
 
 def test_arms_that_do_not_approach_have_no_restitution():
     scene = replace_all(load("t5b"), {"impact.omega": "60 rad/s"})
-    motion = {"v_n_m_per_s": -1.502, "v_t_m_per_s": -1.482, "V_n_m_per_s": 0.4, "V_t_m_per_s": -0.5}
-    motion |= {"Omega_rad_per_s": 90.0, "k_squared_m2": 5.56e-4, "mass_kg": 0.17}
-    values, reasons = coefficient_keys(scene, motion)
-    assert values["d_c_impulse_m"] > 1.502 / 60
-    assert values["e_impulse"] is None
-    assert "approach" in reasons["e_impulse"]
-    assert values["e_edge"] is not None
+    found = restitution(scene, motion(scene, 0.4, -0.5, 90.0, 0.17, 5.56e-4))
+    assert found.impulse.d_c > 1.502 / 60
+    assert isinstance(found.impulse.e, Unknown)
+    assert "approach" in found.impulse.e.reason
+    assert not isinstance(found.edge.e, Unknown)
 
 
 def test_a_long_rod_is_followed_until_its_bending_cannot_bring_it_back():
@@ -138,15 +136,15 @@ def test_the_rigid_fidelity_names_the_source_of_its_restitution():
     scene = load("t5b")
     law, own = simulate(scene, "rigid"), simulate(replace(scene, restitution=0.5), "rigid")
     elastic = simulate(replace(scene, effects=("vibration", "barrier-elastic")), "rigid")
-    assert law["e_edge"] == pytest.approx(0.306, abs=0.01)
-    assert "Thornton" in law["assumptions"][0]
-    assert (own["e_edge"], own["assumptions"][0]) == (
+    assert law.restitution.edge.e == pytest.approx(0.306, abs=0.01)
+    assert "Thornton" in law.validity.assumptions[0]
+    assert (own.restitution.edge.e, own.validity.assumptions[0]) == (
         pytest.approx(0.5, abs=0.02),
         "Restitution 0.5 (energetic) is the scene's own.",
     )
-    assert elastic["e_edge"] == pytest.approx(1)
-    assert "no body of the scene may yield" in elastic["assumptions"][0]
-    assert elastic["mu"] == elastic["W_friction_over_E_0"] == 0.0
+    assert elastic.restitution.edge.e == pytest.approx(1)
+    assert "no body of the scene may yield" in elastic.validity.assumptions[0]
+    assert elastic.restitution.mu == elastic.energy.friction == 0.0
 
 
 def test_a_frictionless_elastic_rod_turns_as_momentum_says():
@@ -154,21 +152,21 @@ def test_a_frictionless_elastic_rod_turns_as_momentum_says():
     rod = projectile(scene)
     d_c = float(rod.arms(scene.impact.angle)[0])
     Omega = 2 * -scene.impact.v_n * d_c / (rod.k2 + d_c**2)
-    assert simulate(scene, "rigid")["Omega_rad_per_s"] == pytest.approx(Omega)
+    assert simulate(scene, "rigid").motion.Omega == pytest.approx(Omega)
     assert effective_mass(scene) == pytest.approx(rod.mass / (1 + d_c**2 / rod.k2))
 
 
 @pytest.mark.parametrize("name", [n for n in MEASURED_SETS if n.startswith(("t4", "t5"))])
 def test_a_short_rod_hardly_vibrates_so_both_agree(name):
     rigid, modal = (simulate(load(name), fidelity) for fidelity in REDUCED)
-    assert modal["E_vib_over_E_0"] < 2e-3
+    assert modal.energy.vibration < 2e-3
     for key, near in {
         "e_edge": 0.01,
         "mu": 0.002,
         "Omega_rad_per_s": 0.3,
         "W_friction_over_E_0": 0.005,
     }.items():
-        assert modal[key] == pytest.approx(rigid[key], abs=near)
+        assert modal.to_dict()[key] == pytest.approx(rigid.to_dict()[key], abs=near)
 
 
 def test_restitution_is_a_key_of_the_scene():
@@ -199,7 +197,7 @@ def test_the_command_takes_a_fidelity(cli):
 
 
 def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
-    told = " ".join(simulate(load("t5b"), "modal")["assumptions"])
+    told = " ".join(simulate(load("t5b"), "modal").validity.assumptions)
     found = re.search(r"On t5b: e (\S+) beside (\S+), mu (\S+) beside (\S+), Omega", told)
     modal, solid = map(float, found.groups()[2:])
     assert modal == pytest.approx(0.57)

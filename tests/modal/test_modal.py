@@ -148,8 +148,8 @@ def test_gravity_is_taken_out_and_changes_little():
 def test_an_impact_that_is_cut_off_says_so():
     scene = rod(0.24, 2.1, 0.0)
     outcome = record.reduce(scene, solve(replace(scene, accuracy=replace(scene.accuracy, max_time=3e-4))))
-    assert not outcome["finished"]
-    assert "max_time" in outcome["stopped_because"]
+    assert not outcome.validity.finished
+    assert "max_time" in outcome.validity.stopped_because
 
 
 def test_a_case_is_quick():

@@ -72,7 +72,7 @@ def test_a_worker_killed_in_mid_study_costs_nothing(cluster, tmp_path):
         found = run_jobs(jobs, tmp_path / "store.sqlite", NullMeter(), Acting(executor))
     workers[0].wait(10)
     assert [name for name, result in found.items() if isinstance(result, Failure)] == ["bad"]
-    assert found["j3"]["scene_id"] == "j3"
+    assert found["j3"].provenance.scene_id == "j3"
     counts = Counter(log.read_text().split())
     assert set(counts) == {j.name for j in jobs}
     with on_scheduler(address) as executor:

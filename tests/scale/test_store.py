@@ -71,7 +71,7 @@ def test_failures_of_the_run_last_and_faults_are_tried_again(tmp_path):
     found, _ = run(store, job("a", "fail"), job("b"), job("c", "break"))
     assert found["a"] == Failure("a", "An element folded at 12.00 us.")
     assert "a fault of the program" in found["c"].reason
-    assert found["b"]["scene_id"] == "b"
+    assert found["b"].provenance.scene_id == "b"
     again, names = run(store, job("a", "fail"), job("b"), job("c", "break"))
     assert names == ["c"]
     assert again["a"] == found["a"]

@@ -13,6 +13,7 @@ import rigid
 from fem_impact.errors import RunError
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
+from fem_impact.outcome.keys import Unknown
 from fem_impact.run.markers import WINDOW, lever_of, replay
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
@@ -156,7 +157,7 @@ def test_a_run_that_makes_energy_stops_and_keeps_its_answer():
     assert result.steps < 400
     assert result.reason.startswith("The energy has grown by ")
     assert "the steps are too long" in result.reason
-    assert reduce(scene, result)["finished"] is False
+    assert reduce(scene, result).validity.finished is False
 
 
 def test_gradients_of_a_cube():
@@ -235,11 +236,12 @@ def test_a_tail_that_strikes_first_ends_the_run(effects):
     """At 85 degrees the other end comes down a millisecond later, and no contact of the model holds it."""
     flat = {"impact.angle": "85 deg", "impact.v_n": "-4 m/s", "accuracy.tip_size": "0.8 mm", "save.frames": 0}
     outcome = simulate(replace_all(load("quick"), {**flat, "effects": list(effects)}))
-    assert not outcome["finished"]
-    later = float(re.match(r"The rod's tail strikes (\d+) us later", outcome["stopped_because"])[1]) * 1e-6
-    alpha, rod = outcome["alpha_rad"], load("quick").projectile
+    assert not outcome.validity.finished
+    told = re.match(r"The rod's tail strikes (\d+) us later", outcome.validity.stopped_because)
+    later = float(told[1]) * 1e-6
+    alpha, rod = outcome.motion.alpha, load("quick").projectile
     high = (rod.length - 0.019 * 0.5 * (1 - sin(alpha))) * cos(alpha)  # of the tail above the tip, about
-    speed = outcome["V_n_m_per_s"] - outcome["Omega_rad_per_s"] * rod.length / 2 * sin(alpha)
+    speed = outcome.motion.V_n - outcome.motion.Omega * rod.length / 2 * sin(alpha)
     assert later == pytest.approx(high / -speed, rel=0.3)
 
 
@@ -286,15 +288,14 @@ def measured(result):
 @pytest.mark.parametrize("arms", ["paper", "edge", "impulse"])
 def test_closure_with_every_set_of_arms(measured, result, arms):
     """E_ln + E_lt + E_r - E_0 = (I Omega^2 / 2)(1 + 1/e_m)."""
-    o = measured
-    assert _closure_defect(o, result.motion.inertia, arms) == pytest.approx(0, abs=1e-7)
-    assert o[f"d_c_{arms}_m"] > 0.02
+    assert _closure_defect(measured, result.motion.inertia, arms) == pytest.approx(0, abs=1e-7)
+    assert getattr(measured.restitution, arms).d_c > 0.02
 
 
 def _closure_defect(o, inertia, arms):
-    lost = o[f"E_ln_{arms}_over_E_0"] + o[f"E_lt_{arms}_over_E_0"]
-    turning = 0.5 * inertia * o["Omega_rad_per_s"] ** 2 * (1 + 1 / o[f"e_m_{arms}"]) / o["E_0_J"]
-    return lost + o["E_r_over_E_0"] - 1 - turning
+    found = getattr(o.restitution, arms)
+    turning = 0.5 * inertia * o.motion.Omega**2 * (1 + 1 / found.e_m) / o.energy.E_0
+    return found.E_ln + found.E_lt + o.energy.rigid - 1 - turning
 
 
 def test_closure_with_gravity():
@@ -304,18 +305,18 @@ def test_closure_with_gravity():
 
 
 def test_restitution_of_moment_is_minus_one_at_the_centre_of_impulse(measured):
-    assert measured["e_m_impulse"] == pytest.approx(-1.0, abs=1e-9)
-    assert measured["e_m_edge"] != pytest.approx(-1.0, abs=1e-9)
+    assert measured.restitution.impulse.e_m == pytest.approx(-1.0, abs=1e-9)
+    assert measured.restitution.edge.e_m != pytest.approx(-1.0, abs=1e-9)
 
 
 def test_coefficients_are_those_of_the_velocities(measured, result):
     m, impact = result.motion, result.scene.impact
-    d_c = measured["d_c_edge_m"]
-    assert measured["e_edge"] == pytest.approx(-(m.V_n + d_c * m.Omega) / impact.v_n)
-    assert measured["mu"] == pytest.approx((m.V_t - impact.v_t) / (m.V_n - impact.v_n))
+    d_c = measured.restitution.edge.d_c
+    assert measured.restitution.edge.e == pytest.approx(-(m.V_n + d_c * m.Omega) / impact.v_n)
+    assert measured.restitution.mu == pytest.approx((m.V_t - impact.v_t) / (m.V_n - impact.v_n))
     book = result.model.book.impulse
-    assert measured["mu"] == pytest.approx(book[0] / book[1], rel=1e-6)
-    assert measured["E_r_over_E_0"] == pytest.approx(m.kinetic / result.E_0)
+    assert measured.restitution.mu == pytest.approx(book[0] / book[1], rel=1e-6)
+    assert measured.energy.rigid == pytest.approx(m.kinetic / result.E_0)
 
 
 def test_sign_of_omega_follows_the_impulse(result):
@@ -333,29 +334,29 @@ def test_gravity_is_taken_out(result):
     with_fall = reduce(scene, replace(result, scene=scene))
     without = reduce(result.scene, result)
     fall = 9.80665 * result.time
-    assert with_fall["V_n_m_per_s"] - without["V_n_m_per_s"] == pytest.approx(fall * cos(pi / 4), rel=1e-4)
-    assert with_fall["V_t_m_per_s"] - without["V_t_m_per_s"] == pytest.approx(fall * sin(pi / 4), rel=1e-4)
+    assert with_fall.motion.V_n - without.motion.V_n == pytest.approx(fall * cos(pi / 4), rel=1e-4)
+    assert with_fall.motion.V_t - without.motion.V_t == pytest.approx(fall * sin(pi / 4), rel=1e-4)
 
 
 def test_unmeasured_scenes_say_why_they_have_no_paper_arms(result):
     found = reduce(result.scene, result)
-    assert found["e_paper"] is None
-    assert "no measured set" in found.reason("e_paper")
-    assert found.reason("bands")
+    assert isinstance(found.restitution.paper.e, Unknown)
+    assert "no measured set" in found.restitution.paper.e.reason
+    assert found.validity.mesh_band.reason
 
 
 def test_an_open_ledger_fails_the_run(result):
     spoiled = reduce(result.scene, replace(result, worst=2e-4 * result.E_0))
-    assert spoiled["finished"] is False
-    assert "ledger misses 2.0e-04" in spoiled["stopped_because"]
-    assert spoiled["E_vib_floor_over_E_0"] == pytest.approx(2e-4)
-    assert reduce(result.scene, replace(result, worst=0.9e-4 * result.E_0))["finished"] is True
+    assert spoiled.validity.finished is False
+    assert "ledger misses 2.0e-04" in spoiled.validity.stopped_because
+    assert spoiled.energy.vibration_floor == pytest.approx(2e-4)
+    assert reduce(result.scene, replace(result, worst=0.9e-4 * result.E_0)).validity.finished is True
 
 
 def test_vibration_below_the_floor_is_marked(result):
     share = result.flight.energy
-    assert reduce(result.scene, replace(result, worst=1.01 * share))["E_vib_below_floor"] is True
-    assert reduce(result.scene, replace(result, worst=0.99 * share))["E_vib_below_floor"] is False
+    assert reduce(result.scene, replace(result, worst=1.01 * share)).energy.below_floor is True
+    assert reduce(result.scene, replace(result, worst=0.99 * share)).energy.below_floor is False
 
 
 def test_a_step_changes_momentum_by_the_contact_impulse_alone():

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import solid_scenes
 
+from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import arms, projectile
 from fem_impact.plan.plan import specify
 from fem_impact.run.solid import reduce
@@ -60,11 +61,11 @@ def test_momentum_angular_momentum_and_energy_balance(sliding):
 def test_a_stiff_oblique_strike_is_that_of_rigid_theory():
     """Elastic, frictionless: e = 1 and Omega = (1 + e) |v_n| d_c / (k^2 + d_c^2)."""
     found = outcome(*ELASTIC, length=0.08)
-    assert found["e_edge"] == pytest.approx(1.0, abs=0.005)
+    assert found.restitution.edge.e == pytest.approx(1.0, abs=0.005)
     stated = solid_scenes.scene(*ELASTIC, length=0.08)
-    d_c, k2 = arms(stated)[0], found["k_squared_m2"]
-    assert found["Omega_rad_per_s"] == pytest.approx(
-        (1 + found["e_edge"]) * 1.5 * d_c / (k2 + d_c**2), rel=5e-3
+    d_c, k2 = arms(stated)[0], found.motion.k_squared
+    assert found.motion.Omega == pytest.approx(
+        (1 + found.restitution.edge.e) * 1.5 * d_c / (k2 + d_c**2), rel=5e-3
     )
 
 
@@ -81,19 +82,19 @@ def test_the_full_rod_comes_near_where_its_periods_are_short():
     """T1/tau = 0.3: 1.2 millesimals of E_0 are left as vibration, 1.4 on a mesh of half the size."""
     full = outcome("vibration", *YIELDING, length=0.04)
     rigid = outcome(*YIELDING, length=0.04)
-    assert full["E_vib_over_E_0"] < 2e-3
-    assert rigid["e_edge"] == pytest.approx(full["e_edge"], abs=0.005)
-    assert rigid["mu"] == pytest.approx(full["mu"], abs=0.005)
-    assert rigid["Omega_rad_per_s"] == pytest.approx(full["Omega_rad_per_s"], rel=0.02)
-    assert rigid["E_plastic_rod_over_E_0"] == pytest.approx(full["E_plastic_rod_over_E_0"], rel=0.02)
+    assert full.energy.vibration < 2e-3
+    assert rigid.restitution.edge.e == pytest.approx(full.restitution.edge.e, abs=0.005)
+    assert rigid.restitution.mu == pytest.approx(full.restitution.mu, abs=0.005)
+    assert rigid.motion.Omega == pytest.approx(full.motion.Omega, rel=0.02)
+    assert rigid.energy.plastic_rod == pytest.approx(full.energy.plastic_rod, rel=0.02)
 
 
 def test_vibration_is_null_with_its_reason(sliding):
     found = reduce(sliding.scene, sliding)
-    assert found["E_vib_over_E_0"] is None
-    assert "vibration effect is off" in found.reason("E_vib_over_E_0")
+    assert isinstance(found.energy.vibration, Unknown)
+    assert "vibration effect is off" in found.energy.vibration.reason
     shares = ("E_r", "W_friction", "E_locked_rod", "W_closing", "residual")
-    assert sum(found[f"{name}_over_E_0"] for name in shares) == pytest.approx(1.0, abs=1e-5)
+    assert sum(found.to_dict()[f"{name}_over_E_0"] for name in shares) == pytest.approx(1.0, abs=1e-5)
 
 
 def test_held_points_turn_as_one_body():

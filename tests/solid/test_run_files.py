@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fem_impact.files.fields_read import read_fields
+from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
@@ -30,9 +31,9 @@ def run(tmp_path_factory):
 
 def test_the_run_says_that_it_was_cut_off(run):
     _, outcome, told = run
-    assert outcome["finished"] is False
-    assert outcome["stopped_because"].startswith("Reached max_time = 0.1 ms")
-    assert outcome["E_vib_check_over_E_0"] is None
+    assert outcome.validity.finished is False
+    assert outcome.validity.stopped_because.startswith("Reached max_time = 0.1 ms")
+    assert isinstance(outcome.energy.vibration_check, Unknown)
     assert told[-1].contact.endswith("nodes touch") and abs(told[-1].energy_drift) < 1e-5
 
 
@@ -46,15 +47,15 @@ def test_what_gravity_adds_closes_the_sum():
     outcome = simulate(replace_all(load("quick"), slow))
     parts = ("E_r", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "E_locked_rod")
     parts += ("E_locked_barrier", "W_closing", "residual")
-    total = sum(outcome[f"{part}_over_E_0"] for part in parts)
-    assert outcome["W_gravity_over_E_0"] > 0.01
-    assert total == pytest.approx(1 + outcome["W_gravity_over_E_0"], abs=1e-5)
+    total = sum(outcome.to_dict()[f"{part}_over_E_0"] for part in parts)
+    assert outcome.energy.gravity > 0.01
+    assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-5)
 
 
 def test_the_outcome_reads_back(run):
     out, outcome, _ = run
     assert Outcome.read(out / "outcome.json") == outcome
-    assert load(out / "scene.toml").digest() == outcome["scene_digest"]
+    assert load(out / "scene.toml").digest() == outcome.provenance.scene_digest
 
 
 def test_accounts_add_up_to_E_0_in_every_row(run):
@@ -62,31 +63,29 @@ def test_accounts_add_up_to_E_0_in_every_row(run):
     table = read_table(out / "history.csv")
     total = sum(table.numbers(name) for name in ACCOUNTS)
     assert len(total) > 50
-    assert total == pytest.approx(outcome["E_0_J"], rel=1e-12)
-    assert np.abs(table.numbers("residual_J")).max() < 1e-5 * outcome["E_0_J"]
+    assert total == pytest.approx(outcome.energy.E_0, rel=1e-12)
+    assert np.abs(table.numbers("residual_J")).max() < 1e-5 * outcome.energy.E_0
     for name in ("W_friction_J", "E_plastic_rod_J", "E_plastic_barrier_J", "W_radiated_J"):
-        assert (np.diff(table.numbers(name)) > -1e-9 * outcome["E_0_J"]).all(), name
+        assert (np.diff(table.numbers(name)) > -1e-9 * outcome.energy.E_0).all(), name
 
 
 def test_the_last_row_is_the_outcome(run):
     out, outcome, _ = run
     table = read_table(out / "history.csv")
     for column, key in (("W_friction_J", "W_friction"), ("E_plastic_barrier_J", "E_plastic_barrier")):
-        share = table.numbers(column)[-1] / outcome["E_0_J"]
-        assert share == pytest.approx(outcome[f"{key}_over_E_0"], rel=0.02), column
+        share = table.numbers(column)[-1] / outcome.energy.E_0
+        assert share == pytest.approx(outcome.to_dict()[f"{key}_over_E_0"], rel=0.02), column
 
 
 def test_force_and_contacts_carry_the_same_impulse(run):
     out, outcome, _ = run
     table = read_table(out / "history.csv")
     t = table.numbers("time_s")
-    (contact,) = outcome["contacts"]
-    assert read_table(out / "contacts.csv").numbers("impulse_n_Ns") == pytest.approx(
-        [contact["impulse_n_Ns"]]
-    )
+    (contact,) = outcome.contact.intervals
+    assert read_table(out / "contacts.csv").numbers("impulse_n_Ns") == pytest.approx([contact.impulse_n])
     for axis in "nt":
         impulse = (table.numbers(f"force_{axis}_N")[1:] * np.diff(t)).sum()
-        assert impulse == pytest.approx(contact[f"impulse_{axis}_Ns"], rel=0.02)
+        assert impulse == pytest.approx(getattr(contact, f"impulse_{axis}"), rel=0.02)
 
 
 def test_fields_hold_both_bodies_in_motion(run):
@@ -95,12 +94,13 @@ def test_fields_hold_both_bodies_in_motion(run):
     last = len(fields.times) - 1
     assert len(fields.times) >= 8 and (np.diff(fields.times) > 0).all()
     body = np.asarray(fields.static["body"])
-    assert (body == 0).sum() == outcome["elements_rod"] and (body == 1).sum() == outcome["elements_barrier"]
+    counts = [(body == which).sum() for which in (0, 1)]
+    assert counts == [outcome.cost.elements_rod, outcome.cost.elements_barrier]
     assert np.abs(fields.point_data("displacement", 0)).max() == 0.0
     rod = np.unique(fields.cells[body == 0])
     start = fields.point_data("velocity", 0)[rod]
-    assert start[:, 2] == pytest.approx(outcome["v_n_m_per_s"], rel=1e-6)
-    assert start[:, 0] == pytest.approx(outcome["v_t_m_per_s"], rel=1e-6)
+    assert start[:, 2] == pytest.approx(outcome.motion.v_n, rel=1e-6)
+    assert start[:, 0] == pytest.approx(outcome.motion.v_t, rel=1e-6)
     strain, stress = fields.cell_data("plastic_strain", last), fields.cell_data("mises", last)
     assert 0 < strain[body == 0].max() < 0.01  # the harder rod hardly yields
     assert strain[body == 1].max() > 0.01

@@ -9,6 +9,7 @@ import solid_scenes as scenes
 
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
+from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import specify
 from fem_impact.run.solid import reduce
@@ -42,22 +43,22 @@ def test_elastic_frictionless_long_rod_touches_twice_and_grazes_between(elastic)
     """Reference: e .826, .0134 N s in the graze (modes, Hertz); without it e .851, E_vib .060 (CalculiX)."""
     found = _outcome(elastic)
     assert elastic.finished
-    assert found["e_edge"] == pytest.approx(0.826, abs=0.02)
-    assert 0.060 < found["E_vib_over_E_0"] < 0.075
-    first, graze, second = found["contacts"]
-    assert first["end_s"] == pytest.approx(125e-6, abs=15e-6)
-    assert second["start_s"] == pytest.approx(348e-6, abs=15e-6)
-    assert first["impulse_n_Ns"] == pytest.approx(0.37, abs=0.03)
-    assert graze["impulse_n_Ns"] == pytest.approx(0.0134, abs=0.01)
-    assert second["impulse_n_Ns"] == pytest.approx(0.26, abs=0.03)
+    assert found.restitution.edge.e == pytest.approx(0.826, abs=0.02)
+    assert 0.060 < found.energy.vibration < 0.075
+    first, graze, second = found.contact.intervals
+    assert first.end == pytest.approx(125e-6, abs=15e-6)
+    assert second.start == pytest.approx(348e-6, abs=15e-6)
+    assert first.impulse_n == pytest.approx(0.37, abs=0.03)
+    assert graze.impulse_n == pytest.approx(0.0134, abs=0.01)
+    assert second.impulse_n == pytest.approx(0.26, abs=0.03)
 
 
 def test_rigid_and_vibrating_parts_are_all_the_energy(elastic):
     found = _outcome(elastic)
     parts = ("E_r", "E_vib_check", "W_closing")
-    assert sum(found[f"{part}_over_E_0"] for part in parts) == pytest.approx(1, abs=1e-5)
-    assert found["mu"] == pytest.approx(0.0, abs=1e-7)
-    assert abs(found["E_locked_rod_over_E_0"]) < 3e-4
+    assert sum(found.to_dict()[f"{part}_over_E_0"] for part in parts) == pytest.approx(1, abs=1e-5)
+    assert found.restitution.mu == pytest.approx(0.0, abs=1e-7)
+    assert abs(found.energy.locked_rod) < 3e-4
 
 
 @pytest.mark.parametrize("which", ["elastic", "yielding"])
@@ -97,33 +98,33 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
 def test_modes_hold_all_but_little_of_the_vibration(which, most, request):
     """The check knows no modes: it holds what they do, and what lies above the highest of them."""
     found = _outcome(request.getfixturevalue(which))
-    above = found["E_vib_check_over_E_0"] - found["E_vib_over_E_0"]
-    assert -1e-6 * found["E_vib_over_E_0"] < above < most
+    above = found.energy.vibration_check - found.energy.vibration
+    assert -1e-6 * found.energy.vibration < above < most
 
 
 def test_vibration_above_the_modes_is_told_where_it_is_not_small(elastic):
-    assert not [words for words in _outcome(elastic)["warnings"] if "E_vib lacks" in words]
+    assert not [words for words in _outcome(elastic).validity.warnings if "E_vib lacks" in words]
     kinetic, strain = elastic.vibration_check
     ringing = replace(elastic, vibration_check=(kinetic + 8e-3 * elastic.E_0, strain))
-    (words,) = (words for words in _outcome(ringing)["warnings"] if "E_vib lacks" in words)
+    (words,) = (words for words in _outcome(ringing).validity.warnings if "E_vib lacks" in words)
     assert "lacks 8.0e-03 of E_0 that vibrates above its 40 modes" in words
 
 
 def test_locked_in_stress_is_not_vibration(yielding):
     found = _outcome(yielding)
-    assert found["E_locked_rod_over_E_0"] > 1.5 * found["E_vib_over_E_0"] > 0
-    assert found["E_vib_over_E_0"] < 0.01
+    assert found.energy.locked_rod > 1.5 * found.energy.vibration > 0
+    assert found.energy.vibration < 0.01
 
 
 def test_yielding_rod_and_plate(yielding):
     found = _outcome(yielding)
-    assert 0.25 < found["e_edge"] < 0.45
-    assert 0.45 < found["mu"] < 0.62
-    assert found["E_plastic_barrier_over_E_0"] > found["E_plastic_rod_over_E_0"] > 0.03
-    assert found["W_friction_over_E_0"] > 0.1
-    assert 0 < found["W_radiated_over_E_0"] < 0.01
-    assert abs(found["W_closing_over_E_0"]) < 1e-3
-    lost = 1 - found["E_r_over_E_0"] - found["E_vib_check_over_E_0"]
+    assert 0.25 < found.restitution.edge.e < 0.45
+    assert 0.45 < found.restitution.mu < 0.62
+    assert found.energy.plastic_barrier > found.energy.plastic_rod > 0.03
+    assert found.energy.friction > 0.1
+    assert 0 < found.energy.radiated < 0.01
+    assert abs(found.energy.closing) < 1e-3
+    lost = 1 - found.energy.rigid - found.energy.vibration_check
     parts = [
         "W_friction",
         "E_plastic_rod",
@@ -133,15 +134,15 @@ def test_yielding_rod_and_plate(yielding):
         "W_radiated",
         "W_closing",
     ]
-    assert sum(found[f"{p}_over_E_0"] for p in parts) == pytest.approx(lost, abs=1e-5)
+    assert sum(found.to_dict()[f"{p}_over_E_0"] for p in parts) == pytest.approx(lost, abs=1e-5)
 
 
 @pytest.mark.parametrize("f", [0.1, 0.3])
 def test_sliding_rod_has_the_impulse_ratio_of_its_friction(f):
     result = scenes.run(*SLIDE, length=0.08, v_n=-1.0, v_t=-8.0, f=f)
     found = _outcome(result)
-    assert found["mu"] == pytest.approx(f, rel=0.01)
-    worked = found["W_friction_over_E_0"] * result.E_0
+    assert found.restitution.mu == pytest.approx(f, rel=0.01)
+    worked = found.energy.friction * result.E_0
     slide = [-result.scene.impact.v_t, -result.motion.V_t]
     assert 0 < worked < f * result.model.book.impulse[1] * 2 * max(slide) * 1.5
     assert result.worst < 1e-6 * result.E_0
@@ -169,12 +170,12 @@ def test_stiff_short_rod_is_rigid_theory(angle):
     rod = projectile(result.scene)
     assert rod.gamma < 10
     found = _outcome(result)
-    d_c, k2 = found["d_c_impulse_m"], found["k_squared_m2"]
-    assert found["e_impulse"] == pytest.approx(1.0, abs=3e-3)
+    d_c, k2 = found.restitution.impulse.d_c, found.motion.k_squared
+    assert found.restitution.impulse.e == pytest.approx(1.0, abs=3e-3)
     assert d_c == pytest.approx(float(rod.arms(angle)[0]), abs=4e-4)  # half a cell
-    assert found["Omega_rad_per_s"] == pytest.approx(2 * 0.5 * d_c / (k2 + d_c**2), rel=3e-3)
-    assert found["V_t_m_per_s"] == pytest.approx(-0.4, abs=1e-9)
-    assert found["E_r_over_E_0"] == pytest.approx(1.0, abs=2e-3)
+    assert found.motion.Omega == pytest.approx(2 * 0.5 * d_c / (k2 + d_c**2), rel=3e-3)
+    assert found.motion.V_t == pytest.approx(-0.4, abs=1e-9)
+    assert found.energy.rigid == pytest.approx(1.0, abs=2e-3)
 
 
 def test_spin_before_the_impact_enters_with_its_sign():
@@ -315,8 +316,10 @@ def test_a_contact_in_the_middle_of_a_cell_is_nearest_to_that_of_finer_cells(mon
     middle = _outcome(scenes.run(*PLANE, "friction", **stated))
     monkeypatch.setattr(built, "build_geometry", _between(0.48))
     on_node = _outcome(solve(scenes.scene(*PLANE, "friction", **stated)))
-    assert abs(middle["e_edge"] - finer["e_edge"]) < 0.02 < abs(on_node["e_edge"] - finer["e_edge"])
-    assert abs(middle["mu"] - finer["mu"]) < 0.01 < abs(on_node["mu"] - finer["mu"])
+    near, far = (abs(run.restitution.edge.e - finer.restitution.edge.e) for run in (middle, on_node))
+    assert near < 0.02 < far
+    near, far = (abs(run.restitution.mu - finer.restitution.mu) for run in (middle, on_node))
+    assert near < 0.01 < far
 
 
 def test_gravity_is_an_account_of_its_own():
@@ -332,8 +335,8 @@ def test_gravity_is_an_account_of_its_own():
     height = risen[2] * np.cos(pi / 4) + risen[0] * np.sin(pi / 4)
     assert on.accounts["gravity"] == pytest.approx(weight * height, rel=1e-6)
     a, b = _outcome(off), _outcome(on)
-    assert b["V_n_m_per_s"] == pytest.approx(a["V_n_m_per_s"], abs=5e-3)
-    assert b["V_t_m_per_s"] == pytest.approx(-0.3, abs=1e-4)
+    assert b.motion.V_n == pytest.approx(a.motion.V_n, abs=5e-3)
+    assert b.motion.V_t == pytest.approx(-0.3, abs=1e-4)
 
 
 def test_a_run_out_of_time_says_so():
@@ -341,8 +344,8 @@ def test_a_run_out_of_time_says_so():
     assert not result.finished
     assert "max_time" in result.reason
     found = _outcome(result)
-    assert found["E_vib_check_over_E_0"] is None
-    assert found.reason("E_vib_check_over_E_0")
+    assert isinstance(found.energy.vibration_check, Unknown)
+    assert found.energy.vibration_check.reason
     assert replace(result, finished=True).finished
 
 

@@ -46,11 +46,11 @@ def test_a_run_tells_friction_and_skin_together():
         "vibration", "friction", "rod-plasticity", "barrier-elastoplastic", length=0.08, v_n=-2.1, v_t=-2.1
     )
     found = reduce(result.scene, result)
-    friction, plate = found["W_friction_over_E_0"], found["E_plastic_barrier_over_E_0"]
-    assert 0.05 * plate < found["W_skin_over_E_0"] - friction < 0.5 * plate
+    friction, plate = found.energy.friction, found.energy.plastic_barrier
+    assert 0.05 * plate < found.energy.skin - friction < 0.5 * plate
 
 
 def test_an_elastic_barrier_has_no_sheared_skin():
     result = scenes.run("vibration", "friction", "barrier-elastic", length=0.08, v_n=-1.0, v_t=-1.0)
     found = reduce(result.scene, result)
-    assert found["W_skin_over_E_0"] == found["W_friction_over_E_0"] > 0.0
+    assert found.energy.skin == found.energy.friction > 0.0

@@ -55,7 +55,7 @@ def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
 
 def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
-    e = [reduce(s, solve(s))["e_edge"] for s in (still, still.replace("accuracy.grid_shift", 0.5))]
+    e = [reduce(s, solve(s)).restitution.edge.e for s in (still, still.replace("accuracy.grid_shift", 0.5))]
     assert 0 < abs(e[1] - e[0]) < 0.002
 
 
@@ -83,8 +83,8 @@ def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75
     few, many = (reduce(scene, found) for found in (part, whole))
     for key in ("e_edge", "mu", "E_vib_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0"):
-        assert few[key] == pytest.approx(many[key], abs=2e-4)
-    assert few["e_edge"] != many["e_edge"]
+        assert few.to_dict()[key] == pytest.approx(many.to_dict()[key], abs=2e-4)
+    assert few.restitution.edge.e != many.restitution.edge.e
 
 
 def test_without_friction_no_row_is_thin_whatever_is_on():
@@ -108,8 +108,8 @@ def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
     heavy = simulate(scene)
     monkeypatch.setattr("fem_impact.solid.build.HEAVY", 0.0)
     true = simulate(scene)
-    assert heavy["steps"] < 0.3 * true["steps"]
+    assert heavy.cost.steps < 0.3 * true.cost.steps
     for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0", "E_plastic_barrier_over_E_0"):
-        assert heavy[key] == pytest.approx(true[key], abs=1e-3)
-    assert heavy["Omega_rad_per_s"] == pytest.approx(true["Omega_rad_per_s"], rel=5e-3)
-    assert heavy["e_edge"] != true["e_edge"]
+        assert heavy.to_dict()[key] == pytest.approx(true.to_dict()[key], abs=1e-3)
+    assert heavy.motion.Omega == pytest.approx(true.motion.Omega, rel=5e-3)
+    assert heavy.restitution.edge.e != true.restitution.edge.e

@@ -72,7 +72,7 @@ def test_the_start_and_the_step_of_a_case_are_its_own():
 def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     assert run_case("upright-edge", tmp_path).passed
     outcome = Outcome.read(tmp_path / "upright-edge" / "outcome.json")
-    assert not [words for words in outcome["warnings"] if "outside its fine zone" in words]
+    assert not [words for words in outcome.validity.warnings if "outside its fine zone" in words]
     upright, tilted = (replace(CASES[name].scene(), id="x") for name in ("upright-edge", "angle-17"))
     assert face_reach(upright, 6.5e-3) == pytest.approx(13e-3)
     assert face_reach(tilted, 6.5e-3) == 0.0

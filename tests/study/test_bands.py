@@ -2,43 +2,59 @@
 
 import numpy as np
 import pytest
-from fem_impact.study.bands import EXTRA, bands, limits
 from study_fakes import outcome
 
+from fem_impact.cost.limits import LOWEST, mesh_limits, mesh_means, pair_limit
 from fem_impact.outcome.record import KEYS
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.study.compare import BANDED, MEASURED, UNSEEN, compare, text_table, verdict
+from fem_impact.study.compare import MEASURED, UNSEEN, compare, text_table, verdict
 from rigid.experiments import Statistic, measured_set
 
 
 @pytest.mark.parametrize("ratio", [2.0, 1.5, 3.0])
-def test_bands_are_exact_for_first_order(ratio):
+@pytest.mark.parametrize("order", [LOWEST, 1.0, 1.5, 2.0, 4.0])
+def test_the_band_holds_the_limit_of_every_order_from_the_lowest(ratio, order):
     h = 0.3e-3
-    fine = outcome(tip_size_m=h, mu=0.5 + 200 * h, e_edge=0.3 - 50 * h, e_paper=None)
-    coarse = outcome(tip_size_m=ratio * h, mu=0.5 + 200 * ratio * h, e_edge=0.3 - 50 * ratio * h)
-    found = bands(fine, coarse)
-    assert found["mu"] == pytest.approx(200 * h)
-    assert found["e_edge"] == pytest.approx(50 * h)
-    assert "e_paper" not in found
-
-
-@pytest.mark.parametrize("ratio", [2.0, 1.5])
-def test_limits_are_exact_for_first_order(ratio):
     fine, coarse = (
-        outcome(tip_size_m=h, mu=0.5 + 200 * h, e_edge=0.3 - 50 * h) for h in (3e-4, ratio * 3e-4)
+        outcome(tip_size_m=size, mu=0.5 + 0.1 * (size / h) ** order, e_edge=0.3 - 0.02 * (size / h) ** order)
+        for size in (h, ratio * h)
     )
-    found = limits(fine, coarse)
-    assert (found["mu"], found["e_edge"]) == pytest.approx((0.5, 0.3))
+    limits, bands = mesh_limits([fine], [coarse])
+    for key, limit in (("mu", 0.5), ("e_edge", 0.3)):
+        assert abs(limits[key] - limit) <= bands[key] * (1 + 1e-9)
 
 
-def test_bands_are_no_narrower_than_the_error_of_second_order():
-    h = 0.3e-3
-    found = bands(outcome(tip_size_m=h, mu=1e6 * h**2), outcome(tip_size_m=2 * h, mu=1e6 * 4 * h**2))
-    assert found["mu"] >= 1e6 * h**2
+def test_the_band_reaches_from_the_finer_mesh_to_the_lowest_order():
+    fine, coarse = outcome(tip_size_m=3e-4, e_edge=0.30), outcome(tip_size_m=6e-4, e_edge=0.36)
+    limits, bands = mesh_limits([fine], [coarse])
+    assert limits["e_edge"] + bands["e_edge"] == pytest.approx(0.30)
+    assert limits["e_edge"] - bands["e_edge"] == pytest.approx(0.30 - 0.06 / (2**LOWEST - 1))
+    assert limits["e_edge"] == pytest.approx(0.256, abs=5e-4)
+    assert bands["e_edge"] == pytest.approx(0.044, abs=5e-4)
 
 
-def test_every_banded_quantity_exists_in_the_record():
-    assert set(BANDED) | set(EXTRA) <= {key.name for key in KEYS}
+def test_what_one_mesh_does_not_know_has_no_limit():
+    limits, bands = mesh_limits([outcome(e_paper=None)], [outcome(tip_size_m=8e-4)])
+    assert "e_paper" not in limits
+    assert set(limits) == set(bands) == {key.name for key in KEYS if key.banded} - {"e_paper"}
+
+
+def test_shares_keep_their_sum_in_the_limit():
+    """The rule is linear, so what adds up on both meshes adds up in the limit."""
+    fine = outcome(E_r_over_E_0=0.7, W_friction_over_E_0=0.3)
+    coarse = outcome(tip_size_m=8e-4, E_r_over_E_0=0.6, W_friction_over_E_0=0.4)
+    limits, _ = mesh_limits([fine], [coarse])
+    assert limits["E_r_over_E_0"] + limits["W_friction_over_E_0"] == pytest.approx(1.0)
+
+
+def test_places_of_the_grid_widen_the_band_by_their_scatter():
+    fine = [outcome(mu=mu) for mu in (0.50, 0.52)]
+    coarse = [outcome(mu=0.56, tip_size_m=8e-4)] * 2
+    limits, bands = mesh_limits(fine, coarse)
+    limit, half = pair_limit(0.51, 0.56, 2.0)
+    assert limits["mu"] == pytest.approx(limit)
+    assert bands["mu"] > half
+    assert mesh_means(fine)["mu"] == pytest.approx(0.51)
 
 
 # ---------------------------------------------------------------- comparison
@@ -93,8 +109,8 @@ def test_vibration_below_its_floor_says_so():
     assert found["radiated/E_0"] == "not measurable by camera"
 
 
-def test_bands_reach_the_rows():
-    record = outcome(e_paper=0.3, E_ln_paper_over_E_0=0.4, E_lt_paper_over_E_0=0.3, bands={"e_paper": 0.07})
-    found = {r["quantity"]: r["band"] for r in compare(record)}
-    assert found["e"] == 0.07
-    assert found["mu"] is None
+def test_limits_and_bands_reach_the_rows():
+    record = outcome(e_paper=0.3, mesh_limit={"e_paper": 0.32}, mesh_band={"e_paper": 0.07})
+    found = {r["quantity"]: (r["model"], r["band"]) for r in compare(record)}
+    assert found["e"] == (0.32, 0.07)
+    assert found["mu"] == (0.5, None)

@@ -18,8 +18,8 @@ def test_ploughing_does_not_hang_on_the_mesh():
         {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
     )
     runs = [simulate(on_mesh(scene, mesh)) for mesh in FAMILY[:3]]
-    ploughed = np.array([run["mu"] - F for run in runs])
+    ploughed = np.array([run.restitution.mu - F for run in runs])
     assert (ploughed > 0.03).all()
     assert np.ptp(ploughed) < 0.01
-    e = np.array([run["e_paper"] for run in runs])
+    e = np.array([run.restitution.paper.e for run in runs])
     assert np.ptp(e) < 0.03

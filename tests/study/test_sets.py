@@ -6,6 +6,7 @@ from dataclasses import replace
 import pytest
 from study_fakes import outcome
 
+from fem_impact.cost.limits import LOWEST
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import NullMeter
@@ -39,12 +40,15 @@ def study(out, *ids, broken=(), quick=True):
 def test_a_set_is_two_meshes_and_a_table(tmp_path):
     found = study(tmp_path, "t5b")
     (row,) = found.document["rows"]
-    assert row["bands"]["e_paper"] == pytest.approx(100 * 0.6e-3)
+    half = 0.5 * 100 * 0.6e-3 / (2**LOWEST - 1)
+    assert row["mesh_band"]["e_paper"] == pytest.approx(half)
+    assert row["mesh_limit"]["e_paper"] == pytest.approx(row["e_paper"] - half)
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
     assert (tmp_path / "comparison.csv").is_file()
     assert "t5b" in found.text
     assert found.notes == ["no film"]
-    assert Outcome.read(tmp_path / "t5b" / "outcome.json")["bands"]["e_paper"] == pytest.approx(0.06)
+    stored = Outcome.read(tmp_path / "t5b" / "outcome.json")
+    assert stored.validity.mesh_band["e_paper"] == pytest.approx(half)
 
 
 def test_the_study_runs_its_jobs_through_the_store(tmp_path, monkeypatch):
@@ -69,8 +73,8 @@ def test_a_failing_job_is_a_row(tmp_path):
 
 def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(tmp_path):
     (row,) = study(tmp_path, "t5b", broken=("t5b-coarse",)).document["rows"]
-    assert row["bands"] is None
-    assert "coarser mesh failed" in row["reasons"]["bands"]
+    assert row["mesh_limit"] is row["mesh_band"] is None
+    assert "coarser mesh failed" in row["reasons"]["mesh_band"]
 
 
 def test_a_first_look_is_one_set_a_rod(tmp_path):
