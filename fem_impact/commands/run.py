@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable, Iterable
-from functools import partial
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,17 +21,19 @@ from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
+from fem_impact.options import RunOptions
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import keys_of
-from fem_impact.plan.limits import validity
+from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import shipped, source_of
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
-    from fem_impact.outcome.record import Outcome
+    pass
 
 __all__ = ["check", "run", "scenes"]
 
@@ -45,18 +46,13 @@ def run(options: Options) -> int:
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
+    from fem_impact.cost.to_target import simulate
     from fem_impact.files.run_directory import earlier
 
     meter, before = chosen_meter(options), earlier(out)
     try:
-        outcome = _simulation(scene)(
-            scene,
-            fidelity=options.fidelity or None,
-            out=out,
-            progress=meter,
-            resume=options.resume,
-            checkpoint_s=options.checkpoint,
-        )
+        run_options = RunOptions(out, meter, options.resume, options.checkpoint)
+        outcome = simulate(scene, options.fidelity or None, run_options, cores())
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
     finally:
@@ -69,24 +65,13 @@ def run(options: Options) -> int:
     return 0 if outcome.validity.finished else _stopped(outcome.validity.stopped_because, out)
 
 
-def _simulation(scene: Scene) -> Callable[..., Outcome]:
-    """Return what computes the scene: a scene with a target runs two meshes side by side on two cores."""
-    if scene.accuracy.target is None:
-        from fem_impact.run.simulate import simulate
-
-        return simulate
-    from fem_impact.cost.to_target import simulate_to_target
-
-    return partial(simulate_to_target, workers=cores())
-
-
 def _say_plan(scene: Scene, options: Options) -> None:
     """Before the work: what the measured costs chose for the error that the scene allows."""
     if scene.accuracy.target is None:
         return
-    from fem_impact.cost.to_target import plan
+    from fem_impact.cost.to_target import choose_setting
 
-    sentence = plan(scene, options.fidelity or None, cores()).sentence
+    sentence = choose_setting(scene, options.fidelity or None, cores()).sentence
     if not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 
@@ -107,7 +92,7 @@ def _say_kept(out: Path, before: list[Path], options: Options) -> None:
 
 def _default_out(scene: Scene, options: Options) -> Path:
     """Return results/ID, with the digest's start when the scene was changed, and the fidelity if reduced."""
-    name = f"{scene.id}-{scene.digest()[:8]}" if options.changes else scene.id
+    name = f"{scene.id}-{digest(scene)[:8]}" if options.changes else scene.id
     return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
 
 
@@ -144,22 +129,20 @@ def _listed(scene: Scene) -> dict[str, Any]:
         "title": scene.title,
         "speed": f"{speed:.2f} m/s",
         "measured": scene.measured,
-        "digest": scene.digest(),
+        "digest": digest(scene),
     }
 
 
 def _statement(scene: Scene) -> dict[str, Any]:
-    from fem_impact.plan.choose import choices, neglected
-    from fem_impact.plan.limits import coarse_tip
-
+    planned = plan(scene)
     return {
-        "scene": scene.to_dict(),
-        "digest": scene.digest(),
+        "scene": to_dict(scene),
+        "digest": digest(scene),
         "sources": _sources(scene),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [_flat(choice.told(choice.share)) for choice in choices(scene)],
-        "validity": list(validity(scene)),
-        "warnings": [*neglected(scene), *coarse_tip(scene)],
+        "effects": [_flat(choice.told(choice.share)) for choice in planned.choices],
+        "validity": list(planned.validity),
+        "warnings": list(planned.warnings),
     }
 
 
@@ -178,14 +161,13 @@ def _sources(scene: Scene) -> dict[str, str]:
 
 
 def _readable(scene: Scene, statement: dict[str, Any]) -> str:
-    from fem_impact.plan.choose import choices
 
-    lines = [scene.to_toml().rstrip(), "", "Sources"]
+    lines = [to_toml(scene).rstrip(), "", "Sources"]
     lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Effects"]
-    lines += [line for choice in choices(scene) for line in _effect_lines(choice.told(choice.share))]
+    lines += [line for choice in plan(scene).choices for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
     lines += ["", "Validity"]
     inside = "inside the measured range of speed, angle, rod, steels and surfaces"

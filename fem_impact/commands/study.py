@@ -57,12 +57,16 @@ def _report(options: Options, out: Path) -> int:
 def _study(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
     from fem_impact.study.catalogue import run_study
 
-    result = run_study(options.name, request, meter, executor)
+    result, notes = run_study(options.name, request, meter, executor), []
+    if result.runs:
+        from fem_impact.report.present import present
+
+        notes = present(result.runs, request.out, meter)
     meter.close()
     if options.json:
-        print_json({**result.document, "notes": [*result.document.get("notes", []), *result.notes]})
+        print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
     else:
-        sys.stderr.writelines(f"note: {note}\n" for note in result.notes)
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
         sys.stdout.write(f"{result.text.rstrip()}\nresults: {request.out}\n")
     return RunError.exit_code if result.document["failures"] else 0
 

@@ -19,6 +19,7 @@ from fem_impact.jobs.job import Failure, Job, compute
 from fem_impact.jobs.run import Results, run_jobs, stored
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.scene.write import to_dict
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -63,7 +64,7 @@ class CostStudy:
             "created_utc": utc_now(),
             "versions": installed_versions(),
             "machine": yardsticks(),
-            "scene": self.scene.to_dict(),
+            "scene": to_dict(self.scene),
             "quantities": self.quantities,
             "settings": [setting.to_dict() for setting in self.settings],
             "failures": self.failures,

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Key, Num, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.plan.choose import active
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -80,7 +81,7 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
         For one that no run of the ``scene`` knows.
     """
     wanted = tuple(names)
-    rigid = scene is not None and "vibration" not in scene.active
+    rigid = scene is not None and "vibration" not in active(scene)
     if rigid and "E_vib" in wanted:
         raise SceneError(
             "is not known here: the vibration effect is off.",

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
 from fem_impact.jobs.job import Job
+from fem_impact.plan.choose import active
 from fem_impact.scene.shipped import replace_all
 
 if TYPE_CHECKING:
@@ -94,7 +95,9 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
     """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
     places = FEWER_PLACES if mesh == FINEST else PLACES
-    return [on_mesh(scene, mesh, place) for place in places[: 1 if "barrier-rigid" in scene.active else None]]
+    return [
+        on_mesh(scene, mesh, place) for place in places[: 1 if "barrier-rigid" in active(scene) else None]
+    ]
 
 
 def _job(scene: Scene, name: str, fidelity: str) -> Job:
@@ -131,10 +134,10 @@ def _pair(scene: Scene, fine: Mesh, coarse: Mesh) -> Setting:
 
 def _without(scene: Scene) -> list[Setting]:
     """Return the scene with each effect left out that can be, and with a simpler barrier."""
-    optional = [name for name in scene.active if name not in BARRIERS]
-    fewer = {f"without {name}": grounded([e for e in scene.active if e != name]) for name in optional}
-    if "barrier-elastoplastic" in scene.active:
-        softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in scene.active]
+    optional = [name for name in active(scene) if name not in BARRIERS]
+    fewer = {f"without {name}": grounded([e for e in active(scene) if e != name]) for name in optional}
+    if "barrier-elastoplastic" in active(scene):
+        softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in active(scene)]
         fewer["with an elastic barrier"] = grounded(softer)
     return [
         _solid(replace_all(scene, {"effects": names}), PLAIN, "effect", words)

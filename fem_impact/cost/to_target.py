@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
-from importlib.resources import files
+from functools import partial
 from itertools import islice, zip_longest
 from math import hypot, inf, log, sqrt
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.cost.judge import Judged, cheapest, wall_seconds, worst
 from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
@@ -19,18 +17,25 @@ from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
 from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import approach, projectile, sliding
-from fem_impact.plan.measured import yardsticks
-from fem_impact.run.simulate import simulate
+from fem_impact.plan.choose import active
+from fem_impact.plan.measured import summary, yardsticks
+from fem_impact.run import simulate as run
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Material, Scene
-from fem_impact.solid.checkpoint import INTERVAL
 
-if TYPE_CHECKING:
-    from fem_impact.progress import Progress
-
-__all__ = ["NEARNESS", "SUMMARY", "Plan", "nearest", "plan", "simulate_to_target", "summarise", "summary"]
+__all__ = [
+    "NEARNESS",
+    "SUMMARY",
+    "ChosenSetting",
+    "choose_setting",
+    "nearest",
+    "simulate",
+    "summarise",
+]
 
 
 SUMMARY = "fem-impact/cost-summary/2"
@@ -51,7 +56,7 @@ NEARNESS = {
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class ChosenSetting:
     """A chosen setting; expected error is relative, expected wall time in s on this machine."""
 
     target: float
@@ -86,13 +91,6 @@ def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
     return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
 
 
-@cache
-def summary() -> dict[str, Any]:
-    """Return the costs that ship with the package."""
-    text = files("fem_impact.cost").joinpath("data", "summary.json").read_text(encoding="utf-8")
-    return dict(json.loads(text))
-
-
 def _features(scene: Scene) -> dict[str, float]:
     rod, impact = scene.projectile, scene.impact
     speed, radius = hypot(impact.v_n, impact.v_t), sqrt(projectile(scene).k2)
@@ -104,9 +102,9 @@ def _features(scene: Scene) -> dict[str, float]:
         "approach of the contact point": log(approach(scene)),
         "slope of that approach": sliding(scene) / approach(scene),
         "spin over speed": impact.omega * radius / speed,
-        "friction f": scene.surface.friction if "friction" in scene.active else 0.0,
-        **_steel("rod", rod.material, "rod-plasticity" in scene.active),
-        **_steel("barrier", scene.barrier.material, "barrier-elastoplastic" in scene.active),
+        "friction f": scene.surface.friction if "friction" in active(scene) else 0.0,
+        **_steel("rod", rod.material, "rod-plasticity" in active(scene)),
+        **_steel("barrier", scene.barrier.material, "barrier-elastoplastic" in active(scene)),
     }
 
 
@@ -121,7 +119,7 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     """Return the largest difference over what is allowed, and its name; infinite for another model."""
     for name, mine, its in (
         ("tip", scene.projectile.tip, other.projectile.tip),
-        ("effects", scene.active, other.active),
+        ("effects", active(scene), active(other)),
         ("element", scene.accuracy.element, other.accuracy.element),
         ("step", scene.accuracy.step, other.accuracy.step),
         ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
@@ -138,14 +136,14 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
 def nearest(scene: Scene) -> tuple[str, float, str]:
     """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
     found = [
-        (*_distance(scene, Scene.from_dict(held["scene"])), name)
+        (*_distance(scene, read_dict(held["scene"], "cost summary")), name)
         for name, held in summary()["scenes"].items()
     ]
     distance, differs, name = min(found)
     return name, distance, differs
 
 
-def plan(scene: Scene, fidelity: str | None = None, workers: int = 1) -> Plan:
+def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) -> ChosenSetting:
     """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
 
     Its expected time is that of one or two ``workers``, runs at a time.
@@ -169,7 +167,7 @@ def plan(scene: Scene, fidelity: str | None = None, workers: int = 1) -> Plan:
     machine = summary()["machine"]["csr_ns_per_element_step"]
     seconds = found.cpu_s if workers == 1 else found.two_cores_s
     pace = yardsticks()["csr_ns_per_element_step"] / machine
-    return Plan(target, found, name, worst(found, TARGETED), seconds * pace)
+    return ChosenSetting(target, found, name, worst(found, TARGETED), seconds * pace)
 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
@@ -207,53 +205,47 @@ def _written(scene: Scene) -> str:
 
 
 Run = Callable[[], Outcome]
-Report = Callable[["Progress"], None]
 
 ALONE = Unknown("one mesh alone cannot estimate its own error")
 
 
-def simulate_to_target(
-    scene: Scene,
-    fidelity: str | None = None,
-    out: Path | None = None,
-    progress: Report | None = None,
-    resume: bool = False,
-    checkpoint_s: float = INTERVAL,
-    workers: int = 1,
+def simulate(
+    scene: Scene, fidelity: str | None = None, options: RunOptions = RunOptions(), workers: int = 1
 ) -> Outcome:
-    """Run the setting that the measured costs choose.
+    """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
-    Every mesh is run at its places of the barrier's grid. What comes back is the finer mesh's outcome at the
-    first, with the limits of two meshes, or the means of one, in its ``validity``. The other runs are
-    kept below ``out``; with two ``workers`` or more a process beside takes every other run.
+    A chosen setting runs every mesh at its places of the barrier's grid. What comes back is the finer mesh's
+    outcome at the first, with the limits of two meshes, or the means of one, in its ``validity``. The other
+    runs are kept below ``options.out``; with two ``workers`` or more a process beside takes every other run.
 
     Raises
     ------
-    SceneError
-        As `plan`.
+    UsageError, SceneError, ResultError, RunError
+        As `fem_impact.run.simulate.simulate` and `choose_setting`.
     """
-    chosen = plan(scene, fidelity, workers)
+    if scene.accuracy.target is None:
+        return run.simulate(scene, fidelity or "solid", options)
+    chosen = choose_setting(scene, fidelity, workers)
     if not chosen.meshes:
-        alone = simulate(_plain(scene), chosen.setting.fidelity, out, progress, resume, checkpoint_s)
-        return _kept(_stated(alone, chosen, wall_seconds(alone)), out)
+        alone = run.simulate(_plain(scene), chosen.setting.fidelity, options)
+        return _kept(_stated(alone, chosen, wall_seconds(alone)), options.out)
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
-    work = _work([one for scenes in jobs for one in scenes], out, progress, resume, checkpoint_s)
+    work = _work([one for scenes in jobs for one in scenes], options)
     lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
     done = _side_by_side(lanes)
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
     meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
     wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
-    return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), out)
+    return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), options.out)
 
 
-def _work(
-    scenes: list[Scene], out: Path | None, progress: Report | None, resume: bool, checkpoint_s: float
-) -> list[Run]:
-    """Return the runs; the first of all writes to ``out`` itself."""
-    folders = [out and (out / f"run-{at}" if at else out) for at in range(len(scenes))]
+def _work(scenes: list[Scene], options: RunOptions) -> list[Run]:
+    """Return the runs; the first of all writes to ``options.out`` itself and tells its progress."""
+    out = options.out
+    beside = [replace(options, out=out and out / f"run-{at}", progress=None) for at in range(1, len(scenes))]
     return [
-        partial(simulate, scene, "solid", folder, None if at else progress, resume, checkpoint_s)
-        for at, (scene, folder) in enumerate(zip(scenes, folders, strict=True))
+        partial(run.simulate, scene, "solid", own)
+        for scene, own in zip(scenes, [options, *beside], strict=True)
     ]
 
 
@@ -280,7 +272,7 @@ def _plain(scene: Scene) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy, target=None))
 
 
-def _stated(outcome: Outcome, chosen: Plan, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
+def _stated(outcome: Outcome, chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
     """Return the outcome with what was asked, expected and achieved."""
     limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
     means = mesh_means(meshes[0]) if meshes else ALONE

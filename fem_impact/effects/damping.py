@@ -5,9 +5,8 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
 from fem_impact.physics.beam import bending_period
-from fem_impact.physics.beam_impact import strike
 from fem_impact.physics.contact import contact_estimate, normal_share
 
 if TYPE_CHECKING:
@@ -22,13 +21,13 @@ LOSS_FACTOR = 6e-4
 def number(scene: Scene) -> float:
     """Return the share of the vibration that is damped while the impact lasts, eta omega_1 (tau + T1)."""
     period = bending_period(scene)
-    return 2 * pi * LOSS_FACTOR * (contact_estimate(scene).duration + period) / period
+    return 2 * pi * LOSS_FACTOR * (contact_estimate(bodies_of(scene)).duration + period) / period
 
 
 def harm(scene: Scene) -> Harm:
     """Return the energy that should have been damped."""
-    damped = min(number(scene), 1.0) * strike(scene).E_vib
-    return Harm(min(damped / normal_share(scene), 1.0), damped)
+    damped = min(number(scene), 1.0) * quick_impact(scene).E_vib
+    return Harm(min(damped / normal_share(bodies_of(scene)), 1.0), damped)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -46,4 +45,5 @@ EFFECT = Effect(
     number,
     fill,
     harm,
+    needs=("vibration",),
 )

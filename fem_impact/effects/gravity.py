@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate
 from rigid import GRAVITY
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 def number(scene: Scene) -> float:
     """Return g (tau + T1) over the impact speed: a second contact comes a bending period later."""
-    lasting = contact_estimate(scene).duration + bending_period(scene)
+    lasting = contact_estimate(bodies_of(scene)).duration + bending_period(scene)
     return GRAVITY * lasting / hypot(scene.impact.v_n, scene.impact.v_t)
 
 

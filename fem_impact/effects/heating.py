@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.effects.slots import Effect, Harm, ModelSpec, bodies_of
 from fem_impact.physics.flash import expected_rise
 
 if TYPE_CHECKING:
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def number(scene: Scene) -> float:
     """Return the expected flash rise over the rise to the temperature that must not be reached."""
-    return expected_rise(scene) / (scene.heating.ignition - scene.heating.ambient)
+    return expected_rise(bodies_of(scene)) / (scene.heating.ignition - scene.heating.ambient)
 
 
 def harm(scene: Scene) -> Harm:
@@ -36,4 +36,5 @@ EFFECT = Effect(
     number,
     fill,
     harm,
+    needs=("friction",),
 )

@@ -6,7 +6,7 @@ from dataclasses import replace
 from math import sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import LIMIT_PRESSURE, contact_estimate
 
@@ -27,13 +27,11 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
     The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
     """
-    names = ("rod-plasticity", "barrier-elastoplastic", "rate-hardening")
-    kept = ["barrier-elastic" if n == names[1] else n for n in scene.active if n not in (names[0], names[2])]
-    peak = 1.5 * contact_estimate(replace(scene, effects=tuple(kept))).pressure
-    if "barrier-rigid" not in scene.active:
+    bodies = bodies_of(scene)
+    peak = 1.5 * contact_estimate(replace(bodies, rod_yields=False, barrier_yields=False)).pressure
+    if bodies.compliant:
         peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
-    f = scene.surface.friction if "friction" in scene.active else 0.0
-    first = min(DEEP, 1 / (sqrt(3) * f)) if f > 0 else DEEP
+    first = min(DEEP, 1 / (sqrt(3) * bodies.f)) if bodies.f > 0 else DEEP
     return peak / (first * material.yield_stress)
 
 

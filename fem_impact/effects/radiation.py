@@ -37,4 +37,5 @@ EFFECT = Effect(
     number,
     fill,
     harm,
+    needs=("barrier-elastic", "barrier-elastoplastic"),
 )

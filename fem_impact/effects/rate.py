@@ -11,29 +11,18 @@ within a tenth. Their table has .060 for Armco iron, .055 for Carpenter electric
 from __future__ import annotations
 
 from dataclasses import replace
-from math import log, sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, ModelSpec
-from fem_impact.physics.contact import contact_estimate, principal_radii
+from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
+from fem_impact.physics.hardening import SLOWEST, C, Hardening, RateFactor, rate_gain
 
 if TYPE_CHECKING:
-    from fem_impact.physics.hardening import Hardening
     from fem_impact.scene.types import Scene
-
-
-C, SLOWEST = 0.022, 1.0  # -, 1/s
-
-
-def strain_rate(scene: Scene) -> float:
-    """Return the strain rate of the indentation, 1/s: 0.2 a/R (Tabor 1951) gained in half the contact."""
-    size, (R1, R2) = contact_estimate(scene), principal_radii(scene)
-    return 0.2 * sqrt(size.a_t * size.a_b / (R1 * R2)) / (0.5 * size.duration)
 
 
 def number(scene: Scene) -> float:
     """Return the relative gain of the flow stress at the strain rate of the indentation."""
-    return C * log(max(strain_rate(scene) / SLOWEST, 1.0))
+    return rate_gain(bodies_of(scene))
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
@@ -42,8 +31,6 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
 
 
 def _hardened(law: Hardening | None) -> Hardening | None:
-    from fem_impact.physics.hardening import RateFactor
-
     return replace(law, rate=RateFactor(C, SLOWEST)) if law else None
 
 
@@ -56,4 +43,5 @@ EFFECT = Effect(
     "e grows like sigma_y^(5/8) (Thornton 1997, doi:10.1115/1.2787319): 2 % of e are 3 % of sigma_y",
     number,
     fill,
+    needs=("rod-plasticity", "barrier-elastoplastic"),
 )

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
 from fem_impact.physics.beam import bending_period
-from fem_impact.physics.beam_impact import strike
 from fem_impact.physics.contact import contact_estimate, normal_share
 
 if TYPE_CHECKING:
@@ -18,15 +17,15 @@ def number(scene: Scene) -> float:
 
     A second contact comes about a bending period after the first.
     """
-    before, after = scene.impact.omega, strike(scene).Omega
-    turned = 0.5 * abs(before + after) * contact_estimate(scene).duration
+    before, after = scene.impact.omega, quick_impact(scene).Omega
+    turned = 0.5 * abs(before + after) * contact_estimate(bodies_of(scene)).duration
     return turned + abs(after) * bending_period(scene)
 
 
 def harm(scene: Scene) -> Harm:
     """Return the vibration that turned forces would change, 2 theta of it, and its restitution."""
-    changed = min(2 * number(scene), 1.0) * strike(scene).E_vib
-    return Harm(min(changed / normal_share(scene), 1.0), changed)
+    changed = min(2 * number(scene), 1.0) * quick_impact(scene).E_vib
+    return Harm(min(changed / normal_share(bodies_of(scene)), 1.0), changed)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

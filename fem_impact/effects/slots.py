@@ -6,6 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from fem_impact.physics.beam_impact import BeamImpact, strike
+from fem_impact.physics.contact import ContactBodies
+
 if TYPE_CHECKING:
     from fem_impact.physics.hardening import Hardening
     from fem_impact.scene.types import Scene
@@ -60,9 +63,10 @@ class Effect:
     measure : name of the dimensionless number
     threshold : number above which the effect is needed
     source : where the number and its threshold come from
-    number : computes it from a scene
+    number : computes it from a scene that lists its effects, none chosen by "auto"
     fill : fills its slots
-    harm : what a scene loses without the effect, computed from the scene; None: told by two strikes
+    harm : what a scene loses without the effect, computed from the scene; None: told by two quick impacts
+    needs : the effect means nothing unless one of these is on; none: it stands alone
     """
 
     name: str
@@ -74,3 +78,26 @@ class Effect:
     number: Callable[[Scene], float]
     fill: Callable[[Scene, ModelSpec], None]
     harm: Callable[[Scene], Harm] | None = None
+    needs: tuple[str, ...] = ()
+
+
+def bodies_of(scene: Scene) -> ContactBodies:
+    """Return the bodies at the contact of a scene that lists the effects of its model."""
+    active = scene.effects
+    return ContactBodies(
+        scene,
+        rod_yields="rod-plasticity" in active,
+        barrier_yields="barrier-elastoplastic" in active,
+        compliant="barrier-rigid" not in active,
+        f=scene.surface.friction if "friction" in active else 0.0,
+    )
+
+
+def quick_impact(scene: Scene) -> BeamImpact:
+    """Return about what an impact comes to, of a scene that lists the effects of its model."""
+    return strike(
+        bodies_of(scene),
+        vibrating="vibration" in scene.effects,
+        rate="rate-hardening" in scene.effects,
+        gravity="gravity" in scene.effects,
+    )

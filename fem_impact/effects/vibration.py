@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.slots import Effect, ModelSpec
+from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.physics.contact import contact_estimate
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 def number(scene: Scene) -> float:
     """Return the longest period that the blow can excite over the contact time."""
     periods = [stretching_period(scene), *([bending_period(scene)] if scene.impact.angle > 0 else [])]
-    return max(periods) / contact_estimate(scene).duration
+    return max(periods) / contact_estimate(bodies_of(scene)).duration
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-import rigid
 from fem_impact.solid.run import SolidResult
 from fem_impact.tables.csv import read_table
 
@@ -66,10 +65,10 @@ def balance(result: SolidResult, history: Path) -> Balance:
 
 def _momenta(result: SolidResult) -> tuple[float, float]:
     """Return what linear and angular momentum about the origin miss of the contact's impulses."""
-    motion, impact, view = result.motion, result.scene.impact, result.view
+    motion, impact, view = result.motion, result.plan.scene.impact, result.view
     x = result.model.start[0][view.places]
     centre = view.mass @ x / view.mass.sum()
-    weight = rigid.GRAVITY * result.time if "gravity" in result.scene.active else 0.0
+    weight = (result.plan.slots.gravity or 0.0) * result.time
     down = weight * np.array([-np.sin(impact.angle), -np.cos(impact.angle)])
     p = 2 * result.model.book.impulse
     m = motion.mass

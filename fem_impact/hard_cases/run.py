@@ -14,10 +14,11 @@ from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.hard_cases.scenes import CASES, HardCase
 from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.options import RunOptions
 from fem_impact.tables.markdown import table
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.plan.plan import Plan
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
 
@@ -87,33 +88,33 @@ def _row(case: HardCase, verdict: str, reason: str = "", **more: Any) -> Row:
 
 
 def _scene(case: HardCase, out: Path) -> Row:
-    from fem_impact.run.simulate import require_runnable
+    from fem_impact.plan.plan import plan
 
-    scene = case.scene()
-    require_runnable(scene, "solid")
+    planned = plan(case.scene())
     make_directory(out)
-    return _judged(case, _solved(case, scene, out), out)
+    return _judged(case, _solved(case, planned, out), out)
 
 
-def _solved(case: HardCase, scene: Scene, out: Path) -> SolidResult:
+def _solved(case: HardCase, plan: Plan, out: Path) -> SolidResult:
     from fem_impact.files.run_directory import CHECKPOINT
+    from fem_impact.run.program import stamp
     from fem_impact.solid.run import solve
 
+    options = RunOptions(out, checkpoint_s=CHECKPOINTS, stamp=stamp(plan.scene))
     if (out / CHECKPOINT).exists():
         try:
-            return solve(scene, out, resume=True, interval=CHECKPOINTS, model=_model(case, scene))
+            return solve(plan, replace(options, resume=True), _model(case, plan))
         except ResultError:  # of another scene or program
             (out / CHECKPOINT).unlink()
-    return solve(scene, out, interval=CHECKPOINTS, model=_model(case, scene))
+    return solve(plan, options, _model(case, plan))
 
 
-def _model(case: HardCase, scene: Scene) -> Model:
+def _model(case: HardCase, plan: Plan) -> Model:
     """Return the case's model: a start and a step of its own."""
     from fem_impact.fem.stable import SAFETY
-    from fem_impact.plan.plan import specify
     from fem_impact.solid.build import build
 
-    model = build(scene, specify(scene), case.gap)
+    model = build(plan, case.gap)
     x, v = model.start[0].copy(), model.start[1]
     x[model.layout.rod[:, 0]] += case.shifted
     steps = {body: step * case.step / SAFETY for body, step in model.steps.items()}
@@ -126,7 +127,7 @@ def _judged(case: HardCase, result: SolidResult, out: Path) -> Row:
     from fem_impact.outcome.keys import known
     from fem_impact.run.solid import reduce
 
-    outcome = reduce(result.scene, result)  # which holds no NaN
+    outcome = reduce(result)  # which holds no NaN
     (out / CHECKPOINT).unlink(missing_ok=True)
     outcome.write(out / "outcome.json")
     found = balance(result, out / "history.csv")

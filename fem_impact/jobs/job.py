@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.errors import FemImpactError, ResultError
 from fem_impact.run.program import source_digest
+from fem_impact.scene.write import digest
 
 if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
@@ -46,7 +47,7 @@ class Job:
     @property
     def key(self) -> str:
         """Content address of the result: scene, fidelity, sources and library versions."""
-        text = f"{self.scene.digest()} {self.fidelity} {source_digest()}"
+        text = f"{digest(self.scene)} {self.fidelity} {source_digest()}"
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property

@@ -9,16 +9,15 @@ from math import cos, inf, sin
 
 import numpy as np
 
-import rigid
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
 from fem_impact.modal.rod import ModalRod, modal_rod
+from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import contact_estimate
 from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
-from fem_impact.scene.types import Scene
-from fem_impact.solid.separation import horizon
 
 __all__ = ["ModalResult", "plastic_work", "reach", "solve"]
 
@@ -68,15 +67,16 @@ class ModalResult:
         return float(self.energies.sum())
 
 
-def solve(scene: Scene, progress: Callable[[Progress], None] | None = None) -> ModalResult:
+def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles."""
     if progress is not None and not compiled_before("march.drop"):
-        progress(compiling(scene.accuracy.max_time, COMPILE))
-    rod, law = modal_rod(scene), contact_law(scene)
-    dt = contact_estimate(scene).duration / STEPS
+        progress(compiling(plan.scene.accuracy.max_time, COMPILE))
+    scene = plan.scene
+    rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
+    dt = contact_estimate(plan.bodies).duration / STEPS
     dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt
     contacts = np.zeros((MOST_CONTACTS, 4))
-    start = _start(scene, rod)
+    start = _start(plan, rod)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
     bounds = Bounds(dt, horizon(scene), scene.accuracy.max_time, reach(law, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
@@ -138,9 +138,8 @@ def reach(law: ContactLaw, energy: float) -> float:
     return float(np.sqrt(law.R * (law.yield_depth - start + np.sqrt(start**2 + more))))
 
 
-def _start(scene: Scene, rod: ModalRod) -> Start:
-    g = rigid.GRAVITY if "gravity" in scene.active else 0.0
-    impact = scene.impact
+def _start(plan: Plan, rod: ModalRod) -> Start:
+    g, impact = plan.slots.gravity or 0.0, plan.scene.impact
     return Start(
         rod.mass,
         rod.k2,

@@ -13,8 +13,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
-from fem_impact.physics.contact_law import ContactLaw
-from fem_impact.solid.contact.book import FAINT, MERGE_GAP
+from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
 
 __all__ = ["MOST_CONTACTS", "Bounds", "Start", "drop"]
 

@@ -9,12 +9,11 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Scene, Surface
-from fem_impact.solid.build import build
-from fem_impact.solid.rodview import RodState
 
 __all__ = ["ModalRod", "modal_rod"]
 
@@ -46,12 +45,12 @@ class ModalRod:
     along_n: Array
 
 
-def modal_rod(scene: Scene) -> ModalRod:
+def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
     """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
     body, alpha = projectile(scene), scene.impact.angle
     d_c, d_d = arms(scene)
     radius = principal_radii(scene)[0]
-    omega, x, z = _touch(scene) if "vibration" in scene.active else np.zeros((3, 0))
+    omega, x, z = _touch(scene) if vibrating else np.zeros((3, 0))
     along_t, along_n = cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
     return ModalRod(body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t, along_n)
 
@@ -88,8 +87,8 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         effects=("vibration", "barrier-rigid"),
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across),
     )
-    model = build(scene, specify(scene))
-    view, mesh = RodState.of(model), model.geometry.rod.mesh
+    meshed = MeshedBodies(plan(scene))
+    modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
     # modes are normalised with the mass of the half rod
-    shape = view.modes.shape[view.places] / sqrt(2)
-    return mesh.points[~mesh.is_hanging], shape, view.modes.omega
+    shape = modes.shape[meshed.free_nodes] / sqrt(2)
+    return mesh.points[~mesh.is_hanging], shape, modes.omega

@@ -63,7 +63,7 @@ def stretching_period(scene: Scene) -> float:
 
 
 def beam(scene: Scene) -> Beam:
-    """Return the modes of a rod at its contact point; none where it cannot vibrate.
+    """Return the modes of a rod at its contact point.
 
     The end of a bending mode, 2 high for a unit mass, turns by w' (1 - (w/b)^2 rho/(kappa G)) (Timoshenko),
     which takes its share of the modal mass.
@@ -78,7 +78,7 @@ def beam(scene: Scene) -> Beam:
     omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
     x = np.concatenate([height * (2 - turn * z), 0.0 * count])
     y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
-    kept = (omega < section_frequency(scene)) & ("vibration" in scene.active)
+    kept = omega < section_frequency(scene)
     along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
     return Beam(omega[kept], along_t[kept], along_n[kept])
 
@@ -155,3 +155,11 @@ class BeamFlight:
     def _away(self, now: Rigid) -> float:
         """Return the speed, m/s, of the contact point off the barrier by rigid motion."""
         return now.V_n + self.d_c * now.spin
+
+
+HORIZON, PERIODS = 4e-3, 1.5  # s, the camera's window: 40 frames at 10 kHz; of the rod's bending, if longer
+
+
+def horizon(scene: Scene) -> float:
+    """Return how far a free flight is looked ahead, s: a long rod's tip comes back with its bending."""
+    return max(HORIZON, PERIODS * bending_period(scene))

@@ -18,26 +18,23 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from math import cos, inf, pi, sin, sqrt
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from fem_impact.effects import rate
 from fem_impact.physics.beam import Beam, BeamFlight, Rigid, beam
 from fem_impact.physics.contact import (
     LIMIT_PRESSURE,
+    ContactBodies,
     approach,
     arms,
     contact_estimate,
     projectile,
     start_energy,
-    yielding_materials,
 )
 from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.physics.hardening import rate_gain
 from rigid import GRAVITY
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 __all__ = ["BeamImpact", "Touch", "strike"]
 
@@ -114,16 +111,27 @@ class Touch:
 
 
 @cache
-def strike(scene: Scene) -> BeamImpact:
-    """Return about what an impact comes to with the effects of a scene."""
-    return _march(scene, beam(scene), Touch(_law(scene)))
+def strike(bodies: ContactBodies, vibrating: bool, rate: bool, gravity: bool) -> BeamImpact:
+    """Return about what an impact comes to.
+
+    Parameters
+    ----------
+    vibrating : the rod has its beam modes, or none
+    rate : flow stresses gain by the strain rate
+    gravity : it acts
+    """
+    modes = beam(bodies.scene)
+    if not vibrating:
+        modes = Beam(*(part[:0] for part in modes))
+    return _march(bodies, modes, Touch(_law(bodies, rate)), gravity)
 
 
-def _march(scene: Scene, modes: Beam, touch: Touch) -> BeamImpact:
+def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> BeamImpact:
     """Kick by the contact's force, fly exactly, until the rod is gone."""
+    scene = bodies.scene
     rod, impact, (d_c, d_d) = projectile(scene), scene.impact, arms(scene)
-    dt, inertia = contact_estimate(scene).duration / STEPS, rod.mass * rod.k2
-    g = GRAVITY * dt if "gravity" in scene.active else 0.0
+    dt, inertia = contact_estimate(bodies).duration / STEPS, rod.mass * rod.k2
+    g = GRAVITY * dt if gravity else 0.0
     flight = BeamFlight(modes, dt, d_c, (g * cos(impact.angle), g * sin(impact.angle)))
     now, swing = Rigid(impact.v_n, impact.v_t, impact.omega, 0.0), np.zeros(len(modes.omega), dtype=complex)
     steps = last = 0
@@ -144,13 +152,13 @@ def _march(scene: Scene, modes: Beam, touch: Touch) -> BeamImpact:
     return BeamImpact(left / max(approach(scene), SLOWEST), E_vib, now.spin)
 
 
-def _law(scene: Scene) -> ContactLaw:
+def _law(bodies: ContactBodies, rate: bool) -> ContactLaw:
     """Return the contact law that yields at the flow stress, over the geometric area."""
-    law = contact_law(scene)
-    flow = min((material.ultimate_stress for material in yielding_materials(scene)), default=inf)
+    law = contact_law(bodies)
+    flow = min((material.ultimate_stress for material in bodies.yielding), default=inf)
     if flow == inf:
         return law
-    limit = LIMIT_PRESSURE * flow * (1 + rate.number(scene) * ("rate-hardening" in scene.active))
+    limit = LIMIT_PRESSURE * flow * (1 + rate_gain(bodies) * rate)
     depth = (pi * limit / (2 * law.E_star)) ** 2 * law.R
     force = law.stiffness * depth**1.5
     return law._replace(limit=limit, yield_depth=depth, yield_force=force, slope=2 * pi * limit * law.R)

@@ -12,7 +12,7 @@ plastic with the limiting pressure p = 2.8 sigma_y of the softer body, pi p R d^
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sin, sqrt
+from math import inf, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -26,6 +26,35 @@ FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
 
 
 @dataclass(frozen=True, slots=True)
+class ContactBodies:
+    """The rod and the barrier as they touch: a scene, and what of its bodies takes part.
+
+    Attributes
+    ----------
+    rod_yields, barrier_yields : the material may flow
+    compliant : the barrier deforms
+    f : Coulomb coefficient in force, 0 without friction
+    """
+
+    scene: Scene
+    rod_yields: bool
+    barrier_yields: bool
+    compliant: bool
+    f: float
+
+    @property
+    def yielding(self) -> list[Material]:
+        """Return the materials that may yield."""
+        rod, barrier = self.scene.projectile.material, self.scene.barrier.material
+        return [rod] * self.rod_yields + [barrier] * self.barrier_yields
+
+    @property
+    def elastic(self) -> list[Material]:
+        """Return the materials that deform: a rigid barrier has no share in the contact's compliance."""
+        return [self.scene.projectile.material] + [self.scene.barrier.material] * self.compliant
+
+
+@dataclass(frozen=True, slots=True)
 class ContactEstimate:
     """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa."""
 
@@ -34,12 +63,6 @@ class ContactEstimate:
     a_b: float
     duration: float
     pressure: float
-
-
-def yielding_materials(scene: Scene) -> list[Material]:
-    """Return the materials that may yield in this scene."""
-    named = {"rod-plasticity": scene.projectile.material, "barrier-elastoplastic": scene.barrier.material}
-    return [material for name, material in named.items() if name in scene.active]
 
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
@@ -97,12 +120,11 @@ def section_frequency(scene: Scene) -> float:
     return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
 
 
-def effective_mass(scene: Scene) -> float:
+def effective_mass(bodies: ContactBodies) -> float:
     """Return m*, kg, at least that of a frictionless contact."""
-    rod, f = projectile(scene), scene.surface.friction if "friction" in scene.active else 0.0
-    d_c, d_d = arms(scene)
+    rod, (d_c, d_d) = projectile(bodies.scene), arms(bodies.scene)
     frictionless = 1 + d_c**2 / rod.k2
-    return float(rod.mass / min(frictionless, max(1.0, 1 + d_c * (d_c - f * d_d) / rod.k2)))
+    return float(rod.mass / min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / rod.k2)))
 
 
 def start_energy(scene: Scene) -> float:
@@ -111,30 +133,26 @@ def start_energy(scene: Scene) -> float:
     return float(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2 + rod.k2 * impact.omega**2))
 
 
-def normal_share(scene: Scene) -> float:
+def normal_share(bodies: ContactBodies) -> float:
     """Return the share of E_0 that the normal impact can take, m* / 2 times the approach squared over E_0."""
-    return 0.5 * effective_mass(scene) * approach(scene) ** 2 / start_energy(scene)
+    return 0.5 * effective_mass(bodies) * approach(bodies.scene) ** 2 / start_energy(bodies.scene)
 
 
-def contact_modulus(scene: Scene) -> float:
-    """Return E*, Pa; a rigid barrier has no share."""
-    bodies = [scene.projectile.material]
-    if "barrier-rigid" not in scene.active:
-        bodies.append(scene.barrier.material)
-    return 1 / sum((1 - m.nu**2) / m.E for m in bodies)
+def contact_modulus(bodies: ContactBodies) -> float:
+    """Return E*, Pa."""
+    return 1 / sum((1 - m.nu**2) / m.E for m in bodies.elastic)
 
 
-def contact_estimate(scene: Scene) -> ContactEstimate:
-    """Return the size of the first contact of a scene."""
-    R1, R2 = principal_radii(scene)
-    R, v_n = sqrt(R1 * R2), max(approach(scene), 1e-6)
-    energy, E_star = 0.5 * effective_mass(scene) * v_n**2, contact_modulus(scene)
+def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
+    """Return the size of the first contact."""
+    R1, R2 = principal_radii(bodies.scene)
+    R, v_n = sqrt(R1 * R2), max(approach(bodies.scene), 1e-6)
+    energy, E_star = 0.5 * effective_mass(bodies) * v_n**2, contact_modulus(bodies)
     depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
     elastic = ContactEstimate(
         depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, 4 / (3 * pi) * E_star * sqrt(depth / R)
     )
-    softer = yielding_materials(scene)
-    limit = LIMIT_PRESSURE * min((m.yield_stress for m in softer), default=float("inf"))
+    limit = LIMIT_PRESSURE * min((m.yield_stress for m in bodies.yielding), default=inf)
     if elastic.pressure <= limit:
         return elastic
     depth = sqrt(energy / (pi * limit * R))
@@ -143,7 +161,7 @@ def contact_estimate(scene: Scene) -> ContactEstimate:
     )
 
 
-def barrier_conforms(scene: Scene) -> bool:
+def barrier_conforms(bodies: ContactBodies) -> bool:
     """Return whether the barrier flows under all of the contact, so that its surface takes the rod's form."""
-    flows = contact_estimate(scene).pressure >= LIMIT_PRESSURE * scene.barrier.material.yield_stress
-    return flows and "barrier-elastoplastic" in scene.active
+    flows = contact_estimate(bodies).pressure >= LIMIT_PRESSURE * bodies.scene.barrier.material.yield_stress
+    return flows and bodies.barrier_yields

@@ -11,12 +11,17 @@ from __future__ import annotations
 from math import inf, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from fem_impact.physics.contact import LIMIT_PRESSURE, contact_modulus, principal_radii, yielding_materials
+from fem_impact.physics.contact import LIMIT_PRESSURE, ContactBodies, contact_modulus, principal_radii
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Material, Scene
+    from fem_impact.scene.types import Material
 
 __all__ = ["ContactLaw", "contact_law", "restitution", "softer", "thornton"]
+
+# releases shorter than this are one contact: a few passages of a wave across the tip
+MERGE_GAP = 10e-6
+# below this share of the largest impulse of a step, a touch neither starts nor prolongs a contact
+FAINT = 1e-3
 
 
 class ContactLaw(NamedTuple):
@@ -43,29 +48,22 @@ class ContactLaw(NamedTuple):
     friction: float
 
 
-def softer(scene: Scene) -> Material | None:
+def softer(bodies: ContactBodies) -> Material | None:
     """Return the material that yields first, or None where nothing may yield."""
-    return min(yielding_materials(scene), key=lambda m: m.yield_stress, default=None)
+    return min(bodies.yielding, key=lambda m: m.yield_stress, default=None)
 
 
-def contact_law(scene: Scene) -> ContactLaw:
-    """Return the contact law of a scene."""
-    R1, R2 = principal_radii(scene)
-    R, E_star, soft = sqrt(R1 * R2), contact_modulus(scene), softer(scene)
+def contact_law(bodies: ContactBodies) -> ContactLaw:
+    """Return the contact law of two bodies."""
+    R1, R2 = principal_radii(bodies.scene)
+    R, E_star, soft = sqrt(R1 * R2), contact_modulus(bodies), softer(bodies)
     limit = LIMIT_PRESSURE * soft.yield_stress if soft else inf
     stiffness = 4 / 3 * E_star * sqrt(R)
     depth = (pi * limit / (2 * E_star)) ** 2 * R
     force = stiffness * depth**1.5
-    f = scene.surface.friction if "friction" in scene.active else 0.0
-    return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, _shear(scene), f)
-
-
-def _shear(scene: Scene) -> float:
-    """Return 8 G*, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)."""
-    bodies = [scene.projectile.material]
-    if "barrier-rigid" not in scene.active:
-        bodies.append(scene.barrier.material)
-    return 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies)
+    # 8 G*, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)
+    shear = 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies.elastic)
+    return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, shear, bodies.f)
 
 
 def restitution(law: ContactLaw, mass: float, speed: float) -> float:

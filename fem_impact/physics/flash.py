@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
-from fem_impact.physics.contact import approach, contact_estimate, sliding
+from fem_impact.physics.contact import ContactBodies, approach, contact_estimate, sliding
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -135,34 +135,35 @@ def sliding_speed(scene: Scene) -> float:
     return abs(sliding(scene))
 
 
-def expected_rise(scene: Scene) -> float:
+def expected_rise(bodies: ContactBodies) -> float:
     """Return the rise, K, of the estimated contact at its mean pressure and half its first sliding speed."""
-    size, f = contact_estimate(scene), scene.surface.friction
-    q = f * size.pressure * 0.5 * sliding_speed(scene)
-    return _steady_flash(scene, q).peak
+    size, f = contact_estimate(bodies), bodies.scene.surface.friction
+    q = f * size.pressure * 0.5 * sliding_speed(bodies.scene)
+    return steady_flash(bodies, q).peak
 
 
-def _steady_flash(scene: Scene, q: float) -> Flash:
+def steady_flash(bodies: ContactBodies, q: float) -> Flash:
     """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed."""
-    size = contact_estimate(scene)
+    size = contact_estimate(bodies)
     t, one = np.linspace(0.0, size.duration, 101), np.ones(100)
-    a, V = sqrt(size.a_t * size.a_b), 0.5 * sliding_speed(scene)
-    return flash(t, q * one, a * one, V * one, *halves(scene))
+    a, V = sqrt(size.a_t * size.a_b), 0.5 * sliding_speed(bodies.scene)
+    return flash(t, q * one, a * one, V * one, *halves(bodies.scene))
 
 
-def closed_form(scene: Scene, friction_work: float) -> tuple[Flash, float, float, float]:
+def closed_form(bodies: ContactBodies, friction_work: float) -> tuple[Flash, float, float, float]:
     """Return flash, power, W, flux, W/m2, and patch, m2, of the estimated contact.
 
     The friction work, J, is spread evenly over its patch and its time.
     """
-    size = contact_estimate(scene)
+    size = contact_estimate(bodies)
     patch, power = pi * size.a_t * size.a_b, friction_work / size.duration
-    return _steady_flash(scene, power / patch), power, power / patch, patch
+    return steady_flash(bodies, power / patch), power, power / patch, patch
 
 
-def flash_bound(scene: Scene) -> float:
+def flash_bound(bodies: ContactBodies) -> float:
     """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``."""
-    size, f = contact_estimate(scene), scene.surface.friction
+    scene, size = bodies.scene, contact_estimate(bodies)
+    f = scene.surface.friction
     softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.material))
     speed = sliding_speed(scene) + approach(scene)
     q, t = f * HARDNESS * softer * speed, 3 * size.duration

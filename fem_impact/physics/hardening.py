@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log, sqrt
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from fem_impact.physics.contact import ContactBodies, contact_estimate, principal_radii
+
+C, SLOWEST = 0.022, 1.0  # -, 1/s: Johnson and Cook's rate factor of mild steel, see `fem_impact.effects.rate`
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +101,14 @@ def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
     while (step := np.log(_nominal_strength_ratio(n, stiffness) / ratio) / np.log(stiffness * n)) > 0:
         n -= step
     return n
+
+
+def strain_rate(bodies: ContactBodies) -> float:
+    """Return the strain rate of the indentation, 1/s: 0.2 a/R (Tabor 1951) gained in half the contact."""
+    size, (R1, R2) = contact_estimate(bodies), principal_radii(bodies.scene)
+    return 0.2 * sqrt(size.a_t * size.a_b / (R1 * R2)) / (0.5 * size.duration)
+
+
+def rate_gain(bodies: ContactBodies) -> float:
+    """Return the relative gain of the flow stress at the strain rate of the indentation."""
+    return C * log(max(strain_rate(bodies) / SLOWEST, 1.0))

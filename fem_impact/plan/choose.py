@@ -7,16 +7,16 @@ from functools import cache
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.registry import AUTO, BARRIERS, EFFECTS, NAMES, grounded
-from fem_impact.effects.slots import Harm
+from fem_impact.effects.registry import AUTO, BARRIERS, EFFECTS, NAMES, check_effects, grounded
+from fem_impact.effects.slots import Harm, quick_impact
 from fem_impact.outcome.groups import EffectChoice
-from fem_impact.physics.beam_impact import BeamImpact, strike
+from fem_impact.physics.beam_impact import BeamImpact
 from fem_impact.plan.measured import expected_shares
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = ["Choice", "active", "choices", "left_out", "neglected"]
+__all__ = ["Choice", "active", "choices", "everything", "left_out", "neglected", "resolved"]
 
 
 UNFELT = ("contact-heating",)  # what the motion does not feel is watched or not, never missed
@@ -62,11 +62,21 @@ class Choice:
 
 
 def active(scene: Scene) -> tuple[str, ...]:
-    """Return the effects in the model of a scene, in the order in which they enter it."""
-    if AUTO not in scene.effects:
-        return scene.effects
-    _, _, on = decided(scene)
+    """Return the effects in the model of a scene, in the order in which they enter it.
+
+    Raises
+    ------
+    SceneError
+        If the scene names an effect that is none, none or two barriers, or one without what it needs.
+    """
+    check_effects(scene.effects)
+    on = decided(scene)[2] if AUTO in scene.effects else set(scene.effects)
     return tuple(name for name in NAMES if name in on)
+
+
+def resolved(scene: Scene) -> Scene:
+    """Return the scene with the list of the effects in its model instead of what it states of them."""
+    return replace(scene, effects=active(scene))
 
 
 def choices(scene: Scene) -> tuple[Choice, ...]:
@@ -98,7 +108,7 @@ def _harm(whole: Scene, name: str) -> Harm:
 
 def neglected(scene: Scene) -> tuple[str, ...]:
     """Return a sentence for each effect that the scene forces off although it matters."""
-    barrier = next(BARRIERS.index(name) for name in scene.active if name in BARRIERS)
+    barrier = next(BARRIERS.index(name) for name in active(scene) if name in BARRIERS)
     missed = [
         choice
         for choice in choices(scene)
@@ -110,7 +120,7 @@ def neglected(scene: Scene) -> tuple[str, ...]:
 def everything(scene: Scene) -> Scene:
     """Return the scene with all effects on that it does not force off; one that lists them stays as it is."""
     if AUTO not in scene.effects:
-        return scene
+        return resolved(scene)
     barrier = next((name for name in scene.effects if name in BARRIERS), BARRIERS[-1])
     off = {name for name in NAMES if f"-{name}" in scene.effects}
     wanted = set(NAMES) - set(BARRIERS) - off | {barrier}
@@ -154,11 +164,11 @@ def _warning(choice: Choice) -> str:
 def left_out(scene: Scene, name: str) -> Harm:
     """Return how a strike changes when an effect is left out; a barrier gives way to the next weaker one."""
     barrier = name in BARRIERS
-    others = [other for other in scene.active if other != name and not (barrier and other in BARRIERS)]
+    others = [other for other in active(scene) if other != name and not (barrier and other in BARRIERS)]
     weaker = [BARRIERS[BARRIERS.index(name) - 1]] if barrier else []
     whole, less = (_struck(scene, [*others, *names]) for names in ([name], weaker))
     return Harm(min(abs(less.e - whole.e), 1.0), min(abs(less.E_vib - whole.E_vib), 1.0))
 
 
 def _struck(scene: Scene, effects: list[str]) -> BeamImpact:
-    return strike(replace(scene, effects=tuple(grounded(effects))))
+    return quick_impact(replace(scene, effects=tuple(grounded(effects))))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from math import sqrt
 
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import approach, arms, contact_estimate
+from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
 from fem_impact.scene import library
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -22,10 +23,10 @@ ANGLES = (math.radians(17.0), math.radians(60.0))
 TIPS = {("A", 0.007), ("B", 0.003)}
 
 
-def validity(scene: Scene) -> tuple[str, ...]:
+def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range."""
     sentences = (_length(scene), _section(scene), _speed(scene), _angle(scene), _spin(scene))
-    more = (_steels(scene), _surface(scene), _idealised(scene))
+    more = (_steels(scene), _surface(scene, active), _idealised(active))
     return tuple(sentence for sentence in (*sentences, *more) if sentence)
 
 
@@ -74,33 +75,33 @@ def _steels(scene: Scene) -> str:
     return "" if same else "outside the measured range: other materials than the measured steels"
 
 
-def _surface(scene: Scene) -> str:
+def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
-    if "friction" not in scene.active or scene.surface in known:
+    if "friction" not in active or scene.surface in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the committed value of a surface state ({source})"
 
 
-def _idealised(scene: Scene) -> str:
+def _idealised(active: Collection[str]) -> str:
     real = ("friction", "rod-plasticity", "barrier-elastoplastic")
-    missing = [name for name in real if name not in scene.active]
+    missing = [name for name in real if name not in active]
     return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
 
 
-def widest_tip_size(scene: Scene) -> float:
+def widest_tip_size(bodies: ContactBodies) -> float:
     """Return the largest ``accuracy.tip_size``, m, two digits, with elements no wider than the contact.
 
     Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
     """
-    size = contact_estimate(scene)
+    size = contact_estimate(bodies)
     return float(f"{0.95 * sqrt(2) * min(size.a_t, size.a_b):.1e}")
 
 
-def coarse_tip(scene: Scene) -> tuple[str, ...]:
+def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
     """Return a sentence when the contact may be narrower than an element at the tip."""
-    asked, widest = scene.accuracy.tip_size, widest_tip_size(scene)
-    if asked <= widest or scene.accuracy.target is not None:  # a target chooses its own mesh
+    asked, widest = bodies.scene.accuracy.tip_size, widest_tip_size(bodies)
+    if asked <= widest or bodies.scene.accuracy.target is not None:  # a target chooses its own mesh
         return ()
     return (
         f"The contact, about {sqrt(2) * widest * 1e3:.2g} mm wide, may be narrower than an element at the "
@@ -109,9 +110,10 @@ def coarse_tip(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def require_shallow(scene: Scene) -> None:
+def require_shallow(bodies: ContactBodies) -> None:
     """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
-    depth, radius = contact_estimate(scene).depth, scene.projectile.diameter / 2
+    scene = bodies.scene
+    depth, radius = contact_estimate(bodies).depth, scene.projectile.diameter / 2
     if depth > radius:
         raise SceneError(
             f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "

@@ -1,18 +1,20 @@
-"""About what share of the run time each effect takes, before a run: from a ladder of measured steps."""
+"""What was measured before and ships with the package: costs, shares of the effects; this machine's pace."""
 
 from __future__ import annotations
 
 import csv
+import json
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.resources import files
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import scipy.sparse as sp
 
-__all__ = ["expected_shares", "yardsticks"]
+__all__ = ["expected_shares", "summary", "yardsticks"]
 
 
 UNDER = {"barrier-elastoplastic": "barrier-elastic"}  # a block that yields is an elastic one first
@@ -33,10 +35,20 @@ def expected_shares(active: Iterable[str]) -> dict[str, float]:
 @cache
 def _added() -> Mapping[str, float]:
     """Return what each effect adds to a step, us; the first rung is the nose on a rigid plane."""
-    text = files("fem_impact.effects").joinpath("data", "effect-cost.csv").read_text(encoding="utf-8")
+    text = _data("effect-cost.csv")
     steps = [(row["added"], float(row["step_us"])) for row in csv.DictReader(text.splitlines())]
     rises = {name: max(now - before, 0.0) for (_, before), (name, now) in pairwise(steps)}
     return {"nose": steps[0][1], "barrier-rigid": 0.0, **rises}
+
+
+@cache
+def summary() -> dict[str, Any]:
+    """Return the costs that ship with the package, as `fem-impact cost paper` stored them."""
+    return dict(json.loads(_data("summary.json")))
+
+
+def _data(name: str) -> str:
+    return files("fem_impact.plan").joinpath("data", name).read_text(encoding="utf-8")
 
 
 NODES = (21, 21, 41)  # of the box whose stiffness pattern is multiplied: about 54 000 unknowns

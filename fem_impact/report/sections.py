@@ -26,7 +26,8 @@ from fem_impact.report.html import (
     with_band,
 )
 from fem_impact.report.page import FILMS, film, picture
-from fem_impact.scene.types import Scene
+from fem_impact.scene.read import read_toml
+from fem_impact.scene.write import digest
 from fem_impact.tables.csv import read_table
 
 __all__ = [
@@ -54,7 +55,7 @@ def strangers(outcome: Outcome, folder: Path) -> list[str]:
 def _other_scene(outcome: Outcome, folder: Path) -> list[str]:
     path = folder / "scene.toml"
     try:
-        other = path.is_file() and Scene.from_toml(path).digest() != outcome.provenance.scene_digest
+        other = path.is_file() and digest(read_toml(path)) != outcome.provenance.scene_digest
     except SceneError as error:
         return [str(error)]
     return ["scene.toml was changed after the run: it is not the scene of outcome.json."] if other else []

@@ -17,10 +17,11 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import installed_versions, utc_now
-from fem_impact.physics.contact import arms, projectile
+from fem_impact.physics.contact import ContactBodies, arms, projectile
 from fem_impact.physics.contact_law import softer
 from fem_impact.physics.flash import Flash, flash_bound
-from fem_impact.plan.limits import validity as outside
+from fem_impact.plan.plan import Plan
+from fem_impact.scene.write import digest
 from rigid.experiments import measured_set
 
 if TYPE_CHECKING:
@@ -36,26 +37,26 @@ ROUND_OFF = 1e-9  # a moment impulse over that of the normal impulse at arm d_d:
 
 
 def provenance(
-    scene: Scene,
-    fidelity: str,
+    plan: Plan,
     effect_choices: tuple[EffectChoice, ...] | Unknown,
     without: Iterable[str] = (),
 ) -> Provenance:
     """Return where a record comes from; ``without`` are effects that the fidelity does not know."""
+    scene = plan.scene
     return Provenance(
-        fidelity=fidelity,
+        fidelity=plan.fidelity,
         scene_id=scene.id,
         scene_title=scene.title,
-        scene_digest=scene.digest(),
+        scene_digest=digest(scene),
         created_utc=utc_now(),
         versions=installed_versions(),
-        effects=tuple(name for name in scene.active if name not in without),
+        effects=tuple(name for name in plan.active if name not in without),
         effect_choices=effect_choices,
     )
 
 
 def validity(
-    scene: Scene,
+    plan: Plan,
     finished: bool,
     stopped_because: str,
     meshes: str,
@@ -67,7 +68,7 @@ def validity(
         finished=finished,
         stopped_because=stopped_because,
         assumptions=tuple(assumptions),
-        outside=tuple(outside(scene)),
+        outside=plan.validity,
         warnings=tuple(warnings),
         accuracy_target=NO_TARGET,
         accuracy_setting=NO_TARGET,
@@ -80,10 +81,11 @@ def validity(
     )
 
 
-def motion(scene: Scene, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
+def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
     """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2)."""
+    scene = plan.scene
     return RodMotion(
-        friction=scene.surface.friction if "friction" in scene.active else 0.0,
+        friction=plan.bodies.f,
         alpha=scene.impact.angle,
         mass=mass,
         k_squared=k2,
@@ -132,16 +134,17 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoeffic
     return ArmCoefficients(d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln), E_lt=float(lost.E_lt))
 
 
-def plastic_shares(scene: Scene, share: float) -> tuple[float, float]:
+def plastic_shares(bodies: ContactBodies, share: float) -> tuple[float, float]:
     """Return the plastic work of rod and barrier: the law lets only the softer one yield."""
-    soft = softer(scene)
-    in_rod = soft is not None and soft == scene.projectile.material and "rod-plasticity" in scene.active
+    in_rod = bodies.rod_yields and softer(bodies) == bodies.scene.projectile.material
     return (share, 0.0) if in_rod else (0.0, share)
 
 
-def heat(scene: Scene, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:
+def heat(
+    bodies: ContactBodies, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num
+) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
-    ambient, ignition = scene.heating.ambient, scene.heating.ignition
+    ambient, ignition = bodies.scene.heating.ambient, bodies.scene.heating.ignition
     return Heat(
         patch=patch,
         power=power,
@@ -150,6 +153,6 @@ def heat(scene: Scene, flash: Flash, power: float, flux: float, patch: float, le
         temperature=ambient + flash.peak,
         ignition=ignition,
         time_above_ignition=flash.time_above(ignition - ambient),
-        bound=ambient + flash_bound(scene),
+        bound=ambient + flash_bound(bodies),
         less_vibration=less_vibration,
     )

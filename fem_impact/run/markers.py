@@ -34,12 +34,12 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
 
     ``V_n`` and ``V_t`` are the mass centre's velocities, m/s, with gravity taken out, as it is here.
     """
-    alpha, turn = result.scene.impact.angle, result.motion.Omega * WINDOW
+    alpha, turn = result.plan.scene.impact.angle, result.motion.Omega * WINDOW
     axis, across = (
         np.array([np.sin(alpha), 0.0, np.cos(alpha)]),
         np.array([np.cos(alpha), 0.0, -np.sin(alpha)]),
     )
-    arm = -lever_of(result.scene.projectile.length) * axis
+    arm = -lever_of(result.plan.scene.projectile.length) * axis
     centre = _start_centre(result)
     shake = _mean_shake(result, np.stack([_nearest(centre, result), _nearest(centre + arm, result)]))
     upper = np.array([V_t, 0.0, V_n]) + shake[0]

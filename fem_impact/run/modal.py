@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.plan.measured import summary
+from fem_impact.plan.plan import Plan
 from fem_impact.run.common import motion, plastic_shares, provenance, restitution, validity
 from fem_impact.scene.types import Scene
 
@@ -25,14 +25,14 @@ NO_STRESS = Unknown("a local contact law knows no residual stress")
 KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
-def reduce(scene: Scene, result: ModalResult) -> Outcome:
+def reduce(plan: Plan, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
-    rod = result.rod
-    moved = motion(scene, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
+    rod, scene = result.rod, plan.scene
+    moved = motion(plan, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
     return Outcome(
-        provenance=provenance(scene, "modal", CHOICES, WITHOUT),
+        provenance=provenance(plan, CHOICES, WITHOUT),
         validity=validity(
-            scene,
+            plan,
             result.finished,
             _end(result),
             "the reduced model has no second mesh",
@@ -41,7 +41,7 @@ def reduce(scene: Scene, result: ModalResult) -> Outcome:
         ),
         motion=moved,
         restitution=restitution(scene, moved),
-        energy=_energy(scene, result),
+        energy=_energy(plan, result),
         contact=_contact(result),
         heat=unknown(Heat, "heat is followed on the finite elements only"),
         cost=_cost(result),
@@ -54,10 +54,10 @@ def _end(result: ModalResult) -> str:
     return "Reached max_time before the last separation."
 
 
-def _energy(scene: Scene, result: ModalResult) -> Energy:
+def _energy(plan: Plan, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
-    plastic_rod, plastic_barrier = plastic_shares(scene, result.plastic / E_0)
+    plastic_rod, plastic_barrier = plastic_shares(plan.bodies, result.plastic / E_0)
     return Energy(
         E_0=E_0,
         rigid=result.kinetic / E_0,
@@ -74,7 +74,7 @@ def _energy(scene: Scene, result: ModalResult) -> Energy:
         radiated=Unknown("a local contact law sends no waves into the barrier"),
         closing=Unknown("no contact nodes close"),
         damping=Unknown("the reduced model has no material damping"),
-        gravity=result.fallen / E_0 if "gravity" in scene.active else Unknown("the gravity effect is off"),
+        gravity=result.fallen / E_0 if plan.slots.gravity else Unknown("the gravity effect is off"),
         residual=result.residual / E_0,
     )
 
@@ -144,9 +144,7 @@ def _largest(name: str, held: dict[str, dict[str, Pair]]) -> str:
 @cache
 def _pairs() -> dict[str, dict[str, Pair]]:
     """Return (modal, finest solid) of each quantity by set."""
-    # the file is read, not its package imported: the costs stand above this model
-    text = files("fem_impact").joinpath("cost", "data", "summary.json").read_text(encoding="utf-8")
-    return {name: _pair(cost["settings"]) for name, cost in json.loads(text)["scenes"].items()}
+    return {name: _pair(cost["settings"]) for name, cost in summary()["scenes"].items()}
 
 
 def _pair(settings: list[dict[str, Any]]) -> dict[str, Pair]:

@@ -9,6 +9,8 @@ from importlib import metadata
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
+from fem_impact.scene.write import digest
+
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
 
@@ -22,7 +24,7 @@ ROOMS = (
     *("fem_impact/solid", "fem_impact/modal", "fem_impact/run", "fem_impact/outcome", "meshes", "rigid"),
 )
 """Packages whose code determines the numbers of an outcome."""
-DATA = ("fem_impact/scene/data", "fem_impact/cost/data/summary.json", "rigid/experiments/data")
+DATA = ("fem_impact/scene/data", "fem_impact/plan/data/summary.json", "rigid/experiments/data")
 """Files, and folders of files, that this code reads (expected times of effects are no result)."""
 KINDS = (".toml", ".csv", ".json")
 LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")
@@ -60,4 +62,4 @@ def _files(place: str) -> Iterator[tuple[str, Traversable]]:
 
 def stamp(scene: Scene) -> str:
     """Return what a stored result must have been computed from."""
-    return f"scene {scene.digest()}\nsources {source_digest()}\n"
+    return f"scene {digest(scene)}\nsources {source_digest()}\n"

@@ -12,14 +12,14 @@ import rigid
 from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import approach, arms, effective_mass, projectile
+from fem_impact.physics.contact import ContactBodies, approach, arms, effective_mass, projectile
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.run.common import heat, motion, plastic_shares, provenance, restitution, validity
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.plan.plan import Plan
 
 __all__ = ["rigid_outcome"]
 
@@ -32,17 +32,17 @@ ASSUMPTIONS = (
 )
 
 
-def rigid_outcome(scene: Scene) -> Outcome:
+def rigid_outcome(plan: Plan) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what it cannot know is null with a reason."""
+    scene = plan.scene
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = arms(scene)
-    e, source = _normal_restitution(scene, approach(scene))
-    f = scene.surface.friction if "friction" in scene.active else 0.0
+    e, source = _normal_restitution(plan.bodies)
     impulse = partial(
         rigid.sliding_path,
         *(impact.v_n, impact.v_t),
         e=e,
-        f=f,
+        f=plan.bodies.f,
         d_c=d_c,
         d_d=d_d,
         k2=rod.k2,
@@ -53,47 +53,48 @@ def rigid_outcome(scene: Scene) -> Outcome:
     path = impulse()
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
-    moved, energy = motion(scene, V_n, V_t, Omega, rod.mass, rod.k2), _energy(scene, path, rod)
+    moved, energy = motion(plan, V_n, V_t, Omega, rod.mass, rod.k2), _energy(plan.bodies, path, rod)
     return Outcome(
-        provenance=provenance(scene, "rigid", Unknown(UNKNOWN), WITHOUT),
-        validity=validity(scene, True, "A rigid impact is over at once.", UNKNOWN, (source, *ASSUMPTIONS)),
+        provenance=provenance(plan, Unknown(UNKNOWN), WITHOUT),
+        validity=validity(plan, True, "A rigid impact is over at once.", UNKNOWN, (source, *ASSUMPTIONS)),
         motion=moved,
         restitution=restitution(scene, moved),
         energy=energy,
         contact=Contact(
             intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
         ),
-        heat=_heat(scene, energy.friction * energy.E_0),
+        heat=_heat(plan, energy.friction * energy.E_0),
         cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
     )
 
 
-def _heat(scene: Scene, friction_work: float) -> Heat:
-    if "contact-heating" not in scene.active:
+def _heat(plan: Plan, friction_work: float) -> Heat:
+    if not plan.slots.heat:
         return unknown(Heat, UNKNOWN)
-    return heat(scene, *closed_form(scene, friction_work), Unknown(UNKNOWN))
+    return heat(plan.bodies, *closed_form(plan.bodies, friction_work), Unknown(UNKNOWN))
 
 
-def _normal_restitution(scene: Scene, speed: float) -> tuple[float, str]:
+def _normal_restitution(bodies: ContactBodies) -> tuple[float, str]:
     """Return the energetic restitution and the sentence that names its source."""
+    scene = bodies.scene
     if scene.restitution is not None:
         return scene.restitution, f"Restitution {scene.restitution:g} (energetic) is the scene's own."
-    law = contact_law(scene)
+    law = contact_law(bodies)
     if isinf(law.limit):
         return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
-    e = thornton(law, effective_mass(scene), speed)
+    e = thornton(law, effective_mass(bodies), approach(scene))
     return e, (
         f"Restitution {e:.3f} (energetic) by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
         f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress."
     )
 
 
-def _energy(scene: Scene, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
-    impact = scene.impact
+def _energy(bodies: ContactBodies, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
+    impact = bodies.scene.impact
     start = rigid.kinetic_energy(impact.v_n, impact.v_t, impact.omega, mass=rod.mass, k2=rod.k2)
     kept = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
     normal, tangential = (rod.mass * sum(w) for w in (path.normal_work, path.tangential_work))
-    plastic_rod, plastic_barrier = plastic_shares(scene, float(-normal / start))
+    plastic_rod, plastic_barrier = plastic_shares(bodies, float(-normal / start))
     return replace(
         unknown(Energy, UNKNOWN),
         E_0=float(start),

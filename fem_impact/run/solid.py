@@ -21,13 +21,10 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.flash import flash, halves
-from fem_impact.plan.choose import choices, neglected
-from fem_impact.plan.limits import coarse_tip
 from fem_impact.run.common import heat, motion, provenance, restitution, validity
 from fem_impact.run.markers import replay
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
     from fem_impact.solid.run import SolidResult
 
 
@@ -37,7 +34,7 @@ STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
 ONE_MESH = "one mesh alone has no limit and no band: run the study, or a second tip size"
 
 
-def reduce(scene: Scene, result: SolidResult) -> Outcome:
+def reduce(result: SolidResult) -> Outcome:
     """Return the Outcome of a run.
 
     Raises
@@ -48,11 +45,11 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     if not result.model.book.intervals:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
-    moved = _motion(scene, result)
-    coefficients, energy = restitution(scene, moved), _energy(result, moved)
+    moved = _motion(result)
+    coefficients, energy = restitution(result.plan.scene, moved), _energy(result, moved)
     return Outcome(
-        provenance=provenance(scene, "solid", _choices(scene, result)),
-        validity=_validity(scene, result),
+        provenance=provenance(result.plan, _choices(result)),
+        validity=_validity(result),
         motion=moved,
         restitution=coefficients,
         energy=energy,
@@ -62,19 +59,19 @@ def reduce(scene: Scene, result: SolidResult) -> Outcome:
     )
 
 
-def _choices(scene: Scene, result: SolidResult) -> tuple[EffectChoice, ...]:
+def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
     """Return the choice of effects; measured shares of the run time take the place of expected ones."""
-    return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in choices(scene))
+    return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in result.plan.choices)
 
 
-def _validity(scene: Scene, result: SolidResult) -> Validity:
+def _validity(result: SolidResult) -> Validity:
     open_ledger = _open_ledger(result)
     return validity(
-        scene,
+        result.plan,
         result.finished and not open_ledger,
         open_ledger or result.reason,
         ONE_MESH,
-        warnings=[*_doubts(result), *neglected(scene), *coarse_tip(scene)],
+        warnings=[*_doubts(result), *result.plan.warnings],
     )
 
 
@@ -113,16 +110,16 @@ def _open_ledger(result: SolidResult) -> str:
     return f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
 
 
-def _motion(scene: Scene, result: SolidResult) -> RodMotion:
+def _motion(result: SolidResult) -> RodMotion:
     """Return velocities before and after; gravity's share of the fall since time 0 is taken out."""
-    alpha, m = scene.impact.angle, result.motion
-    fall = rigid.GRAVITY * result.time if "gravity" in scene.active else 0.0
+    plan, m = result.plan, result.motion
+    alpha, fall = plan.scene.impact.angle, (plan.slots.gravity or 0.0) * result.time
     V_n, V_t = m.V_n + fall * np.cos(alpha), m.V_t + fall * np.sin(alpha)
-    return motion(scene, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
+    return motion(plan, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
-    a, E_0, active = result.accounts, result.E_0, result.scene.active
+    a, E_0, active = result.accounts, result.E_0, result.plan.active
     kept = float(rigid.kinetic_energy(moved.V_n, moved.V_t, moved.Omega, mass=moved.mass, k2=moved.k_squared))
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
     check = result.vibration_check
@@ -170,10 +167,10 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
         return unknown(Heat, "the contact-heating effect is off")
     power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
     flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
-    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.scene))
+    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.plan.scene))
     peaks = (float(power.max()), float(flux.max()), float(patch.max()))
     less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
-    return heat(result.scene, found, *peaks, less)
+    return heat(result.plan.bodies, found, *peaks, less)
 
 
 def _contact(result: SolidResult, moved: RodMotion) -> Contact:

@@ -10,7 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene.fields import Field
 from fem_impact.scene.units import parse_number
 
-__all__ = ["check_choice", "check_id", "check_numbers", "check_text"]
+__all__ = ["check_choice", "check_id", "check_names", "check_numbers", "check_text"]
 
 
 _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
@@ -44,6 +44,15 @@ def check_id(value: Any, key: str) -> str:
             remedy='Use small letters, digits and hyphens, such as "my-rod-45".',
         )
     return value
+
+
+def check_names(value: Any, key: str) -> tuple[str, ...]:
+    """Return a list of names, or the one word "auto", as a tuple; what they name is the plan's business."""
+    names = (value,) if value == "auto" else value
+    listed = isinstance(names, (list, tuple)) and all(isinstance(name, str) for name in names)
+    if not listed:
+        raise SceneError('must be "auto" or a list of names.', key=key, value=value)
+    return tuple(check_text(name, key, 60) for name in names)
 
 
 def check_choice(value: Any, choices: tuple[str, ...], key: str) -> str:

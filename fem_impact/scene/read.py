@@ -8,9 +8,9 @@ from math import isclose
 from pathlib import Path
 from typing import Any, TypeVar
 
-from fem_impact.effects.registry import AUTO, check_effects
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
+from fem_impact.scene.checks import check_names
 from fem_impact.scene.fields import Field
 from fem_impact.scene.types import (
     Accuracy,
@@ -96,13 +96,13 @@ def read_scene(data: Table) -> Scene:
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
     _check_keys(data, _TOP)
-    effects = check_effects(data.get("effects", AUTO))
+    effects = check_names(data.get("effects", "auto"), "effects")
     scene = Scene(
         id=_needed(data, "id"),
         title=data.get("title", data["id"]),
         projectile=_within(data, "projectile", _projectile),
         barrier=_within(data, "barrier", _barrier),
-        surface=_within(data, "surface", _surface) if _touches(data, effects) else _frictionless(),
+        surface=_within(data, "surface", _surface) if _rubs(data, effects) else _frictionless(),
         impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
         effects=effects,
         accuracy=_within(data, "accuracy", _accuracy, {}),
@@ -139,9 +139,10 @@ def _restitution(data: Table) -> float | None:
     return parse_number(data["restitution"], "restitution") if "restitution" in data else None
 
 
-def _touches(data: Table, effects: tuple[str, ...]) -> bool:
-    named = "friction" in effects or (AUTO in effects and "-friction" not in effects)
-    return "surface" in data or named
+def _rubs(data: Table, effects: tuple[str, ...]) -> bool:
+    """Return whether a surface is stated, or must be: only a list without friction needs none."""
+    needed = "friction" in effects or ("auto" in effects and "-friction" not in effects)
+    return "surface" in data or needed
 
 
 def _frictionless() -> Surface:

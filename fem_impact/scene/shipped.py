@@ -11,7 +11,7 @@ from typing import Any
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.library import _near, shipped, stated
-from fem_impact.scene.read import read_dict
+from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
 
@@ -35,7 +35,7 @@ def load(id_or_path: str | Path) -> Scene:
         raise UsageError(
             "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
         )
-    return Scene.from_toml(name)
+    return read_toml(Path(name))
 
 
 def _looks_like_a_file(name: str) -> bool:

@@ -6,17 +6,15 @@ are the same object and pass the same checks.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Literal, get_args
 
-from fem_impact.effects.registry import check_effects
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
-from fem_impact.scene.checks import check_choice, check_id, check_numbers, check_text
+from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 
 __all__ = [
+    "FIDELITIES",
     "MEASURED_SETS",
     "Accuracy",
     "Barrier",
@@ -30,6 +28,7 @@ __all__ = [
 ]
 
 
+FIDELITIES = ("rigid", "modal", "solid")
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
     *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),
@@ -184,7 +183,7 @@ class Scene:
 
     ``measured`` names the published set it repeats, if any; ``restitution`` (energetic, 0 to 1) is what the
     rigid fidelity takes instead of Thornton's law.
-    ``effects`` is what was stated, with or without ``"auto"``; `active` is what the model has.
+    ``effects`` is what was stated, with or without ``"auto"``; the plan tells what the model has.
     """
 
     id: str
@@ -203,57 +202,12 @@ class Scene:
     def __post_init__(self) -> None:
         check_id(self.id, "id")
         check_text(self.title, "title")
-        object.__setattr__(self, "effects", check_effects(self.effects))
+        object.__setattr__(self, "effects", check_names(self.effects, "effects"))
         if self.measured is not None:
             check_choice(self.measured, MEASURED_SETS, "measured")
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
         _check_tip_size(self)
-
-    @property
-    def active(self) -> tuple[str, ...]:
-        """Names of the effects in the model: those that are listed, or those that ``auto`` chooses."""
-        from fem_impact.plan.choose import active
-
-        return active(self)
-
-    @classmethod
-    def from_toml(cls, path: str | Path) -> Scene:
-        """Read a scene file; every mistake is a `SceneError` naming file, key, value and remedy."""
-        from fem_impact.scene.read import read_toml
-
-        return read_toml(path)
-
-    @classmethod
-    def from_dict(cls, data: Mapping[str, Any], source: str = "scene") -> Scene:
-        """Make a scene from nested tables laid out as in a scene file."""
-        from fem_impact.scene.read import read_dict
-
-        return read_dict(data, source)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return the complete scene as nested tables, quantities written with their units."""
-        from fem_impact.scene.write import to_dict
-
-        return to_dict(self)
-
-    def to_toml(self) -> str:
-        """Return the complete scene as a TOML file that reads back as an equal object."""
-        from fem_impact.scene.write import to_toml
-
-        return to_toml(self)
-
-    def digest(self) -> str:
-        """Return the SHA-256 (64 hex digits) of the complete scene; equal scenes have equal digests."""
-        from fem_impact.scene.write import digest
-
-        return digest(self)
-
-    def replace(self, key: str, value: Any) -> Scene:
-        """Return a copy with one dotted key changed, such as ``("accuracy.tip_size", "0.5 mm")``."""
-        from fem_impact.scene.shipped import replace
-
-        return replace(self, key, value)
 
 
 def _check_tip_name(tip: str) -> None:

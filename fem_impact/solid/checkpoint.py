@@ -23,7 +23,7 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
 from fem_impact.solid.state import State
 
-__all__ = ["INTERVAL", "Checkpoint", "Moving", "put_back", "take_out"]
+__all__ = ["Checkpoint", "Moving", "put_back", "take_out"]
 
 
 class Moving(Protocol):
@@ -74,7 +74,6 @@ def _set(owner: Any, name: str, value: np.ndarray) -> None:
         now[...] = value
 
 
-INTERVAL = 30.0  # s of wall time between checkpoints
 _MARK = b"fem-ckp1"
 _START = len(_MARK) + hashlib.sha256().digest_size
 _STAMP = "stamp"

@@ -9,31 +9,13 @@ the angle turned in a step.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
 from typing import ClassVar
-
-import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
 from fem_impact.fem.sparse import NodeProduct
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.state import State
-
-POINTS = 2  # that stand for the cylinder behind the nose
-
-
-def rest_points(start: float, length: float, diameter: float) -> Array:
-    """Return the points (2, 3), m, at the radius of inertia on both sides of the cylinder's centre."""
-    behind = length - start
-    radius = sqrt(behind**2 / 12 + diameter**2 / 16)
-    centre = start + behind / 2
-    return np.array([[0.0, 0.0, centre - radius], [0.0, 0.0, centre + radius]])
-
-
-def rest_mass(start: float, length: float, diameter: float, rho: float) -> float:
-    """Return the mass, kg, of half the cylinder behind the nose."""
-    return rho * pi * diameter**2 / 8 * (length - start)
 
 
 @dataclass(slots=True)

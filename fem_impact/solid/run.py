@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
-from fem_impact.plan.plan import specify
-from fem_impact.progress import Progress, compiling
-from fem_impact.run.program import stamp
+from fem_impact.options import RunOptions
+from fem_impact.plan.plan import Plan
+from fem_impact.progress import compiling
 from fem_impact.solid.build import build
-from fem_impact.solid.checkpoint import INTERVAL, Checkpoint
+from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.doubts import doubts, skin_share
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import ProgressObserver, Watch
+from fem_impact.solid.observers import ProgressObserver
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.shares import run_time_shares
 from fem_impact.solid.state import State
 from fem_impact.solid.watchers import Stopwatch, Watchers
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
     from fem_impact.solid.heatwatch import HeatWatch
 
 
@@ -52,7 +49,7 @@ class SolidResult:
 
     Attributes
     ----------
-    scene : what was run
+    plan : what was run
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
@@ -63,7 +60,7 @@ class SolidResult:
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
 
-    scene: Scene
+    plan: Plan
     model: Model
     view: RodState
     time: float
@@ -84,20 +81,12 @@ class SolidResult:
     shares: dict[str, float | None] = field(default_factory=dict)
 
 
-def solve(
-    scene: Scene,
-    out: Path | None = None,
-    progress: Callable[[Progress], None] | None = None,
-    resume: bool = False,
-    interval: float = INTERVAL,
-    model: Model | None = None,
-) -> SolidResult:
-    """Run a scene; histories, fields and checkpoints go to ``out`` while it runs.
+def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = None) -> SolidResult:
+    """Run a scene as planned; histories, fields and checkpoints go to ``options.out`` while it runs.
 
     Parameters
     ----------
-    resume : go on from the checkpoint in ``out``, bit for bit as if the run had never stopped
-    interval : s of wall time between checkpoints
+    plan, options : what is computed, and how the run is kept
     model : a prepared model of the scene instead of a built one
 
     Raises
@@ -108,21 +97,25 @@ def solve(
         If the motion is no longer finite.
     """
     whole = Stopwatch()
-    spec = specify(scene)
-    model = model or build(scene, spec)
+    model, out = model or build(plan), options.out
     view = RodState.of(model)
     state = model.initial_state()
-    looking = Watchers.of(scene, spec, model, view, out, resume)
+    looking = Watchers.of(plan, model, view, out, options.resume)
     observers: list[Observer] = [*looking.all]
-    if progress is not None:
-        observers.append(_meter(progress, scene, model, looking.watch))
-    _warm_up(model)
+    if options.progress is not None:
+        scene = plan.scene
+        if not compiled_before():
+            options.progress(compiling(scene.accuracy.max_time, 20))
+        end = scene.accuracy.max_time
+        observers.append(ProgressObserver(options.progress, looking.watch, model, end, scene.id))
+    evaluate(model, model.initial_state())  # kernels compile on a throw-away state, not in the times
     clock = Stopwatch()
     if out is not None:
         holders = looking.holders(model, state, clock)
-        saved = Checkpoint(out / CHECKPOINT, stamp(scene), holders, interval, lambda: bool(looking.reason))
+        place, every = out / CHECKPOINT, options.checkpoint_s
+        saved = Checkpoint(place, options.stamp, holders, every, lambda: bool(looking.reason))
         observers.append(saved)
-        if resume:
+        if options.resume:
             saved.restore()
             advance(model, state)  # the forces of the checkpoint's step are known
     marching = Stopwatch()
@@ -136,21 +129,13 @@ def solve(
     check = view.vibration(state, model) if free else None
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
     cost = LoopCost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
-    result = _result(scene, model, view, state, looking, check, cost)
+    result = _result(plan, model, view, state, looking, check, cost)
     step_time = result.cost.cpu / max(result.steps, 1)
     return replace(result, shares=run_time_shares(model, state, step_time, looking.heat))
 
 
-def _meter(
-    progress: Callable[[Progress], None], scene: Scene, model: Model, watch: Watch
-) -> ProgressObserver:
-    if not compiled_before():
-        progress(compiling(scene.accuracy.max_time, 20))
-    return ProgressObserver(progress, watch, model, scene.accuracy.max_time, scene.id)
-
-
 def _result(
-    scene: Scene,
+    plan: Plan,
     model: Model,
     view: RodState,
     state: State,
@@ -160,7 +145,7 @@ def _result(
 ) -> SolidResult:
     ledger, stop = looking.watch.ledger, looking.stop
     return SolidResult(
-        scene=scene,
+        plan=plan,
         model=model,
         view=view,
         time=state.time,
@@ -179,11 +164,6 @@ def _result(
         warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
         heat=looking.heat,
     )
-
-
-def _warm_up(model: Model) -> None:
-    """Let the force kernels compile on a throw-away state, so that times are times of the run."""
-    evaluate(model, model.initial_state())
 
 
 def _peak_memory() -> float:

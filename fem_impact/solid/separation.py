@@ -10,24 +10,18 @@ from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
-from fem_impact.physics.beam import bending_period
+from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    pass
 
 
-HORIZON, PERIODS = 4e-3, 1.5  # s, the camera's window: 40 frames at 10 kHz; of the rod's bending, if longer
 SAMPLE = 2e-6  # s
 QUIET = 20e-6  # s without touch before it is worth asking: waves cross the block a few times
-
-
-def horizon(scene: Scene) -> float:
-    """Return how far a free flight is looked ahead, s: a long rod's tip comes back with its bending."""
-    return max(HORIZON, PERIODS * bending_period(scene))
 
 
 @dataclass(slots=True)

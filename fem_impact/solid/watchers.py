@@ -13,6 +13,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
+from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import contact_estimate
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.doubts import SkinWatch
@@ -20,14 +21,14 @@ from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import Frames, History, PeakForce, Watch, history_column
 from fem_impact.solid.rodview import FieldSampler, RodState
-from fem_impact.solid.separation import Separation, horizon
+from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.growing import HistoryWriter
 
 if TYPE_CHECKING:
-    from fem_impact.effects.slots import ModelSpec
+    from fem_impact.plan.plan import Plan
     from fem_impact.scene.types import Scene
     from fem_impact.solid.heatwatch import HeatWatch
 
@@ -92,10 +93,9 @@ class Watchers:
     stop: Separation
 
     @classmethod
-    def of(
-        cls, scene: Scene, spec: ModelSpec, model: Model, view: RodState, out: Path | None, go_on: bool
-    ) -> Watchers:
+    def of(cls, plan: Plan, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
         """Make them; ``go_on`` keeps the files of the part of the run that a checkpoint ended."""
+        scene = plan.scene
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames = [], []
         if out is not None:
@@ -103,10 +103,10 @@ class Watchers:
             writer = HistoryWriter(out / "history.csv", (*HISTORY, *own), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
-            frames = [_frames(scene, model, view, out, go_on)]
+            frames = [_frames(plan, model, view, out, go_on)]
         stop = Separation(model, view, scene.accuracy.max_time, horizon(scene), _untouchable(scene, model))
         skin, peak = SkinWatch(model), PeakForce(model.book)
-        heat = _heat_watch(model) if spec.heat else None
+        heat = _heat_watch(model) if plan.slots.heat else None
         return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
 
     @property
@@ -144,9 +144,10 @@ def _heat_watch(model: Model) -> HeatWatch:
     return HeatWatch(model)
 
 
-def _frames(scene: Scene, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
+def _frames(plan: Plan, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
+    scene = plan.scene
     bodies = [scene.projectile.material, scene.barrier.material]
     fields = FieldSampler.of(model, view, [(m.E, m.nu) for m in bodies])
     body = {"body": fields.body}
     writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
-    return Frames(fields, writer, FRAMES_SPAN * contact_estimate(scene).duration / scene.save.frames)
+    return Frames(fields, writer, FRAMES_SPAN * contact_estimate(plan.bodies).duration / scene.save.frames)

@@ -16,6 +16,7 @@ from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import contact_law
+from fem_impact.plan.plan import plan
 from fem_impact.reference.free_modes import bending_modes
 from fem_impact.reference.hertz import SPAN
 from fem_impact.reference.oblique import ObliqueRod, oblique_rod
@@ -110,7 +111,7 @@ def _rod(each: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
         np.array([known(run.restitution.edge.e) for _, run, _ in each]),
         np.array([known(stiff.restitution.edge.e) for _, _, stiff in each]),
         np.array([T1 / known(stiff.contact.intervals)[0].duration for _, _, stiff in each]),
-        T1 / contact_time(contact_law(level), projectile(level).mass, drop.speed),
+        T1 / contact_time(contact_law(plan(level, "modal").bodies), projectile(level).mass, drop.speed),
     )
 
 
@@ -145,7 +146,7 @@ def _effective(rod: ObliqueRod) -> float:
 def _hertz_time(drop: Drop) -> float:
     """Return Hertz' contact time of a drop, s (Johnson, Contact Mechanics, section 11.4)."""
     scene = drop.scene()
-    stiffness, v_n = contact_law(scene).stiffness, -scene.impact.v_n
+    stiffness, v_n = contact_law(plan(scene, "modal").bodies).stiffness, -scene.impact.v_n
     depth = (5 * _effective(slender(drop)) * v_n**2 / (4 * stiffness)) ** 0.4
     return float(SPAN * depth / v_n)
 

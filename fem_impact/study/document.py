@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -63,11 +63,11 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class StudyResult:
-    """The document that study.json holds, its text for a terminal, and notes on what could not be drawn."""
+    """The document that study.json holds, its text for a terminal, directories of runs to be presented."""
 
     document: dict[str, Any]
     text: str
-    notes: list[str] = field(default_factory=list)
+    runs: tuple[Path, ...] = ()
 
 
 Plan = Callable[[Request, Results], list[Job]]

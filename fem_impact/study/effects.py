@@ -11,14 +11,15 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.effects.registry import BARRIERS, EFFECTS, NAMES
-from fem_impact.effects.slots import Harm
+from fem_impact.effects.slots import Harm, quick_impact
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.beam_impact import BeamImpact, strike
-from fem_impact.plan.choose import choices, everything
+from fem_impact.physics.beam_impact import BeamImpact
+from fem_impact.plan.choose import choices, everything, resolved
 from fem_impact.plan.limits import widest_tip_size
+from fem_impact.plan.plan import plan as plan_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.document import Paper, Request, Sheet, StudyResult, publish
@@ -99,7 +100,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         if isinstance(run := results[f"{name}{change}"], Outcome)
     ]
     beside = [
-        expected_row(name, whole, strike(everything(scenes[name])))
+        expected_row(name, whole, quick_impact(everything(scenes[name])))
         for name, (_, whole) in pairs.items()
         if isinstance(whole, Outcome)
     ]
@@ -126,7 +127,7 @@ def told(scene: Scene, effects: Sequence[str]) -> Harm:
     changed = effects[-1].removeprefix("-")
     if EFFECTS[changed].harm and changed not in BARRIERS:
         return next(choice.harm for choice in choices(scene) if choice.name == changed)
-    before, after = strike(scene), strike(replace(scene, effects=tuple(effects)))
+    before, after = (quick_impact(resolved(s)) for s in (scene, replace(scene, effects=tuple(effects))))
     return Harm(after.e - before.e, after.E_vib - before.E_vib)
 
 
@@ -167,7 +168,7 @@ def _scenes(request: Request) -> dict[str, Scene]:
 def _coarse(scene: Scene) -> Scene:
     """Return the scene with effects chosen by themselves, on a tip as coarse as its contact allows."""
     scene = replace_all(scene, {"effects": "auto", "save.frames": 0})
-    size = min(TIP, widest_tip_size(scene))
+    size = min(TIP, widest_tip_size(plan_of(scene, "modal").bodies))
     return replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
 
 

@@ -15,7 +15,6 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import shares
-from fem_impact.report.present import present
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.compare import Row, compare, text_table
@@ -73,7 +72,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
             changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUT_CHANGES})
     document, text = write_study(outcomes, failures_of(results), changed, out)
     folders = [out / outcome.provenance.scene_id for outcome in outcomes]
-    return StudyResult(document, text, present(folders, out, progress))
+    return StudyResult(document, text, tuple(folders))
 
 
 def with_limits(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:

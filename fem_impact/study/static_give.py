@@ -14,6 +14,7 @@ from fem_impact.figures.lines import Panel, Series
 from fem_impact.modal.impact import plastic_work
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.plan.plan import plan
 from fem_impact.study.criterion_measure import Rod, Rods
 from fem_impact.study.document import Picture, Sheet
 from fem_impact.study.rods import BODY, PAPER_RODS, Drop
@@ -98,7 +99,7 @@ def give_sheet(gives: Gives) -> Sheet:
 def static_restitution(drop: Drop) -> float:
     """Return e of a frictionless drop whose rod gives way elastically and is left without vibration."""
     scene = drop.scene()
-    rod, law = modal_rod(scene), contact_law(scene)
+    rod, law = modal_rod(scene), contact_law(plan(scene, "modal").bodies)
     mass = rod.mass / (1 + rod.centre_t**2 / rod.k2)
     energy = 0.5 * mass * scene.impact.v_n**2
     flexibility = float((rod.along_n**2 / rod.omega**2).sum())

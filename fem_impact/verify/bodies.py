@@ -12,7 +12,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Bools
 from fem_impact.fem.body import MeshedBody as Meshed
-from fem_impact.fem.body import make_body, nose_and_whole, slices_of
+from fem_impact.fem.body import assemble_masses, invert, make_body, nose_and_whole, slices_of
 from fem_impact.fem.eigen import MassStiffness
 from fem_impact.fem.elements import Kind
 from fem_impact.fem.flight import RigidMotion, rigid_motion
@@ -113,7 +113,7 @@ def body_model(body: FreeBody) -> Model:
     block = body.block
     layout = number(body.mesh, block.mesh if block else None)
     parts = [_part(body, layout), *([_block_part(block, layout)] if block else [])]
-    mass = build.assemble_masses(parts, layout)
+    mass = assemble_masses(parts, layout)
     inverse = _inverse(body, parts, mass, layout)
     drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
     x, v = _start(body, parts, layout, drawn)
@@ -169,7 +169,7 @@ def _block_part(block: Block, layout: DofLayout) -> Meshed:
 
 
 def _inverse(body: FreeBody, parts: list[Meshed], mass: Array, layout: DofLayout) -> Array:
-    inverse = build.invert(mass, parts)
+    inverse = invert(mass, parts)
     if body.held is not None:
         inverse[layout.rod[body.held]] = 0.0
     return inverse

@@ -12,7 +12,7 @@ from math import pi
 import numpy as np
 
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
@@ -74,7 +74,7 @@ def spin(p: Values) -> Solved:
     allowed = (SMALL + 0.4 * stretch) * abs(p["omega"]) + STILL
     frozen = dict(p) | {"v_n": 1e-3, "v_t": 0.0, "angle": pi / 4, "max_time": 1e-2}
     scene = rod_scene(frozen, ("vibration", "barrier-rigid", "large-rotation"))
-    model = build(scene, specify(scene)).coasting()
+    model = build(plan(scene)).coasting()
     state, ledger = model.initial_state(), model.ledger()
     watch = _Strain(ledger, p["time"])
     march(model, state, [watch])
@@ -100,7 +100,7 @@ def momentum(p: Values) -> Solved:
     away = p["omega"] * float(projectile(scene).arms(p["angle"])[0])
     fastest = CLOSING * bar_speed(p["E"], p["rho"])
     within(p, "v_n", max(away, 0.0) + 1e-4, away + fastest, "m/s", "the tip must close in, and slowly.")
-    result = run_solid(scene)
+    result = run_solid(plan(scene))
     rod, motion, book = projectile(scene), result.motion, result.model.book
     impulse, moment = 2 * book.impulse[1], -2 * book.impulse[2]
     start = result.model.start[0][result.view.places]

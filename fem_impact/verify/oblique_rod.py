@@ -30,6 +30,7 @@ import numpy as np
 import rigid
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan
 from fem_impact.reference.hertz import SpringRow, contact_modulus, equivalent_radius, hertz, tangential_ratio
 from fem_impact.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
 from fem_impact.solid.run import SolidResult
@@ -66,7 +67,7 @@ def bending_energy(result: SolidResult) -> float:
     """Return the energy, J, of the modes that move the rod's axis sideways."""
     mesh, layout = result.model.geometry.rod.mesh, result.model.layout
     axis = (np.hypot(mesh.points[:, 0], mesh.points[:, 1]) < 1e-9) & ~mesh.is_hanging
-    shape, alpha = result.view.modes.shape, result.scene.impact.angle
+    shape, alpha = result.view.modes.shape, result.plan.scene.impact.angle
     t, n = (shape[layout.rod[axis, c]] for c in (0, 2))
     across = abs(np.cos(alpha) * t - np.sin(alpha) * n).max(axis=0)
     along = abs(np.sin(alpha) * t + np.cos(alpha) * n).max(axis=0)
@@ -74,7 +75,7 @@ def bending_energy(result: SolidResult) -> float:
 
 
 def _checks(result: SolidResult, exact: ObliqueRebound, corner: ObliqueRebound) -> tuple[Check, ...]:
-    impact, rod = result.scene.impact, projectile(result.scene)
+    impact, rod = result.plan.scene.impact, projectile(result.plan.scene)
     d_c = rod.arms(impact.angle)[0]
     e = float(rigid.restitution(impact.v_n, result.motion.V_n, result.motion.Omega, d_c, impact.omega))
     intervals = result.model.book.intervals
@@ -105,7 +106,7 @@ def solve(p: Values) -> Solved:
     barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
     effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
-    result = run_solid(scene)
+    result = run_solid(plan(scene))
     if result.model.book.touching:
         remedy = "Give a longer time."
         raise SceneError("ends in mid contact.", key="max_time", value=f"{p['max_time']:g} s", remedy=remedy)

@@ -7,15 +7,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.physics.contact_law import FAINT, MERGE_GAP
 
 # places in the step record that the kernels fill (half model)
 IMPULSE_T, IMPULSE_N, ARM, FRICTION, CLOSING, ACTIVE, OUTSIDE, SWEEPS = range(8)
 RECORD = 8
 
-# releases shorter than this are one contact: a few passages of a wave across the tip
-MERGE_GAP = 10e-6
-# below this share of the largest impulse of a step, a touch neither starts nor prolongs a contact
-FAINT = 1e-3
 
 # what a checkpoint keeps of a contact
 MOVING = tuple(
