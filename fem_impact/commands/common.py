@@ -14,11 +14,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.commands.parser import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
 from fem_impact.files.run_directory import COMPUTED
-from fem_impact.outcome.keys import Num, Unknown, known, or_none
-from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import shares
 from fem_impact.progress import NullMeter, ProgressMeter, meter_for
-from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -30,7 +26,6 @@ __all__ = [
     "checked_result",
     "chosen_meter",
     "print_json",
-    "print_outcome",
     "print_table",
     "read_changes",
 ]
@@ -170,72 +165,9 @@ def _cannot(out: Path, error: Exception) -> str:
     return f"{out}: cannot be written ({words}). Choose another directory with --out."
 
 
-_MOTION = (
-    ("impulse ratio mu", "mu", ""),
-    ("V_n after", "V_n_m_per_s", "m/s"),
-    ("V_t after", "V_t_m_per_s", "m/s"),
-    ("Omega after", "Omega_rad_per_s", "rad/s"),
-)
-_IF_ON = ("damping", "gravity")
-"""Shares that are not mentioned where their effect is off."""
-
-
 def print_json(document: Any) -> None:
     """Print one JSON document; NaN and infinity are never written."""
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
-
-
-def print_outcome(outcome: Outcome, out: Path) -> None:
-    """Print the motion after impact, where the energy went, and every warning."""
-    lines = [f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}", ""]
-    # only a measured set has arms of the paper
-    arms = ("paper's", "e_paper") if or_none(outcome.restitution.paper.e) is not None else ("tip's", "e_edge")
-    restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
-    lines += [_motion(outcome, *row) for row in (restitution, *_MOTION)]
-    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
-    listed = _listed(outcome)
-    lines += [_share(label, value) for label, value in listed.items()]
-    lines += [_share("residual of the ledger", outcome.energy.residual)]
-    lines += ["", _share("friction + plate's top 0.1 mm", outcome.energy.skin)]
-    lines += [_vibration_note(outcome)] if or_none(outcome.energy.below_floor) else []
-    lines += _accuracy(outcome)
-    lines += _unknown({**listed, "friction + plate's top 0.1 mm": outcome.energy.skin})
-    lines += ["", *(line for sentence in _sentences(outcome) for line in wrapped(f"note: {sentence}"))]
-    sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
-
-
-def _listed(outcome: Outcome) -> dict[str, Num]:
-    """Return the shares of E_0 in this run by their labels."""
-    values = {share: share.of(outcome.energy) for share in shares("terminal")}
-    return {
-        share.label: value
-        for share, value in values.items()
-        if not (isinstance(value, Unknown) and share.key.path[-1] in _IF_ON)
-    }
-
-
-def _accuracy(outcome: Outcome) -> list[str]:
-    """Return expected and achieved error and time of a run that a target chose."""
-    v = outcome.validity
-    if isinstance(v.accuracy_target, Unknown):
-        return []
-    told = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
-    lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
-    for word, error, wall in told:
-        lines += [f"  {word} error of e and E_vib {_percent(error)}, time {_value(wall)} s"]
-    limits = or_none(v.mesh_limit)
-    if limits:
-        e, vibration = (_number(limits[name]) for name in ("e_edge", "E_vib_over_E_0"))
-        lines += [f"  all runs together: e (tip's arms) {e}, E_vib/E_0 {vibration}"]
-    return lines
-
-
-def _percent(value: Num) -> str:
-    return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
-
-
-def _sentences(outcome: Outcome) -> list[str]:
-    return [*outcome.validity.assumptions, *outcome.validity.outside, *outcome.validity.warnings]
 
 
 def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None:
@@ -245,38 +177,3 @@ def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None
     for text in texts:
         line = "  ".join(cell.ljust(width) for cell, width in zip(text, widths, strict=True))
         sys.stdout.write(line.rstrip() + "\n")
-
-
-def _motion(outcome: Outcome, words: str, name: str, unit: str) -> str:
-    value, band = outcome.estimate(KEY_TABLE[name])
-    spread = f" +- {_number(band)}" if band is not None else ""
-    told = "" if isinstance(value, Unknown) else f"{spread} {unit}"
-    return f"  {words:<30} {_value(value)}{told}".rstrip()
-
-
-def _share(label: str, share: Num) -> str:
-    text = f"{'not known':>11}" if isinstance(share, Unknown) else f"{100 * share:9.3f} %"
-    return f"  {label:<30} {text.replace('-0.000', ' 0.000')}"
-
-
-def _unknown(listed: Mapping[str, Num]) -> list[str]:
-    """Return why shares are not known, each reason once."""
-    named: dict[str, list[str]] = {}
-    for label, value in listed.items():
-        if isinstance(value, Unknown):
-            named.setdefault(value.reason, []).append(label)
-    told = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
-    return [line for lines in ([""], *told) for line in lines] if told else []
-
-
-def _vibration_note(outcome: Outcome) -> str:
-    floor = _value(outcome.energy.vibration_floor)
-    return f"  vibration is below its numerical floor (fraction {floor})"
-
-
-def _value(value: Num) -> str:
-    return f"not known: {value.reason}" if isinstance(value, Unknown) else _number(value)
-
-
-def _number(value: float) -> str:
-    return f"{value:.4g}"

@@ -8,23 +8,12 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import (
-    changed_scene,
-    checked_out,
-    chosen_meter,
-    print_json,
-    print_outcome,
-    print_table,
-)
+from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json, print_table
 from fem_impact.commands.parser import Options
-from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
-from fem_impact.outcome.groups import EffectChoice
-from fem_impact.outcome.keys import keys_of
-from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import shipped, source_of
 from fem_impact.scene.shipped import load
@@ -33,7 +22,8 @@ from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
-    pass
+    from fem_impact.outcome.groups import EffectChoice
+    from fem_impact.plan.plan import Plan
 
 __all__ = ["check", "run", "scenes"]
 
@@ -46,6 +36,7 @@ def run(options: Options) -> int:
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
+    from fem_impact.commands.outcome import print_outcome
     from fem_impact.cost.to_target import simulate
     from fem_impact.files.run_directory import earlier
 
@@ -113,12 +104,14 @@ def scenes(options: Options) -> int:
 
 def check(options: Options) -> int:
     """Print a scene's full statement: values, sources, effects and validity."""
-    scene = changed_scene(options.scene, options.changes)
-    statement = _statement(scene)
+    from fem_impact.plan.plan import plan
+
+    planned = plan(changed_scene(options.scene, options.changes))
+    statement = _statement(planned)
     if options.json:
         print_json(statement)
     else:
-        sys.stdout.write(_readable(scene, statement))
+        sys.stdout.write(_readable(planned, statement))
     return 0
 
 
@@ -133,8 +126,8 @@ def _listed(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _statement(scene: Scene) -> dict[str, Any]:
-    planned = plan(scene)
+def _statement(planned: Plan) -> dict[str, Any]:
+    scene = planned.scene
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
@@ -147,7 +140,9 @@ def _statement(scene: Scene) -> dict[str, Any]:
 
 
 def _flat(choice: EffectChoice) -> dict[str, Any]:
-    return {key.name: key.of(choice) for key in keys_of(EffectChoice)}
+    from fem_impact.outcome.keys import keys_of
+
+    return {key.name: key.of(choice) for key in keys_of(type(choice))}
 
 
 def _sources(scene: Scene) -> dict[str, str]:
@@ -160,14 +155,13 @@ def _sources(scene: Scene) -> dict[str, str]:
     return found | {"surface.friction": scene.surface.source}
 
 
-def _readable(scene: Scene, statement: dict[str, Any]) -> str:
-
-    lines = [to_toml(scene).rstrip(), "", "Sources"]
+def _readable(planned: Plan, statement: dict[str, Any]) -> str:
+    lines = [to_toml(planned.scene).rstrip(), "", "Sources"]
     lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Effects"]
-    lines += [line for choice in plan(scene).choices for line in _effect_lines(choice.told(choice.share))]
+    lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
     lines += ["", "Validity"]
     inside = "inside the measured range of speed, angle, rod, steels and surfaces"
@@ -190,6 +184,8 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
 
 def _harm(effect: EffectChoice) -> str:
     """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    from fem_impact.effects.registry import BARRIERS
+
     if effect.name in BARRIERS and not effect.on:
         return ""
     return (

@@ -29,13 +29,13 @@ class AccountArea:
 
 
 RUNNING = (
-    AccountArea("E_kinetic_rod_J", "kinetic, rod", PALETTE["blue"]),
-    AccountArea("E_strain_rod_J", "strain, rod", PALETTE["sky"]),
-    AccountArea("E_plastic_rod_J", "plastic, rod", PALETTE["purple"]),
+    AccountArea("E_kinetic_rod_J", "kinetic rod", PALETTE["blue"]),
+    AccountArea("E_strain_rod_J", "strain rod", PALETTE["sky"]),
+    AccountArea("E_plastic_rod_J", "plastic rod", PALETTE["purple"]),
     AccountArea("W_friction_J", "friction", PALETTE["green"]),
-    AccountArea("E_plastic_barrier_J", "plastic, barrier", PALETTE["vermilion"]),
-    AccountArea("E_strain_barrier_J", "strain, barrier", PALETTE["orange"]),
-    AccountArea("E_kinetic_barrier_J", "kinetic, barrier", PALETTE["sand"]),
+    AccountArea("E_plastic_barrier_J", "plastic barrier", PALETTE["vermilion"]),
+    AccountArea("E_strain_barrier_J", "strain barrier", PALETTE["orange"]),
+    AccountArea("E_kinetic_barrier_J", "kinetic barrier", PALETTE["sand"]),
     AccountArea("W_radiated_J", "radiated", PALETTE["yellow"]),
     AccountArea("W_damping_J", "damping", PALETTE["night"]),
     AccountArea("W_closing_J", "contact closing", PALETTE["grey"]),

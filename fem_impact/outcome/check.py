@@ -46,8 +46,9 @@ def check_record(values: Mapping[str, Any], table: Table, source: str) -> None:
     for contact in values["contacts"] or ():
         if contact["start_s"] > contact["end_s"]:
             _refuse("has a contact that ends before it starts", "contacts", values["contacts"], source)
-    for name in ("mesh_limit", "mesh_band"):
-        _refuse(_mesh_complaint(values[name] or {}, table, name), name, values[name], source)
+    limits, bands = values["mesh_limit"] or {}, values["mesh_band"] or {}
+    _refuse(_limit_complaint(limits, table), "mesh_limit", limits, source)
+    _refuse(_band_complaint(bands, limits), "mesh_band", bands, source)
     _check_reasons(values, table, source)
 
 
@@ -102,13 +103,16 @@ def _entries_complaint(key: Key, value: Any) -> str | None:
     return next((f'has an entry whose "{entry.name}" {why}' for entry, why in wrong if why), None)
 
 
-def _mesh_complaint(numbers: Mapping[str, float], table: Table, name: str) -> str | None:
-    strange = next((key for key in numbers if key not in table or not table[key].banded), None)
-    if strange is not None:
-        return f'names "{strange}", a key that meshes give no limit'
-    if name == "mesh_band" and min(numbers.values(), default=0.0) < 0.0:
-        return "gives a half-width below zero"
-    return None
+def _limit_complaint(limits: Mapping[str, float], table: Table) -> str | None:
+    strange = next((name for name in limits if name not in table or not table[name].banded), None)
+    return None if strange is None else f'names "{strange}", a key that meshes give no limit'
+
+
+def _band_complaint(bands: Mapping[str, float], limits: Mapping[str, float]) -> str | None:
+    alone = next((name for name in bands if name not in limits), None)
+    if alone is not None:
+        return f'names "{alone}", which has no limit'
+    return "gives a half-width below zero" if min(bands.values(), default=0.0) < 0.0 else None
 
 
 def _refuse(wrong: str | None, name: str, value: Any, source: str) -> None:

@@ -48,17 +48,17 @@ def _share(name: str, label: str, colour: str, *hidden: Place) -> EnergyShare:
 SHARES = (
     _share("E_r", "rigid motion", "blue", "comparison"),
     _share("E_vib", "vibration", "night"),
-    _share("E_locked_rod", "locked-in rod", "sky"),
-    _share("E_plastic_rod", "plastic rod", "purple"),
     _share("W_friction", "friction", "green"),
+    _share("E_plastic_rod", "plastic rod", "purple"),
     _share("E_plastic_barrier", "plastic barrier", "vermilion"),
-    _share("E_locked_barrier", "locked-in barrier", "orange"),
+    _share("E_locked_rod", "locked in rod", "sky"),
+    _share("E_locked_barrier", "locked in barrier", "orange"),
     _share("W_radiated", "radiated", "yellow"),
-    _share("W_damping", "damping", "sand", "comparison"),
     _share("W_closing", "contact closing", "grey", "comparison"),
+    _share("W_damping", "damping", "sand", "comparison"),
     _share("W_gravity", "gravity", "grey", "comparison", "figure"),
 )
-"""Every share, bottom to top in a figure; what gravity adds is no part of E_0 and no area."""
+"""Every share, in the order of tables and figures; what gravity adds is no part of E_0 and no area."""
 
 
 def shares(place: Place) -> tuple[EnergyShare, ...]:

@@ -122,12 +122,13 @@ def restitution(scene: Scene, motion: RodMotion) -> Restitution:
 
 def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoefficients:
     """Return coefficients and losses with one set of arms, m."""
-    velocities, body = (m.v_n, m.v_t, m.V_n, m.V_t, m.Omega), {"d_c": d_c, "d_d": d_d, "k2": m.k_squared}
-    lost = rigid.losses(*velocities, **body, omega=omega, mass=m.mass).fractions()
+    velocities = (m.v_n, m.v_t, m.V_n, m.V_t, m.Omega)
+    body = {"d_c": d_c, "d_d": d_d, "k2": m.k_squared, "omega": omega}
+    lost = rigid.losses(*velocities, **body, mass=m.mass).fractions()
     e: Num = UNDETERMINED
     e_m: Num = UNDETERMINED
     if m.v_n + d_c * omega < 0:
-        found = rigid.coefficients(*velocities, **body, omega=omega)
+        found = rigid.coefficients(*velocities, **body)
         e, moment = float(found.e), d_c * (m.V_n - m.v_n) - d_d * (m.V_t - m.v_t) + m.k_squared * omega
         if abs(moment) > ROUND_OFF * d_d * (m.V_n - m.v_n):
             e_m = float(found.e_m)

@@ -119,7 +119,7 @@ def _motion(result: SolidResult) -> RodMotion:
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
-    a, E_0, active = result.accounts, result.E_0, result.plan.active
+    a, E_0 = result.accounts, result.E_0
     kept = float(rigid.kinetic_energy(moved.V_n, moved.V_t, moved.Omega, mass=moved.mass, k2=moved.k_squared))
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
     check = result.vibration_check
@@ -144,14 +144,14 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"]),
         radiated=share(a["radiated"]),
         closing=share(a["closing"]),
-        damping=share(a["damping"])
-        if "material-damping" in active
-        else Unknown("the material-damping effect is off"),
-        gravity=share(kept - result.motion.kinetic - a["gravity"])
-        if "gravity" in active
-        else Unknown("the gravity effect is off"),
+        damping=_if_on("material-damping", result, share(a["damping"])),
+        gravity=_if_on("gravity", result, share(kept - result.motion.kinetic - a["gravity"])),
         residual=share(a["residual"]),
     )
+
+
+def _if_on(effect: str, result: SolidResult, share: float) -> Num:
+    return share if effect in result.plan.active else Unknown(f"the {effect} effect is off")
 
 
 def _unchecked(result: SolidResult) -> Unknown:

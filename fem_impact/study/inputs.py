@@ -249,7 +249,7 @@ def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> lis
 
     A share of 1 brings the model to the measured mean; one below 0 takes it further away. Inputs that reach
     the interval could explain the miss, since they may lie anywhere up to what they were changed to. The
-    change is that of the coarser mesh, carried over to the finer one's value.
+    change is that of the coarser mesh, carried over to the model's value.
     """
     found: dict[tuple[str, str], dict[str, float]] = {}
     for row in sensitivities:

@@ -70,7 +70,7 @@ def test_quiet_shows_no_progress(cli, stand):
 
 def test_a_run_that_stops_early_keeps_its_results_and_says_so(cli, stand):
     stand.outcome = stand.an_outcome(
-        finished=False, stopped_because="the step fell below 1 ps.", E_0_J=None, E_vib_below_floor=None
+        finished=False, stopped_because="the step fell below 1 ps.", E_vib_below_floor=None
     )
     code, out, err = cli("run", "t5b", "--quiet")
     assert code == 6

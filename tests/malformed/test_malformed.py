@@ -96,7 +96,7 @@ def test_wrong_changes_on_the_command_line(how):
 
 @pytest.mark.parametrize("how", SETTINGS)
 def test_spoiled_outcomes(how):
-    whole = Outcome(OUTCOME).to_json().encode()
+    whole = Outcome.from_dict(OUTCOME).to_json().encode()
 
     @how
     @given(spoiled_bytes(whole) | spoiled_tree(json.loads(whole)))

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from outcome_maker import altered
 from result_maker import values
 
 from fem_impact.errors import ResultError
@@ -26,7 +27,7 @@ def results(tmp_path):
     picture = Picture("line", "A rising line.", (panel,))
     paper = Paper("gamma", "A study", ["It rises & falls."], [picture], sheets)
     paper = replace(paper, conclusions=[("line", "It rises & falls.")])
-    publish(paper, Request(tmp_path / "gamma", quick=True), {"run-1": Outcome(values())})
+    publish(paper, Request(tmp_path / "gamma", quick=True), {"run-1": Outcome.from_dict(values())})
     return tmp_path
 
 
@@ -55,7 +56,7 @@ def test_a_study_alone_has_a_page_too(results):
 
 
 def test_the_papers_conclusions_are_judged(results):
-    row = Outcome(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
+    row = Outcome.from_dict(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
     document = {
         "schema": "fem-impact/study/1",
         "rows": [row.to_dict()],
@@ -73,7 +74,7 @@ def test_the_papers_conclusions_are_judged(results):
         ],
         "sensitivity": [{"set": "t5b", "quantity": "e", "input": "yield", "base": 0.3, "changed": 0.42}],
     }
-    row.replace(e_edge=0.123).write(results / "sets" / "t5b-coarse-yield" / "outcome.json")
+    altered(row, e_edge=0.123).write(results / "sets" / "t5b-coarse-yield" / "outcome.json")
     write_text(results / "sets" / "study.json", json.dumps(document))
     write_text(results / "sets" / "summary.md", "the sets\n")
     page = write_all(results, results / "report").read_text()

@@ -2,6 +2,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import h5py
 import numpy as np
@@ -151,7 +152,7 @@ def test_frame_that_was_begun_and_not_counted_is_written_over(tmp_path):
 
 ENDLESS = """
 import itertools, sys
-sys.path.insert(0, sys.argv[2])
+sys.path[:0] = sys.argv[2:]
 from test_fields import frame, writer
 fields = writer(sys.argv[1])
 for number in itertools.count():
@@ -161,8 +162,8 @@ for number in itertools.count():
 
 def test_killed_run_leaves_readable_fields(tmp_path):
     path = tmp_path / "fields.vtkhdf"
-    here = str(result_maker.Path(__file__).parent)
-    child = subprocess.Popen([sys.executable, "-c", ENDLESS, str(path), here])
+    here = Path(__file__).parent
+    child = subprocess.Popen([sys.executable, "-c", ENDLESS, path, here, here.parent])
     deadline = time.monotonic() + 60
     while time.monotonic() < deadline and (not path.exists() or path.stat().st_size < 100_000):
         time.sleep(0.02)

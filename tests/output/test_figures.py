@@ -6,12 +6,16 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 import result_maker
+from outcome_maker import altered
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.figures import style
-from fem_impact.figures.history import FINAL, RUNNING, force_figure, ledger_figure
+from fem_impact.figures.history import RUNNING, force_figure, ledger_figure
 from fem_impact.figures.partition import comparison_figure, partition_figure, study_partition_figure
 from fem_impact.figures.style import percent
+from fem_impact.outcome.keys import known
+from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import shares
 from fem_impact.tables.csv import HISTORY, read_table
 
 
@@ -40,16 +44,17 @@ def test_every_energy_column_is_drawn_or_named():
 
 
 def test_accounts_differ_in_colour():
-    for accounts in (RUNNING, FINAL):
+    for accounts in (RUNNING, shares("figure")):
         assert len({account.colour for account in accounts}) == len(accounts)
 
 
 @pytest.mark.parametrize("shape", ["wide", "narrow"])
 def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, record, shape):
+    outcome = Outcome.from_dict(record)
     paths = [
         ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg", shape),
-        force_figure(history, record["contacts"], tmp_path / "force.svg", shape),
-        partition_figure(record, tmp_path / "partition.svg", shape),
+        force_figure(history, known(outcome.contact.intervals), tmp_path / "force.svg", shape),
+        partition_figure(outcome, tmp_path / "partition.svg", shape),
     ]
     for path in paths:
         root = ElementTree.parse(path).getroot()
@@ -58,7 +63,8 @@ def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, rec
 
 
 def test_figures_of_a_study(tmp_path):
-    rows, compared = result_maker.study_rows(), result_maker.comparison()
+    rows = [Outcome.from_dict(row) for row in result_maker.study_rows()]
+    compared = result_maker.comparison()
     compared[0] |= {"model": None, "band": None, "measured_sd": None, "measured_low": None}
     study_partition_figure(rows, tmp_path / "partition.png")
     comparison_figure(compared, tmp_path / "comparison.png", "narrow")
@@ -70,7 +76,7 @@ def test_figures_of_a_study(tmp_path):
 
 @pytest.mark.parametrize("shape", ["wide", "narrow"])
 def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, shape):
-    names = ["locked-in rod/E_0", "plastic barrier/E_0", "locked-in barrier/E_0", "locked-in barrier/E_0 "]
+    names = ["locked in rod/E_0", "plastic barrier/E_0", "locked in barrier/E_0", "locked in barrier/E_0 "]
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
@@ -99,11 +105,10 @@ def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, shape, sc
 
 
 def test_unknown_share_is_left_out(tmp_path, record):
-    record["E_vib_over_E_0"] = None
-    partition_figure(record, tmp_path / "partition.svg")
+    partition_figure(altered(Outcome.from_dict(record), E_vib_over_E_0=None), tmp_path / "partition.svg")
     accounts = read_table(tmp_path / "partition.csv").texts("account")
     assert "E_vib" not in accounts
-    assert len(accounts) == len(FINAL) - 2  # nor damping, which is off
+    assert len(accounts) == len(shares("figure")) - 2  # nor damping, which is off
 
 
 def test_same_data_give_the_same_bytes(history, tmp_path):

@@ -3,6 +3,7 @@ import os
 import re
 from html.parser import HTMLParser
 
+import outcome_maker
 import pytest
 import result_maker
 
@@ -68,7 +69,7 @@ def test_run_report_is_whole_and_refers_to_nothing_outside(run):
         "Sources",
     ):
         assert title in words
-    for value in ("0.597", "fully integrated elements have no hourglass motion", "−1.485"):
+    for value in ("0.597", "no damping effect was in the model", "−1.485"):
         assert value in words
 
 
@@ -104,7 +105,7 @@ def test_everything_from_outside_is_escaped(run):
         stopped_because=evil,
         effects=[evil],
         versions={evil: evil},
-        reasons={**result_maker.REASONS, "bands": evil},
+        reasons={**result_maker.REASONS, "mesh_band": evil},
     )
     (run / "scene.toml").write_text(f"title = '{evil}'")
     reader, words = read(write_report(run))
@@ -144,11 +145,12 @@ def test_vibration_below_its_floor_is_not_given_a_number(run):
 
 
 def test_band_stands_beside_its_value(run):
-    reasons = {name: why for name, why in result_maker.REASONS.items() if name != "bands"}
-    result_maker.write_result(run, bands={"mu": 0.0123, "e_paper": 0.02}, reasons=reasons)
+    limits, bands = {"mu": 0.611, "e_paper": 0.24}, {"mu": 0.0123, "e_paper": 0.02}
+    result_maker.write_result(run, mesh_limit=limits, mesh_band=bands)
     words = read(write_report(run))[1]
-    assert words.count("0.597 ± 0.012") == 3  # first figures, motion, whole record
-    assert "0.25 ± 0.02" in words
+    assert words.count("0.611 ± 0.012") == 2  # first figures, motion
+    assert "0.24 ± 0.02" in words
+    assert "0.597" in words  # of the run itself, in the whole record
 
 
 def test_folder_without_a_result(tmp_path):
@@ -242,7 +244,11 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, "\"schema\" = 'other/2' is not"),
         ({"rows": "none"}, '"rows" must be a list'),
-        ({"rows": [{"schema_version": 2}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 3}]}, r"rows\[0\]: key .* is missing"),
+        (
+            {"rows": [{"schema_version": 2}]},
+            r"rows\[0\]: .* is not the version 3 .*; compute the run again",
+        ),
         ({"comparison": [{"set": "t2"}]}, r'comparison\[0\] lacks the key "quantity"'),
     ],
 )
@@ -283,9 +289,10 @@ def test_pieces_escape_and_vanish_when_empty():
 
 
 def test_a_barrier_beside_the_one_in_use_has_no_change_to_tell():
-    told = {"forced": False, "measure": "m", "number": 1.0, "threshold": 0.5, "share": None}
-    told |= {"change_of_e": 0.2, "change_of_E_vib_over_E_0": 3e-4}
+    told = {"forced": False, "needed": True, "measure": "m", "number": 1.0, "threshold": 0.5, "share": None}
+    told |= {"source": "s", "sentence": "t", "change_of_e": 0.2, "change_of_E_vib_over_E_0": 3e-4}
     names = {"barrier-elastic": False, "barrier-elastoplastic": True, "gravity": False}
-    text = str(effects_section({"effect_choices": [told | {"name": n, "on": on} for n, on in names.items()]}))
+    choices = [told | {"name": name, "on": on} for name, on in names.items()]
+    text = str(effects_section(outcome_maker.outcome(effect_choices=choices)))
     elastic, plastic, gravity = text.split("<tr>")[-3:]
     assert "± 0.2" not in elastic and "± 0.2" in plastic and "± 0.2" in gravity

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from outcome_maker import altered
 from scale_tasks import Here, job, simulate
 
 import fem_impact.run.program as sources_module
@@ -60,7 +61,7 @@ def test_a_run_with_files_is_computed_again_when_they_are_not_its_own(tmp_path):
     assert run(store, wanted)[1] == []
     result.write_text(result.read_text()[:200])
     assert run(store, wanted)[1] == ["a"]
-    first["a"].replace(created_utc="2001-01-01T00:00:00+00:00").write(result)
+    altered(first["a"], created_utc="2001-01-01T00:00:00+00:00").write(result)
     assert run(store, wanted)[1] == ["a"]
     result.unlink()
     assert run(store, wanted)[1] == ["a"]

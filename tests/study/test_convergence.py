@@ -10,7 +10,7 @@ from fem_impact.progress import NullMeter
 from fem_impact.study.convergence import QUANTITIES, _pairs, conclude, convergence_rows, jobs_of, plan
 from fem_impact.study.document import Request
 
-NUMBERS = {key: 0.5 for key in QUANTITIES.values()}
+NUMBERS = {key.name: 0.5 for key in QUANTITIES.values()}
 
 
 def run(size, place=0.0):

@@ -4,6 +4,7 @@ from dataclasses import replace
 from math import isclose
 
 import pytest
+from outcome_maker import altered, outcome
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.effects.slots import Harm
@@ -15,13 +16,7 @@ from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.document import Request
 from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_row, plan, row, told
 
-RUN = {
-    "e_edge": 0.4,
-    "E_vib_over_E_0": 2e-3,
-    "cpu_s": 3.0,
-    "steps": 100,
-    "effects": ["vibration", "friction"],
-}
+RUN = outcome(e_edge=0.4, E_vib_over_E_0=2e-3, cpu_s=3.0, steps=100, effects=["vibration", "friction"])
 
 
 def test_every_scene_runs_with_auto_and_with_everything(tmp_path):
@@ -54,18 +49,18 @@ def test_the_designed_scenes_switch_every_effect(tmp_path):
     ],
 )
 def test_a_pair_is_judged_by_e_and_vibration(change, verdict):
-    found = row("x", RUN | {"effects": ["vibration"], "cpu_s": 1.5} | change, RUN)
+    found = row("x", altered(RUN, **{"effects": ["vibration"], "cpu_s": 1.5} | change), RUN)
     assert found[-1] == verdict
     assert found[1] == "friction"
     assert found[6] == 0.5
 
 
 def test_no_vibration_agrees_with_hardly_any():
-    assert row("x", RUN | {"E_vib_over_E_0": None}, RUN | {"E_vib_over_E_0": 9e-5})[-1] == "within"
+    assert row("x", altered(RUN, E_vib_over_E_0=None), altered(RUN, E_vib_over_E_0=9e-5))[-1] == "within"
 
 
 def test_costs_are_ratios():
-    found = cost_row("x", RUN | {"cpu_s": 6.0, "steps": 400, "e_edge": 0.45}, RUN, Harm(0.1, 2e-3))
+    found = cost_row("x", altered(RUN, cpu_s=6.0, steps=400, e_edge=0.45), RUN, Harm(0.1, 2e-3))
     assert found[1:] == [2.0, 0.5, pytest.approx(0.05), 0.1, 0.0, 2e-3]
 
 

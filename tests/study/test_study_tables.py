@@ -1,12 +1,14 @@
 """The study's Markdown, its changed inputs, and pictures that may be missing."""
 
 import pytest
+from outcome_maker import altered
 from study_fakes import outcome
 
 import fem_impact.render
 import fem_impact.report
 from fem_impact.errors import MissingLibraryError
 from fem_impact.jobs.job import Failure
+from fem_impact.outcome.shares import shares
 from fem_impact.progress import NullMeter
 from fem_impact.report.present import pictures, present
 from fem_impact.study.inputs import explanations, sensitivity_rows
@@ -34,24 +36,13 @@ COMPARISON = [
     row("E_r/E_0", "inside"),
     row("V_n", "inside"),
 ]
-SHARES = (
-    "E_r",
-    "E_vib",
-    "W_friction",
-    "E_plastic_rod",
-    "E_plastic_barrier",
-    "E_locked_rod",
-    "E_locked_barrier",
-    "W_radiated",
+OUTCOME = outcome(
+    **{share.key.name: 0.1234 for share in shares("report")},
+    scene_id="t5b",
+    residual_over_E_0=-2.1e-5,
+    steps=9100,
+    cpu_s=7.26,
 )
-OUTCOME = {f"{name}_over_E_0": 0.1234 for name in SHARES} | {
-    "scene_id": "t5b",
-    "E_vib_over_E_0": 0.00354,
-    "bands": {"E_vib_over_E_0": 0.0012},
-    "residual_over_E_0": -2.1e-5,
-    "steps": 9100,
-    "cpu_s": 7.26,
-}
 
 
 def test_marks_tell_inside_undecided_and_outside_apart():
@@ -69,24 +60,20 @@ def test_marks_tell_inside_undecided_and_outside_apart():
 
 
 def test_limits_say_how_uncertain_they_are():
-    known = {"extrapolated": {"e_edge": 0.32, "E_vib_over_E_0": 0.002}}
-    known |= {"bands": {"e_edge": 0.016, "E_vib_over_E_0": 0.0005}}
-    cells = summary([OUTCOME | known], COMPARISON, [], []).splitlines()[10].strip("|").split("|")
+    limits = {"e_edge": 0.32, "E_vib_over_E_0": 0.002}
+    limited = altered(OUTCOME, mesh_limit=limits, mesh_band={"e_edge": 0.016, "E_vib_over_E_0": 0.0005})
+    cells = summary([limited], COMPARISON, [], []).splitlines()[10].strip("|").split("|")
     assert [cell.strip() for cell in cells] == ["t5b", "0.320 ± 0.016", "5", "0.200 ± 0.050", "25", "7"]
-    assert "extrapolated" not in summary([OUTCOME], COMPARISON, [], [])
+    assert "limit" not in summary([OUTCOME], COMPARISON, [], [])
 
 
-def test_shares_are_percent_with_their_bands():
-    cells = summary([OUTCOME], COMPARISON, [], []).splitlines()[6].strip("|").split("|")
-    assert [cell.strip() for cell in cells] == [
-        "t5b",
-        "12.3",
-        "0.35 ± 0.12",
-        *["12.3"] * 6,
-        "-2e-05",
-        "9100",
-        "7",
-    ]
+def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
+    limits, bands = {"E_vib_over_E_0": 0.00354, "e_edge": 0.3}, {"E_vib_over_E_0": 0.0012, "e_edge": 0.1}
+    limited = altered(OUTCOME, mesh_limit=limits, mesh_band=bands, W_damping_over_E_0=None)
+    cells = summary([limited], COMPARISON, [], []).splitlines()[6].strip("|").split("|")
+    shown = ["0.35 ± 0.12" if share.label == "vibration" else "12.3" for share in shares("report")]
+    shown[[share.label for share in shares("report")].index("damping")] = "–"
+    assert [cell.strip() for cell in cells] == ["t5b", *shown, "-2e-05", "9100", "7"]
 
 
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
