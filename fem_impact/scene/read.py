@@ -37,7 +37,7 @@ def read_toml(path: str | Path) -> Scene:
     return read_dict(_parse(_load(Path(path)), str(path)), str(path))
 
 
-def read_dict(data: Mapping[str, Any], source: str) -> Scene:
+def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
     """Check nested tables and make the scene; ``source`` is named in every message."""
     try:
         return read_scene(data)

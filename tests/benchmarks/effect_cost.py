@@ -20,7 +20,6 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.figures.style import PALETTE, QUIET, figure
-from fem_impact.plan.plan import specify
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build

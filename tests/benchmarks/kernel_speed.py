@@ -21,7 +21,7 @@ from scipy.sparse import csr_matrix
 import meshes
 from fem_impact.fem.elements import isotropic_stiffness
 from fem_impact.fem.sparse import assemble, tie_operator
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.march import advance, evaluate
@@ -142,7 +142,7 @@ def scene_rows(model: Model, state: State) -> list[Row]:
 def main(name: str = "t5b") -> None:
     """Print the table."""
     scene = load(name)
-    model = build(scene, specify(scene))
+    model = build(plan(scene))
     state = model.initial_state()
     while state.time < IN_CONTACT:
         evaluate(model, state)

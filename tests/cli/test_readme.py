@@ -11,8 +11,9 @@ import pytest
 from fem_impact.commands.parser import build_parser, read_line
 from fem_impact.errors import EXIT_CODES
 from fem_impact.scene.library import surfaces
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_dict
 from rigid import SHAPES
 
 ROOT = Path(__file__).parents[2]
@@ -53,7 +54,7 @@ def rows(first_cell):
 
 
 def test_the_scene_and_the_python_of_the_readme(capsys):
-    assert Scene.from_dict(tomllib.loads(block("scene")), "README.md").id == "my-rod"
+    assert read_dict(tomllib.loads(block("scene")), "README.md").id == "my-rod"
     exec(compile(block("python"), "README.md", "exec"), {})
     assert re.fullmatch(r"-1\.5024 [0-9a-f]{8}\n", capsys.readouterr().out)
 
@@ -91,8 +92,8 @@ def _merged(whole, part):
 @pytest.mark.parametrize("text", texts("toml"))
 def test_every_scene_is_valid(text):
     stated = tomllib.loads(text)
-    whole = stated if "id" in stated else _merged(load("t5b").to_dict(), stated)
-    assert Scene.from_dict(whole, "README.md").to_dict() == Scene.from_dict(whole).to_dict()
+    whole = stated if "id" in stated else _merged(to_dict(load("t5b")), stated)
+    assert read_dict(whole, "README.md").to_dict() == read_dict(whole).to_dict()
 
 
 @pytest.mark.parametrize("text", texts("python"))

@@ -10,12 +10,15 @@ from fem_impact.cost.judge import Judged
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.measure import measure
 from fem_impact.cost.settings import placed
-from fem_impact.cost.to_target import NEARNESS, nearest, plan, summarise, summary
+from fem_impact.cost.to_target import NEARNESS, choose_setting, nearest, summarise
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
+from fem_impact.plan.measured import summary
 from fem_impact.progress import NullMeter
-from fem_impact.scene.shipped import load
-from fem_impact.scene.types import MEASURED_SETS, Accuracy, Scene
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.types import MEASURED_SETS, Accuracy
+from fem_impact.scene.write import digest, to_dict
 
 
 @pytest.fixture
@@ -29,35 +32,35 @@ def costs(monkeypatch, tmp_path):
 
 
 def asking(target, scene="t5b", **changes):
-    scene = load(scene).replace("accuracy", f"{100 * target:g} %")
+    scene = replace(load(scene), "accuracy", f"{100 * target:g} %")
     for key, value in changes.items():
-        scene = scene.replace(key.replace("__", "."), value)
+        scene = replace(scene, key.replace("__", "."), value)
     return scene
 
 
 def test_a_target_is_written_and_read_back():
     scene = asking(0.02)
     assert scene.accuracy.target == 0.02
-    assert Scene.from_dict(scene.to_dict()) == scene
-    assert scene.to_dict()["accuracy"]["target"] == "2 %"
-    assert scene.digest() != load("t5b").digest()
+    assert read_dict(to_dict(scene)) == scene
+    assert to_dict(scene)["accuracy"]["target"] == "2 %"
+    assert digest(scene) != digest(load("t5b"))
 
 
 def test_a_mesh_replaces_a_target_and_the_other_way_round():
-    scene = asking(0.02).replace("accuracy.tip_size", "0.5 mm")
+    scene = replace(asking(0.02), "accuracy.tip_size", "0.5 mm")
     assert (scene.accuracy.target, scene.accuracy.tip_size) == (None, 0.5e-3)
-    scene = scene.replace("accuracy.target", "3 %")
+    scene = replace(scene, "accuracy.target", "3 %")
     assert scene.accuracy.target == 0.03
-    assert asking(0.02).replace("accuracy.max_time", "1 ms").accuracy.target == 0.02
+    assert replace(asking(0.02), "accuracy.max_time", "1 ms").accuracy.target == 0.02
 
 
 @pytest.mark.parametrize(
     "text", ["2", "0 %", "-1 %", "101 %", "2 mm", "", "%", 0.02, 2, "1e9999 %", "2 %" + 70 * " "]
 )
 def test_what_is_no_share_is_refused(text):
-    data = load("t5b").to_dict()
+    data = to_dict(load("t5b"))
     with pytest.raises(SceneError, match="accuracy"):
-        Scene.from_dict(data | {"accuracy": text})
+        read_dict(data | {"accuracy": text})
 
 
 @pytest.mark.parametrize("target", [-3.0, 50.0, 0.0, "2 %"])
@@ -67,31 +70,31 @@ def test_a_target_made_in_python_is_checked_too(target):
 
 
 def test_a_mesh_beside_a_target_is_refused():
-    data = load("t5b").to_dict()
+    data = to_dict(load("t5b"))
     with pytest.raises(SceneError, match=r"accuracy.tip_size: stands beside a target"):
-        Scene.from_dict(data | {"accuracy": {"target": "2 %", "tip_size": "0.4 mm"}})
+        read_dict(data | {"accuracy": {"target": "2 %", "tip_size": "0.4 mm"}})
 
 
 def test_the_cheapest_stored_setting_is_chosen_and_its_time_scaled(costs):
-    chosen = plan(asking(0.2))
+    chosen = choose_setting(asking(0.2))
     assert (chosen.setting.name, chosen.like) == ("modal", "t5b")
     assert chosen.expected_wall_s == pytest.approx(0.5 * 0.01)
     assert chosen.expected_error <= 0.2
-    solid = plan(asking(0.2), "solid")
+    solid = choose_setting(asking(0.2), "solid")
     assert solid.setting.fidelity == "solid"
-    assert plan(asking(0.09)).expected_wall_s > chosen.expected_wall_s
+    assert choose_setting(asking(0.09)).expected_wall_s > chosen.expected_wall_s
     assert "expected error" in solid.sentence and "measured on t5b" in solid.sentence
 
 
 def test_a_target_that_no_setting_meets_is_refused_with_the_best(costs):
     words = r'accuracy = "0.01 %": cannot be met: on t5b, the best .* Allow "\d+ %"'
     with pytest.raises(SceneError, match=words):
-        plan(asking(1e-4))
+        choose_setting(asking(1e-4))
 
 
 def test_a_fidelity_that_does_not_know_what_is_asked_for_is_refused(costs):
     with pytest.raises(SceneError, match=r"the rigid fidelity does not know .*Leave out --fidelity"):
-        plan(asking(0.2), "rigid")
+        choose_setting(asking(0.2), "rigid")
 
 
 @pytest.mark.parametrize(
@@ -115,10 +118,10 @@ def test_a_fidelity_that_does_not_know_what_is_asked_for_is_refused(costs):
 def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
     scene = load("t5b")
     for key, value in changes.items():
-        scene = scene.replace(key.replace("__", "."), value)
+        scene = replace(scene, key.replace("__", "."), value)
     words = f"nearest scene with a measured cost, t5b, is [^T]*({differs})[^T]* Tip, .*fem-impact cost"
     with pytest.raises(SceneError, match=words):
-        plan(scene.replace("accuracy.target", "20 %"))
+        choose_setting(replace(scene, "accuracy.target", "20 %"))
 
 
 def test_a_scene_near_a_stored_one_is_taken(costs):
@@ -126,12 +129,12 @@ def test_a_scene_near_a_stored_one_is_taken(costs):
     name, distance, _ = nearest(near)
     assert name == "t5b"
     assert 0 < distance < 1
-    assert plan(near).setting.name == "modal"
+    assert choose_setting(near).setting.name == "modal"
 
 
 def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     scene = asking(0.05)
-    chosen = plan(scene)
+    chosen = choose_setting(scene)
     outcome = achieve.simulate_to_target(scene, out=tmp_path)
     assert chosen.setting.kind == "pair"
     assert outcome.validity.accuracy_target == 0.05
@@ -148,7 +151,7 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
 def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
     scene = asking(0.05)
     one, two = (achieve.simulate_to_target(scene, workers=workers) for workers in (1, 2))
-    assert plan(scene, workers=2).expected_wall_s < plan(scene).expected_wall_s
+    assert choose_setting(scene, workers=2).expected_wall_s < choose_setting(scene).expected_wall_s
     assert two.validity.achieved_wall < one.validity.achieved_wall
     assert two.validity.mesh_limit == one.validity.mesh_limit
     assert two.validity.achieved_error == one.validity.achieved_error
@@ -174,7 +177,7 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     assert held["machine"]["triad_GB_per_s"] > 0
     assert held["scenes"]
     for name, cost in held["scenes"].items():
-        scene = Scene.from_dict(cost["scene"])
+        scene = read_dict(cost["scene"])
         assert name in MEASURED_SETS
         assert nearest(load(name))[:2] == (name, 0.0)
         assert scene.impact == load(name).impact
@@ -184,10 +187,10 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
 
 
 def test_a_target_chooses_the_place_of_the_grid_too():
-    scene = load("t5b").replace("accuracy.grid_shift", 0.5)
-    asked = scene.replace("accuracy", "5 %")
+    scene = replace(load("t5b"), "accuracy.grid_shift", 0.5)
+    asked = replace(scene, "accuracy", "5 %")
     assert "grid_shift" not in asked.to_dict()["accuracy"]
-    assert asked.replace("accuracy.grid_shift", 0.25).accuracy.target is None
+    assert replace(asked, "accuracy.grid_shift", 0.25).accuracy.target is None
 
 
 def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatch):
@@ -200,7 +203,7 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
     monkeypatch.setattr(achieve, "simulate", kept)
     outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
     assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
-    fine, coarse = (placed(load("t5b"), mesh) for mesh in plan(asking(0.05)).meshes)
+    fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.05)).meshes)
     assert outcome.provenance.scene_digest == fine[0].digest()
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
     means = [sum(values) / len(values) for values in every]

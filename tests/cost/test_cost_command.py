@@ -13,7 +13,7 @@ import fem_impact.cost
 import fem_impact.run.simulate
 import fem_impact.scene
 from fem_impact.cost.document import summary_markdown
-from fem_impact.cost.to_target import summary
+from fem_impact.plan.measured import summary
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 

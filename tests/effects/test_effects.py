@@ -12,11 +12,13 @@ from fem_impact.effects.registry import EFFECTS, NAMES
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate, contact_modulus, effective_mass, principal_radii
 from fem_impact.physics.contact_law import thornton
-from fem_impact.plan.choose import choices, neglected
+from fem_impact.plan.choose import active, choices, neglected
 from fem_impact.plan.limits import coarse_tip, widest_tip_size
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Scene
+from fem_impact.scene.shipped import replace as changed
+from fem_impact.scene.write import to_dict
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -33,7 +35,7 @@ def scene(*effects, **accuracy):
 
 def model(*effects):
     stated = scene(*effects)
-    return build(stated, specify(stated))
+    return build(plan(stated))
 
 
 def kinds(items):
@@ -151,7 +153,7 @@ def test_every_effect_of_the_scenes_is_told():
         stated = load(set_id)
         for choice in choices(stated):
             told = choice.told()
-            assert told.on == (told.name in stated.active)
+            assert told.on == (told.name in active(stated))
             assert told.forced == ("auto" not in stated.effects)
             effect = EFFECTS[told.name]
             assert told.sentence == (effect.sentence if told.on else effect.absence)
@@ -188,16 +190,16 @@ def test_e_of_thornton():
 
 def chosen(scene, **impact):
     stated = replace(scene, effects=("auto",), impact=replace(scene.impact, **impact), measured=None)
-    return set(stated.active)
+    return set(active(stated))
 
 
 def test_a_scene_without_effects_is_auto():
-    data = load("t5b").to_dict()
+    data = to_dict(load("t5b"))
     del data["effects"]
-    stated = Scene.from_dict(data)
+    stated = read_dict(data)
     assert stated.effects == ("auto",)
-    assert {"vibration", "friction", "rod-plasticity", "barrier-elastoplastic"} <= set(stated.active)
-    assert stated.replace("impact.v_n", "-3 m/s").effects == ("auto",)
+    assert {"vibration", "friction", "rod-plasticity", "barrier-elastoplastic"} <= set(active(stated))
+    assert changed(stated, "impact.v_n", "-3 m/s").effects == ("auto",)
 
 
 def test_each_effect_goes_off_where_its_number_is_small():
@@ -231,9 +233,9 @@ def test_a_hard_stiff_barrier_is_rigid():
 
 def test_forced_effects_are_kept_and_missed_ones_named():
     stated = replace(load("t5b"), effects=("auto", "gravity", "barrier-elastic", "-friction"))
-    assert {"gravity", "barrier-elastic"} <= set(stated.active)
-    assert "friction" not in stated.active
-    assert "rate-hardening" in stated.active  # the rod still yields
+    assert {"gravity", "barrier-elastic"} <= set(active(stated))
+    assert "friction" not in active(stated)
+    assert "rate-hardening" in active(stated)  # the rod still yields
     forced = {choice.name for choice in choices(stated) if choice.forced}
     assert forced == {"gravity", "friction", "barrier-rigid", "barrier-elastic", "barrier-elastoplastic"}
     said = neglected(stated)
@@ -245,7 +247,7 @@ def test_forced_effects_are_kept_and_missed_ones_named():
 def test_a_stronger_barrier_than_needed_is_no_neglect():
     quiet = replace(load("t5b").impact, v_n=-1e-4, v_t=-1e-4)
     stated = replace(load("t5b"), effects=("auto", "barrier-elastoplastic"), impact=quiet, measured=None)
-    assert "barrier-elastoplastic" in stated.active
+    assert "barrier-elastoplastic" in active(stated)
     assert neglected(stated) == ()
 
 
@@ -301,13 +303,13 @@ def test_a_soft_plate_limits_the_pressure():
 
 
 def test_an_element_wider_than_the_contact_is_doubted():
-    gentle = load("t5b").replace("impact.v_n", "-0.05 m/s").replace("accuracy.tip_size", "0.8 mm")
+    gentle = changed(changed(load("t5b"), "impact.v_n", "-0.05 m/s"), "accuracy.tip_size", "0.8 mm")
     size, widest = contact_estimate(gentle), widest_tip_size(gentle)
     assert 1.25 * size.a_t < widest <= sqrt(2) * size.a_t
     (told,) = coarse_tip(gentle)
     assert f"at most {widest * 1e3:.2g} mm" in told
-    assert coarse_tip(gentle.replace("accuracy.tip_size", f"{widest} m")) == ()
-    assert coarse_tip(load("t5b").replace("accuracy.tip_size", "0.8 mm")) == ()
+    assert coarse_tip(changed(gentle, "accuracy.tip_size", f"{widest} m")) == ()
+    assert coarse_tip(changed(load("t5b"), "accuracy.tip_size", "0.8 mm")) == ()
 
 
 def test_edge_radii_of_profile_b():

@@ -11,10 +11,11 @@ from fem_impact.effects.registry import EFFECTS
 from fem_impact.effects.slots import Effect, Harm
 from fem_impact.physics.contact import contact_estimate, projectile
 from fem_impact.plan import choose
-from fem_impact.plan.choose import choices, neglected
-from fem_impact.plan.plan import specify
+from fem_impact.plan.choose import active, choices, neglected
+from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.shipped import replace as changed
 from fem_impact.solid import run
 from fem_impact.solid.build import build
 from fem_impact.solid.elastic import Weight
@@ -65,23 +66,23 @@ def scene_with(*effects, **changes):
 
 def test_an_added_effect_is_chosen_by_its_number(moon):
     fast, slow = scene_with(), scene_with(**{"impact.v_n": "-5 mm/s", "impact.v_t": "-5 mm/s"})
-    assert EFFECT.name not in fast.active
-    assert EFFECT.name in slow.active
+    assert EFFECT.name not in active(fast)
+    assert EFFECT.name in active(slow)
     (choice,) = [choice for choice in choices(slow) if choice.name == EFFECT.name]
     assert choice.told().sentence == "The Moon pulls the rod down."
-    left_out = slow.replace("effects", ["auto", f"-{EFFECT.name}"])
+    left_out = changed(slow, "effects", ["auto", f"-{EFFECT.name}"])
     assert any(EFFECT.name in words for words in neglected(left_out))
 
 
 def test_it_is_built_when_it_is_on_and_only_then(moon):
     coarse = {"accuracy.tip_size": "1.6 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
     on, off = (scene_with("barrier-rigid", *names, **coarse) for names in ((EFFECT.name,), ()))
-    model = build(on, specify(on))
+    model = build(plan(on))
     (weight,) = [item for item in model.forces if isinstance(item, Weight)]
     places = model.layout.rod[model.layout.rod[:, 0] < model.layout.rod_size]
     pull = np.hypot(*weight.weight[places[:, [0, 2]]].sum(axis=0))
     assert pull == pytest.approx(MOON * projectile(on).mass / 2, rel=1e-9)  # half the rod is meshed
-    assert not [item for item in build(off, specify(off)).forces if isinstance(item, Weight)]
+    assert not [item for item in build(plan(off)).forces if isinstance(item, Weight)]
 
 
 @dataclass
@@ -133,7 +134,7 @@ def with_drag(model, rate):
 
 def test_an_own_item_closes_the_ledger():
     scene = coarse_scene()
-    model = with_drag(build(scene, specify(scene)).coasting(), RATE)
+    model = with_drag(build(plan(scene)).coasting(), RATE)
     watch, state = Watch(model.ledger(), every=10), model.initial_state()
 
     class End:

@@ -8,7 +8,7 @@ import pytest
 
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import projectile
-from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import SHAPES, Nose
 
 
@@ -63,7 +63,7 @@ def test_an_added_tip_has_no_usual_radius(ball, cli):
 
 def test_a_tip_nobody_added_is_refused(cli):
     with pytest.raises(ValueError, match='"A", "B" or "plain"'):
-        load("t5b").replace("projectile.tip", "ball")
+        replace(load("t5b"), "projectile.tip", "ball")
     code, _, err = cli("assess", *ROD, *DROP, "--tip", "plane")
     assert code == 2
     assert "Did you mean plain?" in err
@@ -78,6 +78,6 @@ def test_an_own_material_is_a_table_of_the_scene():
         "yield_stress": "260 MPa",
         "ultimate_stress": "310 MPa",
     }
-    scene = load("t5b").replace("projectile.material", aluminium)
+    scene = replace(load("t5b"), "projectile.material", aluminium)
     assert projectile(scene).mass == pytest.approx(2700 / 7850 * projectile(load("t5b")).mass)
     assert scene.measured == "t5b"

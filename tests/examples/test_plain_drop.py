@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
@@ -51,7 +51,7 @@ def test_the_plain_drop_is_the_solvers_within_what_its_masses_lack(scene):
 
 def test_on_the_solvers_own_masses_the_plain_drop_is_the_solver(scene):
     """Slices, frame, compiled contact and ledger save time and change nothing."""
-    model = build(scene, specify(scene))
+    model = build(plan(scene))
     mesh = model.geometry.rod.mesh
     places, spread = model.layout.rod[~mesh.is_hanging], model.rod_stiffness.spread
     K = (spread.T @ sum(model.rod_stiffness.parts) @ spread).tocsr()

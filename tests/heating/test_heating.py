@@ -20,6 +20,7 @@ from fem_impact.physics.flash import (
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import replace as changed
 from fem_impact.solid.heatwatch import loaded_area
 
 STEEL = Half(53.0, 7850 * 440.0)
@@ -169,7 +170,7 @@ def test_closed_form_of_the_rigid_fidelity():
 
 def test_the_bound_by_hand():
     """Hardness of the plate, first speed along and across, all heat in the less effusive body."""
-    stated = load("t5b").replace("heating.rod_conductivity", "20 W/(m K)")
+    stated = changed(load("t5b"), "heating.rod_conductivity", "20 W/(m K)")
     f, v = stated.surface.friction, abs(stated.impact.v_t) + abs(stated.impact.v_n)
     seconds = 3 * contact_estimate(stated).duration
     alone = 2 * f * 3 * 446e6 * v * sqrt(seconds / (pi * 20.0 * 7850 * 440.0))
@@ -200,7 +201,7 @@ def test_heat_stays_for_a_while_when_the_source_is_gone():
 
 
 def test_ignition_is_the_users():
-    stated = load("t5b").replace("heating.ignition", "60 degC")
+    stated = changed(load("t5b"), "heating.ignition", "60 degC")
     assert stated.heating.ignition == pytest.approx(333.15)
     assert (
         simulate(replace(stated, effects=("auto", "contact-heating")), "rigid").heat.time_above_ignition > 0

@@ -29,14 +29,15 @@ from fem_impact.jobs import store as store_module
 from fem_impact.jobs.store import Store
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
+from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.state import State
 from fem_impact.tables.csv import read_table
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=1500, deadline=None, suppress_health_check=list(HealthCheck))
-SCENE = load("t5b").to_dict()
-SCENE_TEXT = load("t5b").to_toml().encode()
+SCENE = to_dict(load("t5b"))
+SCENE_TEXT = to_toml(load("t5b")).encode()
 OUTCOME = result_maker.values()
 CAMERA = b"""test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s
 1,-1.572,-1.602,0.381,-0.371,3.607
@@ -160,7 +161,7 @@ def test_spoiled_checkpoints(how):
 
 def signed(body):
     """Give a forged archive the mark and the right checksum."""
-    return b"fem-ckp1" + hashlib.sha256(body).digest() + body
+    return b"fem-ckp1" + digest(hashlib.sha256(body)) + body
 
 
 @pytest.mark.parametrize("how", SETTINGS)

@@ -7,8 +7,9 @@ import pytest
 
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight, rigid_motion
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import replace as changed
 from fem_impact.solid.build import build
 from fem_impact.solid.rodview import modes_of
 
@@ -26,7 +27,7 @@ def _model(length, across=8, tip=("plain", 0.0), tip_size=2.4e-3):
         effects=("vibration", "barrier-rigid"),
         accuracy=replace(base.accuracy, tip_size=tip_size, across=across),
     )
-    return build(scene, specify(scene))
+    return build(plan(scene))
 
 
 def _modes(model, count=12):
@@ -45,13 +46,13 @@ def test_frequencies_of_the_long_rod(long):
 
 
 def test_runs_with_the_same_rod_find_its_modes_once():
-    scene = load("t5b").replace("accuracy.tip_size", "1.2 mm")
+    scene = changed(load("t5b"), "accuracy.tip_size", "1.2 mm")
     first, moved, longer = (
-        modes_of(build(s, specify(s)))
+        modes_of(build(plan(s)))
         for s in (
             scene,
-            scene.replace("accuracy.grid_shift", 0.5),
-            scene.replace("projectile.length", "81 mm"),
+            changed(scene, "accuracy.grid_shift", 0.5),
+            changed(scene, "projectile.length", "81 mm"),
         )
     )
     assert moved is first

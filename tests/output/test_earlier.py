@@ -8,8 +8,8 @@ import pytest
 from fem_impact.files.run_directory import earlier, set_aside
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Scene
 
 
 def test_an_older_run_goes_whole_into_a_directory_of_its_time(tmp_path):
@@ -40,7 +40,7 @@ def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch
     second = simulate(load("t5c"), "rigid", out=tmp_path)
     (place,) = earlier(tmp_path)
     assert Outcome.read(place / "outcome.json") == first
-    assert Scene.from_toml(place / "scene.toml") == load("t5b")
+    assert read_toml(place / "scene.toml") == load("t5b")
     assert Outcome.read(tmp_path / "outcome.json") == second
 
     def killed(*_):

@@ -14,7 +14,8 @@ from fem_impact.report.sections import effects_section
 from fem_impact.report.study_data import read_study
 from fem_impact.report.study_page import draw_study
 from fem_impact.report.write import write_report
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.write import digest, to_toml
 
 VOID = {"meta", "link", "img", "source", "br"}
 
@@ -128,10 +129,10 @@ def test_missing_history_is_said_and_not_fatal(run):
 
 def test_files_that_are_not_of_the_run_are_told(run):
     scene = load("t5b")
-    result_maker.write_result(run, scene_digest=scene.digest())
-    (run / "scene.toml").write_text(scene.to_toml())
+    result_maker.write_result(run, scene_digest=digest(scene))
+    (run / "scene.toml").write_text(to_toml(scene))
     assert "To keep in mind scene.toml" not in read(write_report(run))[1]
-    (run / "scene.toml").write_text(scene.replace("impact.angle", "30 deg").to_toml())
+    (run / "scene.toml").write_text(to_toml(replace(scene, "impact.angle", "30 deg")))
     assert "scene.toml was changed after the run" in read(write_report(run))[1]
     rows = (run / "history.csv").read_text().splitlines()
     assert "it is not whole" not in read(write_report(run))[1]

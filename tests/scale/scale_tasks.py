@@ -13,6 +13,7 @@ import fem_impact.run.simulate
 from fem_impact.errors import RunError
 from fem_impact.jobs.job import Job, compute
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import digest
 
 LOG = "SCALE_TEST_LOG"
 
@@ -24,7 +25,7 @@ def job(name, does="", **kept):
 
 def record(scene):
     """A complete outcome of a scene."""
-    return outcome(fidelity="rigid", scene_id=scene.id, scene_digest=scene.digest())
+    return outcome(fidelity="rigid", scene_id=scene.id, scene_digest=digest(scene))
 
 
 def simulate(scene, fidelity="solid", out=None, **_):

@@ -9,11 +9,11 @@ from fem_impact.jobs.forecast import estimate
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import GUESS, STEEPNESS, Eta, expected_costs, makespan, run_jobs
 from fem_impact.progress import NullMeter
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace
 
 
 def solid(name, size):
-    return Job(name, load("t5b").replace("accuracy.tip_size", f"{size} mm"))
+    return Job(name, replace(load("t5b"), "accuracy.tip_size", f"{size} mm"))
 
 
 def test_costs_come_from_the_same_kind_or_scale_with_the_tip():

@@ -9,8 +9,9 @@ from fem_impact.errors import UsageError
 from fem_impact.plan.limits import validity
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import materials, shipped, source_of, surfaces
-from fem_impact.scene.shipped import load
-from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save, Scene
+from fem_impact.scene.read import read_toml
+from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save
 from rigid.experiments import measured_set, set_ids
 
 
@@ -80,7 +81,7 @@ def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
 
 
 def test_a_scene_that_leaves_the_measured_range_says_where():
-    changed = load("t5b").replace("impact.angle", "80 deg").replace("impact.omega", "5 rad/s")
+    changed = replace(replace(load("t5b"), "impact.angle", "80 deg"), "impact.omega", "5 rad/s")
     sentences = " ".join(validity(changed))
     assert "angle 80 deg, measured 17 deg to 60 deg" in sentences
     assert "turn" in sentences
@@ -90,4 +91,4 @@ def test_an_unknown_scene_is_answered_with_the_nearest_name():
     with pytest.raises(UsageError, match="Did you mean t5b"):
         load("t5bb")
     with pytest.raises(UsageError, match=r"no such file.*Did you mean quick"):
-        Scene.from_toml("nowhere/qick.toml")
+        read_toml("nowhere/qick.toml")

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.run import solve
@@ -49,7 +49,7 @@ def scene(
 def model(*effects, **changes):
     """A fresh model: its items hold what moves."""
     stated = scene(*effects, **changes)
-    return build(stated, specify(stated))
+    return build(plan(stated))
 
 
 @cache

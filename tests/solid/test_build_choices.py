@@ -7,7 +7,7 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.fem.eigen import rod_modes
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 
@@ -16,7 +16,7 @@ BASE = scenes.scene("vibration", "barrier-elastic", length=0.08)
 
 def model(**accuracy):
     scene = replace(BASE, accuracy=replace(BASE.accuracy, **accuracy))
-    return build(scene, specify(scene))
+    return build(plan(scene))
 
 
 def lowest(model):
@@ -38,10 +38,10 @@ def test_fully_integrated_cells_are_stiffer_in_bending_than_incompatible_ones():
 def test_building_takes_little_memory():
     """Element matrices alone, if all were kept at once, would take 4.6 kB an element."""
     scene = load("t5b")
-    build(scene, specify(scene))  # the first one also loads the compiled kernels
+    build(plan(scene))  # the first one also loads the compiled kernels
     tracemalloc.start()
     try:
-        built = build(scene, specify(scene))
+        built = build(plan(scene))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

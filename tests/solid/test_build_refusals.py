@@ -3,28 +3,28 @@
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.plan.plan import specify
-from fem_impact.scene.shipped import load, replace_all
+from fem_impact.plan.plan import plan
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
 
 
 @pytest.mark.parametrize("name", ["t5b", "t3-machined"])
 def test_a_tip_too_coarse_to_yield_is_refused(name):
-    scene = load(name).replace("accuracy.tip_size", "2.4 mm")
+    scene = replace(load(name), "accuracy.tip_size", "2.4 mm")
     with pytest.raises(SceneError, match=r"accuracy\.tip_size.*Give at most 1\.7 mm"):
-        build(scene, specify(scene))
+        build(plan(scene))
 
 
 def test_a_side_that_comes_down_before_the_tip_is_refused():
     scene = replace_all(load("t5b"), {"impact.angle": "89.7 deg", "effects": ["vibration", "barrier-rigid"]})
     with pytest.raises(SceneError, match=r"impact\.angle: .*before its tip.*larger accuracy\.across"):
-        build(scene, specify(scene))
-    steeper = scene.replace("impact.angle", "88.9 deg")
-    assert build(steeper, specify(steeper))
+        build(plan(scene))
+    steeper = replace(scene, "impact.angle", "88.9 deg")
+    assert build(plan(steeper))
 
 
 def test_steel_that_no_power_law_fits_is_refused():
-    scene = load("t5b").replace("projectile.material.ultimate_stress", "20 GPa")
+    scene = replace(load("t5b"), "projectile.material.ultimate_stress", "20 GPa")
     with pytest.raises(SceneError, match=r"ultimate_stress of rod-steel.*must lie between the yield stress"):
         specify(scene)
 
@@ -33,16 +33,16 @@ def test_a_block_of_a_million_cells_is_refused():
     thin = {"projectile.diameter": "1 mm", "projectile.length": "10 mm", "projectile.tip_radius": "0.2 mm"}
     scene = replace_all(load("t5b"), {**thin, "accuracy.tip_size": "0.05 mm", "accuracy.across": 12})
     with pytest.raises(SceneError, match=r'accuracy\.block_margin = "6 mm": makes a block of .* cells'):
-        build(scene, specify(scene))
+        build(plan(scene))
 
 
 def test_a_rod_without_room_for_its_cells_is_refused():
     stub = {"projectile.tip": "A", "projectile.tip_radius": "0.5 mm", "projectile.length": "19 mm"}
     scene = replace_all(load("t5b"), stub)
     with pytest.raises(SceneError, match=r"projectile: cannot be meshed: .*Give a longer rod"):
-        build(scene, specify(scene))
+        build(plan(scene))
 
 
 def test_the_proposed_tip_is_taken():
-    scene = load("t5b").replace("accuracy.tip_size", "1.6 mm")
-    assert [zone.count > 0 for zone in build(scene, specify(scene)).zones] == [True, True]
+    scene = replace(load("t5b"), "accuracy.tip_size", "1.6 mm")
+    assert [zone.count > 0 for zone in build(plan(scene)).zones] == [True, True]

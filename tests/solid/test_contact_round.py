@@ -5,8 +5,8 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.physics.contact import barrier_conforms
-from fem_impact.plan.plan import specify
-from fem_impact.scene.shipped import load
+from fem_impact.plan.plan import plan
+from fem_impact.scene.shipped import load, replace
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.patch import lowest_gap, make_patch, vertex_normals
 from fem_impact.solid.march import advance, evaluate
@@ -101,17 +101,17 @@ def test_a_barrier_that_flows_conforms_and_an_elastic_one_does_not():
 def test_only_a_barrier_that_flows_under_all_of_the_contact_conforms():
     scene = load("t5b")
     assert barrier_conforms(scene)
-    assert not barrier_conforms(scene.replace("effects", ["vibration", "friction", "barrier-elastic"]))
-    assert not barrier_conforms(scene.replace("impact.v_n", "-1e-4 m/s"))
-    softer = scene.replace("projectile.material.yield_stress", "100 MPa")
+    assert not barrier_conforms(replace(scene, "effects", ["vibration", "friction", "barrier-elastic"]))
+    assert not barrier_conforms(replace(scene, "impact.v_n", "-1e-4 m/s"))
+    softer = replace(scene, "projectile.material.yield_stress", "100 MPa")
     assert not barrier_conforms(softer)  # the rod flows first
 
 
 def test_a_sharp_edge_sinks_no_deeper_than_the_play():
     """Between two rows of the barrier's nodes only the rod's own nodes can hold it."""
     scene = scenes.scene(*FLOWS, length=0.08, v_n=-4.0, v_t=-4.0, sharp=True)
-    scene = scene.replace("accuracy.grid_shift", 0.25)  # the edge lands beside a row
-    model = build(scene, specify(scene))
+    scene = replace(scene, "accuracy.grid_shift", 0.25)  # the edge lands beside a row
+    model = build(plan(scene))
     state, contact = model.initial_state(), model.contact
     assert (contact.rod.bend == 0).any()
     deepest, speed = 0.0, 4.0

@@ -14,6 +14,7 @@ from fem_impact.files.fields_read import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import to_toml
 from fem_impact.tables.csv import read_table
 
 SCENE = replace_all(
@@ -40,7 +41,7 @@ simulate(load(sys.argv[1]), out=Path(sys.argv[2]), resume=True, checkpoint_s=flo
 def alone(tmp_path_factory):
     """The run that is never stopped: its scene file, its directory, and how long it took."""
     place = tmp_path_factory.mktemp("alone")
-    (place / "scene.toml").write_text(SCENE.to_toml())
+    (place / "scene.toml").write_text(to_toml(SCENE))
     begun = time.monotonic()
     child = start(place / "scene.toml", place / "run")
     assert child.wait() == 0

@@ -10,7 +10,6 @@ from fem_impact.effects.registry import NAMES
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
-from fem_impact.plan.plan import specify
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import put_back, take_out

@@ -8,7 +8,7 @@ import solid_scenes
 
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import arms, projectile
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold
@@ -126,7 +126,7 @@ def test_the_block_barrier_takes_it_too():
     stated = solid_scenes.scene(
         "friction", "barrier-elastoplastic", "radiation", "large-rotation", length=0.06, max_time=3e-5
     )
-    model = build(stated, specify(stated))
+    model = build(plan(stated))
     assert type(model.impulses[0]) is RigidRest
     result = solve(stated)
     assert result.accounts["plastic_barrier"] > 0

@@ -11,7 +11,6 @@ from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import specify
 from fem_impact.run.solid import reduce
 from fem_impact.solid import build as built
 from fem_impact.solid.build import START_GAP

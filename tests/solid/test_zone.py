@@ -8,10 +8,10 @@ from fem_impact.fem.geometry import DRAG, LOW, SLIDE, build_geometry, half_width
 from fem_impact.physics.contact import contact_estimate
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
-from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.run import solve
 
-SCENE = load("t6-17").replace("accuracy.tip_size", "0.6 mm")
+SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
 
 
 def _reach(scene):
@@ -32,13 +32,13 @@ def test_it_follows_the_surface_that_a_sticking_rod_drags_down_the_slope():
 
 
 def test_without_sliding_it_lies_even():
-    down, up = _reach(SCENE.replace("impact.v_t", "0 m/s"))
+    down, up = _reach(replace(SCENE, "impact.v_t", "0 m/s"))
     assert 1 <= down < 1 + DRAG
     assert down == pytest.approx(up, rel=0.2)
 
 
 def test_it_follows_a_long_slide():
-    steep = SCENE.replace("impact.v_t", "-20 m/s")
+    steep = replace(SCENE, "impact.v_t", "-20 m/s")
     slide = SLIDE * contact_estimate(steep).depth * 20 / -steep.impact.v_n
     half = _half_width(steep, build_geometry(steep, 2e-6, True))
     assert slide > DRAG * half
@@ -46,7 +46,7 @@ def test_it_follows_a_long_slide():
 
 
 def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
-    here, there = (build_geometry(SCENE.replace("accuracy.grid_shift", s), 2e-6, True) for s in (0, 0.5))
+    here, there = (build_geometry(replace(SCENE, "accuracy.grid_shift", s), 2e-6, True) for s in (0, 0.5))
     moved = there.barrier.points - here.barrier.points
     assert np.allclose(moved, [0.5 * here.tip_size, 0, 0], rtol=0, atol=1e-15)
     assert np.array_equal(here.barrier.cells, there.barrier.cells)
@@ -55,7 +55,7 @@ def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
 
 def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
-    e = [reduce(s, solve(s)).restitution.edge.e for s in (still, still.replace("accuracy.grid_shift", 0.5))]
+    e = [reduce(s, solve(s)).restitution.edge.e for s in (still, replace(still, "accuracy.grid_shift", 0.5))]
     assert 0 < abs(e[1] - e[0]) < 0.002
 
 
@@ -68,14 +68,14 @@ def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     ],
 )
 def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
-    geometry = build_geometry(SCENE.replace("effects", effects), 2e-6, True)
+    geometry = build_geometry(replace(SCENE, "effects", effects), 2e-6, True)
     z = geometry.barrier.points[geometry.barrier.cells][:, :, 2]
     assert geometry.skin_rows == rows
     assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
 
 
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
-    scene = SCENE.replace("save.frames", 0)
+    scene = replace(SCENE, "save.frames", 0)
     part = solve(scene)
     monkeypatch.setattr("fem_impact.fem.geometry._round", lambda mesh, *_: mesh.finest)
     whole = solve(scene)
@@ -88,8 +88,8 @@ def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
 
 
 def test_without_friction_no_row_is_thin_whatever_is_on():
-    on = SCENE.replace("effects", ("vibration", "friction", "barrier-elastoplastic"))
-    assert build_geometry(on.replace("surface.friction", 0.0), 2e-6, True).skin_rows == 0
+    on = replace(SCENE, "effects", ("vibration", "friction", "barrier-elastoplastic"))
+    assert build_geometry(replace(on, "surface.friction", 0.0), 2e-6, True).skin_rows == 0
 
 
 def test_rows_are_no_lower_than_a_share_of_the_indentation():
@@ -97,14 +97,14 @@ def test_rows_are_no_lower_than_a_share_of_the_indentation():
     fast = replace_all(load("t5b"), {"projectile.length": "200 mm", "impact.v_n": "-8 m/s"})
     depth = contact_estimate(fast).depth
     for size in ("0.6 mm", "0.3 mm", "0.15 mm"):
-        geometry = build_geometry(fast.replace("accuracy.tip_size", size), 2e-6, True)
+        geometry = build_geometry(replace(fast, "accuracy.tip_size", size), 2e-6, True)
         assert 0 <= geometry.skin_rows < 3
         assert geometry.tip_size * 0.5**geometry.skin_rows >= LOW * depth
         assert geometry.tip_size * 0.5 ** (geometry.skin_rows + 1) < LOW * depth
 
 
 def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
-    scene = SCENE.replace("save.frames", 0)
+    scene = replace(SCENE, "save.frames", 0)
     heavy = simulate(scene)
     monkeypatch.setattr("fem_impact.solid.build.HEAVY", 0.0)
     true = simulate(scene)

@@ -7,14 +7,14 @@ from dataclasses import replace
 import pytest
 
 from fem_impact.errors import SceneError
-from fem_impact.fem.geometry import face_reach
 from fem_impact.hard_cases.judge import Balance, balance
 from fem_impact.hard_cases.run import MARKS, ROW, page, run_case
 from fem_impact.hard_cases.run import _model as model_of
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import contact_estimate
-from fem_impact.plan.plan import specify
+from fem_impact.plan.plan import plan
+from fem_impact.plan.zones import face_reach
 from fem_impact.run.simulate import require_runnable
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
@@ -63,7 +63,7 @@ def test_a_case_that_ends_otherwise_than_expected_has_not_passed(tmp_path, monke
 def test_the_start_and_the_step_of_a_case_are_its_own():
     case = replace(CASES["between-nodes"], step=0.45)
     scene = case.scene()
-    own, plain = model_of(case, scene), build(scene, specify(scene))
+    own, plain = model_of(case, scene), build(plan(scene))
     moved = own.start[0] - plain.start[0]
     assert moved[own.layout.rod[:, 0]] == pytest.approx(4e-4)
     assert own.step == pytest.approx(0.5 * plain.step)
@@ -124,7 +124,7 @@ def run(tmp_path_factory):
     """A case that closes, with its history."""
     out = tmp_path_factory.mktemp("run")
     scene = CASES["overlap"].scene()
-    return solve(scene, out, model=build(scene, specify(scene))), out / "history.csv"
+    return solve(scene, out, model=build(plan(scene))), out / "history.csv"
 
 
 def test_the_judge_sees_what_is_wrong(run):

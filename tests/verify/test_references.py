@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from fem_impact import reference
 from fem_impact.reference.bricks import Bar, rebound, wall_stress
 from fem_impact.reference.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.reference.hertz import (
@@ -24,7 +25,6 @@ from fem_impact.reference.oblique import oblique_drop, oblique_rod
 from fem_impact.reference.rod_end import sears, strike
 from fem_impact.reference.sphere import INERTIA, oblique_sphere, reversal
 from fem_impact.reference.waves import flexural_speed, longitudinal_speed, rayleigh_speed
-from fem_impact.verify import reference
 from rigid import Projectile
 
 STEEL = (219e9, 0.29, 7850.0)
