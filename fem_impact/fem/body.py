@@ -11,7 +11,7 @@ import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
-from fem_impact.fem.elements import Kind, element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import HEAVY, POINTS, Geometry, build_geometry, rest_mass
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
@@ -73,15 +73,15 @@ def make_body(
 def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
     """Return the stiffness of ``chosen`` cells over ``size`` unknowns, those from ``shift`` on."""
     T = tie_operator(body.mesh.tie, body.places - shift, size)
-    C, cells = isotropic_stiffness(body.material.E, body.material.nu), body.mesh.cells
-    elastic = assemble(body.points, cells[chosen & ~body.yields], C, body.element, T)
-    return elastic + assemble(body.points, cells[chosen & body.yields], C, "bbar", T)
+    lame, cells = lame_constants(body.material.E, body.material.nu), body.mesh.cells
+    elastic = assemble(body.points, cells[chosen & ~body.yields], lame, body.element, T)
+    return elastic + assemble(body.points, cells[chosen & body.yields], lame, "bbar", T)
 
 
 def slices_of(body: MeshedBody, rod: RodMesh) -> SliceOperator:
     """Return the operator of the rod's slices, all like the first."""
     m, first = body.material, body.mesh.cells[rod.body_cells[:, 0]]
-    K = element_stiffness(body.points, first, isotropic_stiffness(m.E, m.nu), body.element)
+    K = element_stiffness(body.points, first, lame_constants(m.E, m.nu), body.element)
     return SliceOperator.of_rod(rod, K)
 
 

@@ -21,19 +21,12 @@ from scipy.sparse.linalg import LinearOperator, cg
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
 from fem_impact.fem.elements import lame_constants
+from fem_impact.fem.forms import dashpots, face_basis, hex_mesh, springs
 from meshes import OUTER, HexMesh
 
-NORMAL_SPRING, TANGENTIAL_SPRING = 4 / 3, 2 / 3
 # 2 pi G c_s times the radiated power over (dF/dt)^2, a polynomial of nu (highest power first) within 0.25 %
 # of Lamb's integral (Miller & Pursey 1955, Proc. R. Soc. A)
 RADIATION = (0.72091, 0.54936, -1.83562, 1.34367)
-
-
-def _face_geometry(mesh: HexMesh) -> tuple[Array, Array, Array]:
-    corners = mesh.points[mesh.faces_with(OUTER)]
-    area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
-    size = np.linalg.norm(area, axis=1)
-    return size, area / size[:, None], np.linalg.norm(corners.mean(axis=1), axis=1)
 
 
 def spread_boundary(mesh: HexMesh, E: float, nu: float, rho: float) -> tuple[Array, Array]:
@@ -43,14 +36,13 @@ def spread_boundary(mesh: HexMesh, E: float, nu: float, rho: float) -> tuple[Arr
     """
     lame, G = lame_constants(E, nu)
     c_d, c_s = sqrt((lame + 2 * G) / rho), sqrt(G / rho)
-    size, normal, r = _face_geometry(mesh)
-    along = normal**2
-    spring = (NORMAL_SPRING * along + TANGENTIAL_SPRING * (1 - along)) * (G * size / r)[:, None]
-    damping = (c_d * along + c_s * (1 - along)) * (rho * size)[:, None]
+    faces, ones = mesh.faces_with(OUTER), np.ones(mesh.points.size)
+    basis = face_basis(hex_mesh(mesh.points, mesh.cells), faces)
+    spring = springs.assemble(basis, G=G) @ ones
+    damping = dashpots.assemble(basis, rho=rho, c_d=c_d, c_s=c_s) @ ones
     totals = np.zeros((2, len(mesh.points), 3))
-    for corner in mesh.faces_with(OUTER).T:
-        np.add.at(totals[0], corner, spring / 4)
-        np.add.at(totals[1], corner, damping / 4)
+    outer = np.unique(faces)  # on other nodes the faces' cells leave round-off
+    totals[:, outer] = np.stack([spring, damping]).reshape(2, -1, 3)[:, outer]
     return totals[0], totals[1]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +16,9 @@ from fem_impact.fem.kernels import add_product, inlined, kernel, load, spread, s
 Counts = NDArray[np.uint32]
 
 
-CHUNK = 500  # elements assembled at once: their strain matrices and entries take a few tens of MB
+CHUNK = 500  # elements assembled at once: their entries take a few MB
+# of the largest number: what numbers that come by sums in different orders may differ by, and places of nodes
+ROUNDING, PLACES = 1e-13, 1e-12
 
 
 def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
@@ -26,18 +29,48 @@ def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
     return sp.csr_matrix((np.repeat(coo.data, 3), (rows, columns)), shape=(3 * tie.shape[0], size))
 
 
-def assemble(points: Array, cells: Ints, C: Array, kind: Kind, T: sp.csr_matrix) -> sp.csr_matrix:
+def distinct(rows: Array, rounding: float) -> tuple[Ints, Ints]:
+    """Return the number (m,) of each row (m, k) among the distinct ones as they come, and where these come.
+
+    Rows are alike that differ by less than ``rounding`` times the largest number.
+    """
+    unit = rounding * float(np.abs(rows).max(initial=1e-300))
+    rounded = np.ascontiguousarray(np.round(rows / unit)) + 0.0
+    # rows as single items of bytes: far faster to sort
+    items = rounded.view(np.dtype((np.void, rounded.itemsize * rounded.shape[1]))).ravel()
+    _, first, number = np.unique(items, return_index=True, return_inverse=True)
+    order = np.argsort(first)
+    return np.argsort(order)[number], first[order]
+
+
+def element_batches(
+    points: Array, cells: Ints, lame: tuple[float, float], kind: Kind
+) -> Iterator[tuple[Ints, Array]]:
+    """Yield cells (k, 8) and their matrices (k, 24, 24), N/m, as in `element_stiffness`, for all cells.
+
+    Cells that are translates of each other have one matrix, which is made once.
+    """
+    corners = points[cells]
+    shape, first = distinct((corners - corners[:, :1]).reshape(-1, 24), PLACES)
+    for start in range(0, len(first), CHUNK):
+        matrices = element_stiffness(points, cells[first[start : start + CHUNK]], lame, kind)
+        alike = np.flatnonzero((shape >= start) & (shape < start + CHUNK))
+        for some in np.split(alike, range(CHUNK, len(alike), CHUNK)):
+            yield cells[some], matrices[shape[some] - start]
+
+
+def assemble(
+    points: Array, cells: Ints, lame: tuple[float, float], kind: Kind, T: sp.csr_matrix
+) -> sp.csr_matrix:
     """Return the assembled T^T K T (size, size), N/m, of elements as in `element_stiffness`.
 
     Their matrices, by far larger than what they add up to, never exist all at once.
     """
     total = sp.csr_matrix((T.shape[1], T.shape[1]))
-    for first in range(0, len(cells), CHUNK):
-        some = cells[first : first + CHUNK]
+    for some, K in element_batches(points, cells, lame, kind):
         dof = (some[:, :, None] * 3 + np.arange(3)).reshape(len(some), 24).astype(np.int32)
         rows, columns = np.repeat(dof, 24, axis=1).ravel(), np.tile(dof, (1, 24)).ravel()
-        values = element_stiffness(points, some, C, kind).ravel()
-        part = sp.csr_matrix((values, (rows, columns)), shape=(T.shape[0], T.shape[0]))
+        part = sp.csr_matrix((K.ravel(), (rows, columns)), shape=(T.shape[0], T.shape[0]))
         total = total + T.T @ part @ T
     return sp.csr_matrix(total)
 
@@ -46,20 +79,6 @@ def assemble_mass(mass: Array, cells: Ints, T: sp.csr_matrix) -> Array:
     """Return the lumped masses (size,) of element nodal masses (m, 8): row sums of T^T M T."""
     nodal = np.bincount(cells.ravel(), weights=mass.ravel(), minlength=T.shape[0] // 3)
     return np.asarray(T.T @ np.repeat(nodal, 3))
-
-
-ROUNDING = 1e-13  # of the largest entry: what sums in different orders may differ by
-
-
-def _distinct(blocks: Array) -> tuple[Counts, Array]:
-    """Return the number of each block (entries, 9) among the distinct ones, and these as they come."""
-    unit = ROUNDING * float(np.abs(blocks).max(initial=1e-300))
-    rounded = np.ascontiguousarray(np.round(blocks / unit))
-    # blocks as single items of bytes: far faster to sort than rows
-    items = (rounded + 0.0).view(np.dtype((np.void, 72))).ravel()
-    _, first, kinds = np.unique(items, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    return np.argsort(order)[kinds].astype(np.uint32), blocks[first[order]]
 
 
 @dataclass(slots=True)
@@ -98,12 +117,14 @@ class NodeProduct:
         small.sort_indices()
         rows = np.repeat(np.arange(len(used)), np.diff(small.indptr))
         upper = small.indices >= rows
-        kinds, blocks = _distinct(small.data[upper].reshape(-1, 9))
+        blocks = small.data[upper].reshape(-1, 9)
+        kinds, first = distinct(blocks, ROUNDING)
         start = np.concatenate([[0], np.cumsum(np.bincount(rows[upper], minlength=len(used)))])
         columns, room = small.indices[upper].astype(np.uint32), np.zeros((2, len(used), 4))
-        blocks = np.concatenate([blocks, np.zeros((1, 9))])
+        blocks = np.concatenate([blocks[first], np.zeros((1, 9))])
         zero = np.zeros(used.shape) if origin is None else origin[used]
-        return cls(used.astype(np.uint32), zero, start.astype(np.int64), columns, kinds, blocks, *room)
+        numbers = start.astype(np.int64), columns, kinds.astype(np.uint32)
+        return cls(used.astype(np.uint32), zero, *numbers, blocks, *room)
 
     def multiply(self, x: Array) -> None:
         """Set ``product`` to the product with ``x`` less the origin."""

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
-from fem_impact.fem.elements import isotropic_stiffness
+from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.solid.model import Model
@@ -106,10 +106,9 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
 def mises(gradient: Array, u: Array, E: float, nu: float) -> Array:
     """Return von Mises stress (m,), Pa, of element displacements u (m, 8, 3) at the centres."""
     H = np.einsum("mai,maj->mij", u, gradient)
-    strain = [H[:, i, i] for i in range(3)] + [H[:, i, j] + H[:, j, i] for i, j in ((0, 1), (1, 2), (2, 0))]
-    s = isotropic_stiffness(E, nu) @ np.array(strain)
-    s[:3] -= s[:3].mean(axis=0)
-    return np.asarray(np.sqrt(1.5 * (s[:3] ** 2).sum(axis=0) + 3.0 * (s[3:] ** 2).sum(axis=0)))
+    strain = 0.5 * (H + H.transpose(0, 2, 1))
+    deviator = strain - np.trace(strain, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
+    return np.asarray(2 * lame_constants(E, nu)[1] * np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))))
 
 
 @dataclass(slots=True)

@@ -12,7 +12,7 @@ from scipy.linalg import eigh
 import meshes
 from fem_impact.arrays import Array
 from fem_impact.fem.eigen import rod_modes
-from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.fem.elements import element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.layout import TWISTING, MassPoints
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, tie_operator
@@ -64,9 +64,9 @@ def _torsion(model: Model, p: Values) -> float:
     """Return the first frequency, Hz, of the motions that the solver's mirrored half leaves out."""
     rod, layout = model.geometry.rod, model.layout
     points, cells, n = rod.mesh.points, rod.mesh.cells, layout.rod_size
-    C, T = isotropic_stiffness(p["E"], p["nu"]), tie_operator(rod.mesh.tie, layout.rod, n)
+    lame, T = lame_constants(p["E"], p["nu"]), tie_operator(rod.mesh.tie, layout.rod, n)
     drawn = MassPoints.of_rod(rod, lumped_mass(points, cells, p["rho"]), p["rho"], TWISTING)
-    plain = assemble(points, cells, C, "incompatible", T)
+    plain = assemble(points, cells, lame, "incompatible", T)
     fixed = np.zeros(n, dtype=bool)
     fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
     found = rod_modes(drawn.reduced((plain,), layout.body_shape[1]), model.mass[:n], fixed, COUNT)
@@ -179,7 +179,7 @@ class _Slice:
         cells, points = bar.mesh.cells[first], bar.mesh.points
         masses = lumped_mass(points, bar.mesh.cells, p["rho"])
         self.drawn = MassPoints.of_rod(bar, masses, p["rho"]).section()
-        K = element_stiffness(points, cells, isotropic_stiffness(p["E"], p["nu"]), "incompatible")
+        K = element_stiffness(points, cells, lame_constants(p["E"], p["nu"]), "incompatible")
         self.count, self.height, self.cells = len(bar.body_nodes), bar.slice_length, len(cells)
         section = np.full(len(points), -1)
         section[bar.body_nodes[:, :2].T] = np.arange(self.count)

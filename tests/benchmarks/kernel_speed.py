@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 import meshes
-from fem_impact.fem.elements import isotropic_stiffness
+from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.sparse import assemble, tie_operator
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
@@ -70,8 +70,8 @@ def triad_gb_per_s() -> float:
 def plain_stiffness(model: Model) -> csr_matrix:
     """Return the rod's assembled stiffness over its nodes; the numbers do not matter to a product's time."""
     mesh, layout = model.geometry.rod.mesh, model.layout
-    C, T = isotropic_stiffness(2e11, 0.29), tie_operator(mesh.tie, layout.rod, layout.rod_size)
-    return assemble(mesh.points, mesh.cells, C, "incompatible", T)
+    lame, T = lame_constants(2e11, 0.29), tie_operator(mesh.tie, layout.rod, layout.rod_size)
+    return assemble(mesh.points, mesh.cells, lame, "incompatible", T)
 
 
 def bar_rows() -> list[Row]:

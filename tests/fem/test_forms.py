@@ -1,5 +1,6 @@
-"""The weak forms: against the assembled operators, the compiled kernels, and exact fields."""
+"""The weak forms: against operators written by hand, the compiled kernels, and exact fields."""
 
+import by_hand
 import numpy as np
 import pytest
 import scipy.sparse as sp
@@ -9,7 +10,7 @@ from skfem import Basis, ElementHex1, ElementVector, FacetBasis
 import meshes
 from fem_impact.fem import forms
 from fem_impact.fem.boundary import spread_boundary
-from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.fem.elements import element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import NodeProduct, assemble, tie_operator
@@ -21,7 +22,6 @@ from meshes import OUTER, Zone
 
 E, NU, RHO = shapes.E, shapes.NU, shapes.RHO
 LAME, G = lame_constants(E, NU)
-C = isotropic_stiffness(E, NU)
 LINEAR, MODES = ElementVector(ElementHex1()), ElementVector(forms.ElementHexModes())
 KINDS = {
     "full": (forms.stiffness, LINEAR),
@@ -51,9 +51,22 @@ def block(levels=1):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_element_stiffness_is_the_form(kind):
-    points, cells = shapes.distorted((3, 2, 4), 0.25, seed=1)
-    assert off(element_stiffness(points, cells, C, kind), local(kind, points, cells)) < 1e-12
+def test_element_stiffness_is_that_written_by_hand(kind):
+    points, cells = shapes.distorted((6, 5, 5), 0.25, seed=1)
+    exact = by_hand.element_stiffness(points, cells, by_hand.hooke(E, NU), kind)
+    assert off(element_stiffness(points, cells, (LAME, G), kind), exact) < 1e-12
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_forms_side_by_side_are_what_scikit_fem_makes_of_them(kind):
+    points, cells = shapes.distorted((2, 1, 1), 0.25, seed=13)
+    form, element = KINDS[kind]
+    basis = Basis(forms.hex_mesh(points, cells), element, intorder=2)
+    K = form.assemble(basis, dx=basis.dx, lame=LAME, G=G).toarray()
+    n = points.size
+    if len(K) > n:  # without load the modes follow the nodes
+        K = K[:n, :n] - K[:n, n:] @ np.linalg.solve(K[n:, n:], K[n:, :n])
+    assert off(shapes.dense(local(kind, points, cells), cells), K) < 1e-12
 
 
 def test_the_three_stiffnesses_differ():
@@ -64,11 +77,9 @@ def test_the_three_stiffnesses_differ():
 
 def test_lumped_masses_are_the_row_sums_of_the_form():
     points, cells = shapes.distorted((3, 2, 4), 0.25, seed=3)
-    mesh = forms.hex_mesh(points, cells)
-    exact = forms.element_matrices(forms.mass, mesh, ElementHex1(), rho=RHO).sum(axis=2)
     ours = lumped_mass(points, cells, RHO)
-    assert off(ours, exact) < 1e-12
-    nodal = whole(forms.mass, mesh, rho=RHO) @ np.ones(points.size)
+    assert off(ours, by_hand.lumped_mass(points, cells, RHO)) < 1e-12
+    nodal = whole(forms.mass, forms.hex_mesh(points, cells), rho=RHO) @ np.ones(points.size)
     assert off(np.repeat(np.bincount(cells.ravel(), ours.ravel()), 3), nodal) < 1e-12
 
 
@@ -77,25 +88,24 @@ def test_assembly_through_ties_is_the_form(kind):
     mesh, points = shapes.refined_patch(seed=4)
     T = tie_operator(mesh.tie, np.arange(points.size).reshape(-1, 3), points.size)
     K = whole(KINDS[kind][0], forms.hex_mesh(points, mesh.cells), lame=LAME, G=G)
-    assert off(assemble(points, mesh.cells, C, kind, T), T.T @ K @ T) < 1e-12
+    assert off(assemble(points, mesh.cells, (LAME, G), kind, T), T.T @ K @ T) < 1e-12
 
 
-def test_springs_and_dashpots_of_the_boundary_are_the_forms():
-    mesh = block()
-    spring, damping = spread_boundary(mesh, E, NU, RHO)
-    basis = forms.face_basis(forms.hex_mesh(mesh.points, mesh.cells), mesh.faces_with(OUTER))
-    assert basis.nelems == len(mesh.faces_with(OUTER))
-    ones, fast, slow = np.ones(mesh.points.size), np.sqrt((LAME + 2 * G) / RHO), np.sqrt(G / RHO)
-    assert off(spring.ravel(), forms.springs.assemble(basis, G=G) @ ones) < 1e-12
-    pots = forms.dashpots.assemble(basis, rho=RHO, c_d=fast, c_s=slow)
-    assert off(damping.ravel(), pots @ ones) < 1e-12
+@pytest.mark.parametrize("levels", [0, 1])
+def test_springs_and_dashpots_of_the_boundary_are_those_written_by_hand(levels):
+    mesh = block(levels)
+    assert (mesh.is_hanging.sum() > 20) == (levels > 0)
+    exact = by_hand.boundary(mesh, G, RHO, np.sqrt((LAME + 2 * G) / RHO), np.sqrt(G / RHO))
+    for ours, written in zip(spread_boundary(mesh, E, NU, RHO), exact, strict=True):
+        assert off(ours, written) < 1e-12
+        assert ((ours > 0) == (written > 0)).all()
 
 
 def test_the_sliced_rod_is_the_form():
     rod = meshes.rod(np.array([[0.0, 0.0], [9.5e-3, 0.0]]), 30e-3, 6, nose=False)
     section, layers = rod.body_nodes.shape
     operator = SliceOperator.of_rod(
-        rod, element_stiffness(rod.mesh.points, rod.mesh.cells[rod.body_cells[:, 0]], C, "full")
+        rod, element_stiffness(rod.mesh.points, rod.mesh.cells[rod.body_cells[:, 0]], (LAME, G), "full")
     )
     K = whole(forms.stiffness, forms.hex_mesh(rod.mesh.points, rod.mesh.cells), lame=LAME, G=G)
     u = np.random.default_rng(5).normal(size=rod.mesh.points.shape)
@@ -110,7 +120,9 @@ def test_the_block_on_springs_is_the_form():
     body = forms.hex_mesh(mesh.points, mesh.cells)
     places = np.arange(mesh.points.size).reshape(-1, 3)
     springs = sp.diags(spread_boundary(mesh, E, NU, RHO)[0].ravel())
-    ours = assemble(mesh.points, mesh.cells, C, "bbar", sp.identity(places.size, format="csr")) + springs
+    ours = (
+        assemble(mesh.points, mesh.cells, (LAME, G), "bbar", sp.identity(places.size, format="csr")) + springs
+    )
     product, force = NodeProduct.of(sp.csr_matrix(ours), places), np.zeros(places.size)
     outside = forms.springs.assemble(forms.face_basis(body, mesh.faces_with(OUTER)), G=G)
     u = np.random.default_rng(6).normal(size=places.size)

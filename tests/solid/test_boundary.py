@@ -10,7 +10,7 @@ import solid_shapes as shapes
 
 import meshes
 from fem_impact.fem.boundary import RADIATION, radiating_share, spread_boundary
-from fem_impact.fem.elements import isotropic_stiffness, lame_constants, lumped_mass
+from fem_impact.fem.elements import lame_constants, lumped_mass
 from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.reference.waves import radiation_resistance
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
@@ -66,7 +66,7 @@ def test_dashpots_take_what_a_slow_force_radiates():
     spring, damping = (part.ravel() for part in spread_boundary(mesh, E, NU, RHO))
     T = tie_operator(mesh.tie, places, 3 * n)
     K = (
-        assemble(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible", T) + sp.diags(spring)
+        assemble(mesh.points, mesh.cells, lame_constants(E, NU), "incompatible", T) + sp.diags(spring)
     ).tocsr()
     held = np.zeros(3 * n, dtype=bool)
     held[places[mesh.points[:, 1] == 0, 1]] = True
@@ -99,7 +99,7 @@ class Column:
         foot_only = replace(mesh, faces=mesh.faces[foot], face_tag=mesh.face_tag[foot])
         places = np.arange(mesh.points.size).reshape(-1, 3)
         T = tie_operator(mesh.tie, places, places.size)
-        K = assemble(mesh.points, mesh.cells, isotropic_stiffness(E, NU), "incompatible", T)
+        K = assemble(mesh.points, mesh.cells, lame_constants(E, NU), "incompatible", T)
         mass = assemble_mass(lumped_mass(mesh.points, mesh.cells, RHO), mesh.cells, T)
         inverse = 1 / mass
         inverse[places[:, :2]] = 0.0

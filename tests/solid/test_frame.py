@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import solid_shapes as shapes
 
-from fem_impact.fem.elements import element_stiffness, isotropic_stiffness
+from fem_impact.fem.elements import element_stiffness, lame_constants
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 
 
@@ -24,7 +24,7 @@ class Body:
         t, b, n = (np.ascontiguousarray(self.places[:, c]) for c in range(3))
         self.frame = TurningFrame(self.reference, self.mass, t, b, n)
         elastic = shapes.dense(
-            element_stiffness(points, cells, isotropic_stiffness(shapes.E, shapes.NU), "full"), cells
+            element_stiffness(points, cells, lame_constants(shapes.E, shapes.NU), "full"), cells
         )
         self.K = np.empty((self.size, self.size))
         self.K[np.ix_(self.places.ravel(), self.places.ravel())] = elastic

@@ -8,11 +8,11 @@ import scipy.sparse as sp
 import solid_shapes as shapes
 
 import meshes
-from fem_impact.fem.elements import element_stiffness, isotropic_stiffness, lumped_mass
+from fem_impact.fem.elements import element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.slices import SliceOperator
-from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
+from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, element_batches, tie_operator
 
-C = isotropic_stiffness(shapes.E, shapes.NU)
+LAME = lame_constants(shapes.E, shapes.NU)
 
 
 def _slices(across=6, length=30e-3):
@@ -20,7 +20,7 @@ def _slices(across=6, length=30e-3):
     section = np.full(len(rod.mesh.points), -1)
     section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
     first = rod.mesh.cells[rod.body_cells[:, 0]]
-    K = element_stiffness(rod.mesh.points, first, C, "incompatible")
+    K = element_stiffness(rod.mesh.points, first, LAME, "incompatible")
     return rod, SliceOperator.of(K, section[first[:, :4]], section[first[:, 4:]])
 
 
@@ -33,7 +33,7 @@ def test_slices_are_the_assembled_matrix():
         np.arange(3 * n_section * layers).reshape(3, n_section, layers).transpose(1, 2, 0)
     )
     whole = assemble(
-        rod.mesh.points, rod.mesh.cells, C, "incompatible", tie_operator(rod.mesh.tie, places, places.size)
+        rod.mesh.points, rod.mesh.cells, LAME, "incompatible", tie_operator(rod.mesh.tie, places, places.size)
     )
     d = np.random.default_rng(1).normal(size=(3 * n_section, layers))
     y = np.full_like(d, np.nan)
@@ -47,7 +47,7 @@ def test_blocks_are_the_sparse_matrix():
     places = np.random.default_rng(3).permutation(3 * len(points)).reshape(-1, 3)
     some = mesh.cells[::3]
     T = tie_operator(mesh.tie, places, places.size)
-    K = assemble(points, some, C, "bbar", T)
+    K = assemble(points, some, LAME, "bbar", T)
     product = NodeProduct.of(K, places[~mesh.is_hanging])
     x = np.random.default_rng(4).normal(size=places.size)
     y = np.ones(places.size)
@@ -61,7 +61,7 @@ def _unheld(seed):
     """Return the product of a refined patch that nothing holds, its free points, their places and matrix."""
     mesh, points = shapes.refined_patch(seed)
     places = np.random.default_rng(seed).permutation(3 * len(points)).reshape(-1, 3)
-    K = assemble(points, mesh.cells, C, "incompatible", tie_operator(mesh.tie, places, places.size))
+    K = assemble(points, mesh.cells, LAME, "incompatible", tie_operator(mesh.tie, places, places.size))
     free = places[~mesh.is_hanging]
     product = NodeProduct.of(K, free)
 
@@ -159,7 +159,7 @@ def test_tied_masses_add_up_and_stand_on_free_nodes():
 def test_rigid_motion_of_a_tied_assembly_is_free():
     mesh, points = shapes.refined_patch(seed=11)
     places = np.arange(3 * len(points)).reshape(-1, 3)
-    K = assemble(points, mesh.cells, C, "incompatible", tie_operator(mesh.tie, places, places.size))
+    K = assemble(points, mesh.cells, LAME, "incompatible", tie_operator(mesh.tie, places, places.size))
     assert isinstance(K, sp.csr_matrix)
     u = np.cross([1.0, -2.0, 0.5], points)
     assert abs(K @ u.ravel()).max() < 1e-11 * abs(K).max() * abs(u).max()
@@ -170,7 +170,7 @@ def test_assembly_takes_little_more_memory_than_its_result():
     T = sp.identity(3 * len(points), format="csr")
     tracemalloc.start()
     try:
-        whole = assemble(points, cells, C, "full", T)
+        whole = assemble(points, cells, LAME, "full", T)
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -180,10 +180,20 @@ def test_assembly_takes_little_more_memory_than_its_result():
 def test_equal_cells_share_their_blocks():
     points, cells = shapes.grid((6, 6, 6), 1e-3)
     places = np.arange(3 * len(points)).reshape(-1, 3)
-    matrix = assemble(points, cells, C, "bbar", sp.identity(places.size, format="csr"))
+    matrix = assemble(points, cells, LAME, "bbar", sp.identity(places.size, format="csr"))
     product = NodeProduct.of(matrix, places)
     assert len(product.blocks) < 0.1 * len(product.kinds)
     x, y = np.random.default_rng(4).normal(size=places.size), np.zeros(places.size)
     product.multiply(x)
     product.add_to(y)
     assert y == pytest.approx(matrix @ x, abs=1e-11 * abs(matrix @ x).max())
+
+
+def test_cells_of_one_shape_have_one_matrix():
+    points, cells = shapes.grid((7, 2, 3), 1e-3)
+    points = points + 0.24  # whose places are rounded
+    made = [K for _, K in element_batches(points, cells, LAME, "full")]
+    assert sum(len(np.unique(K, axis=0)) for K in made) == 1
+    points[-1] += 1e-12  # the last cell is another by 1e-9 of its edge
+    made = [K for _, K in element_batches(points, cells, LAME, "full")]
+    assert sum(len(np.unique(K, axis=0)) for K in made) == 2
