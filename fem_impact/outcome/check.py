@@ -1,34 +1,57 @@
-"""What a record must hold; complaints name file, key and value."""
+"""What a record must hold: its JSON Schema, and what that cannot say; complaints name file, key and value."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from typing import Any
+
+import fastjsonschema
 
 from fem_impact.errors import ResultError, did_you_mean
 from fem_impact.outcome.keys import Key, Kind
-
-__all__ = ["SCHEMA_VERSION", "check_record"]
-
+from fem_impact.scene.types import FIDELITIES
 
 SCHEMA_VERSION = 3
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 
-FIDELITIES = ("rigid", "modal", "solid")
+# JSON Schema of a value by its kind, and what a complaint says of it
+SHAPES: Mapping[Kind, tuple[Mapping[str, Any], str]] = {
+    "number": ({"type": "number"}, "must be a number"),
+    "count": ({"type": "integer", "minimum": 0}, "must be a whole number, zero or more"),
+    "flag": ({"type": "boolean"}, "must be true or false"),
+    "text": ({"type": "string"}, "must be a text"),
+    "texts": ({"type": "array", "items": {"type": "string"}}, "must be a list of texts"),
+    "named texts": (
+        {"type": "object", "additionalProperties": {"type": "string"}},
+        "must map names to texts",
+    ),
+    "named numbers": (
+        {"type": "object", "additionalProperties": {"type": "number"}},
+        "must map names to finite numbers",
+    ),
+}
 
-Table = Mapping[str, Key]
+
+def json_schema(keys: Iterable[Key]) -> dict[str, Any]:
+    """Return the JSON Schema (draft 7) of a record with these keys; a checksum may stand beside them."""
+    return {
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": f"Outcome of one run of fem-impact, version {SCHEMA_VERSION}",
+        **_object(keys),
+    }
 
 
-def check_record(values: Mapping[str, Any], table: Table, source: str) -> None:
-    """Refuse a record that breaks the table of keys.
+def check_record(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) -> None:
+    """Refuse a record that breaks the schema of its keys, or what a schema cannot say.
 
     Parameters
     ----------
     values : mapping
         Key to plain JSON value (None, bool, int, float, str, list, dict).
-    table : mapping
-        The keys by name.
+    keys : tuple
+        All keys of a record.
     source : str
         The file or object named in the message.
 
@@ -37,10 +60,13 @@ def check_record(values: Mapping[str, Any], table: Table, source: str) -> None:
     ResultError
         With the file, the key, the value and the remedy.
     """
+    table = {key.name: key for key in keys}
     _check_version(values, source)
     _check_names(values, table, source)
-    for name, key in table.items():
-        _refuse(_complaint(key, values[name]), name, values[name], source)
+    _check_shapes(values, keys, source)
+    for key in keys:
+        if key.kind == "number" and values[key.name] is not None and not math.isfinite(values[key.name]):
+            _refuse("must be finite", key.name, values[key.name], source)
     if values["fidelity"] not in FIDELITIES:
         _refuse(f"must be one of {', '.join(FIDELITIES)}", "fidelity", values["fidelity"], source)
     for contact in values["contacts"] or ():
@@ -52,6 +78,48 @@ def check_record(values: Mapping[str, Any], table: Table, source: str) -> None:
     _check_reasons(values, table, source)
 
 
+def _object(keys: Iterable[Key]) -> dict[str, Any]:
+    properties = {key.name: {"description": key.meaning, **_shape(key)} for key in keys}
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+def _shape(key: Key) -> dict[str, Any]:
+    if key.kind == "entries":
+        entry = {**_object(key.entries), "additionalProperties": False}
+        shape: dict[str, Any] = {"type": "array", "items": entry}
+    else:
+        shape = dict(SHAPES[key.kind][0])
+    return {**shape, "type": [shape["type"], "null"]} if key.nullable else shape
+
+
+@cache
+def _validator(keys: tuple[Key, ...]) -> Callable[[Any], Any]:
+    validate: Callable[[Any], Any] = fastjsonschema.compile(json_schema(keys))
+    return validate
+
+
+def _check_shapes(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) -> None:
+    """Refuse what the schema refuses, in the words of the key."""
+    try:
+        _validator(keys)(dict(values))
+    except fastjsonschema.JsonSchemaValueException as error:
+        name, *inner = error.path[1:]
+        key = next(key for key in keys if key.name == name)
+        _refuse(_shape_complaint(key, values[name], inner), name, values[name], source)
+
+
+def _shape_complaint(key: Key, value: Any, inner: list[str]) -> str:
+    """Return what is wrong with a value, or with the part of it that ``inner`` leads to."""
+    if value is None:
+        return "must not be null"
+    if key.kind != "entries":
+        return SHAPES[key.kind][1]
+    entry = next((entry for entry in key.entries if entry.name in inner), None)
+    if entry is None:
+        return f"must be a list of entries of exactly {', '.join(entry.name for entry in key.entries)}"
+    return f'has an entry whose "{entry.name}" {SHAPES[entry.kind][1]}'
+
+
 def _check_version(values: Mapping[str, Any], source: str) -> None:
     version = values.get("schema_version")
     if version != SCHEMA_VERSION or isinstance(version, bool):
@@ -59,7 +127,7 @@ def _check_version(values: Mapping[str, Any], source: str) -> None:
         _refuse(wrong, "schema_version", version, source)
 
 
-def _check_names(values: Mapping[str, Any], table: Table, source: str) -> None:
+def _check_names(values: Mapping[str, Any], table: Mapping[str, Key], source: str) -> None:
     for name in values:
         if name not in table:
             hint = did_you_mean(str(name), table, "")
@@ -69,7 +137,7 @@ def _check_names(values: Mapping[str, Any], table: Table, source: str) -> None:
         raise ResultError(f'{source}: key "{missing[0]}" is missing ({len(missing)} in all).')
 
 
-def _check_reasons(values: Mapping[str, Any], table: Table, source: str) -> None:
+def _check_reasons(values: Mapping[str, Any], table: Mapping[str, Key], source: str) -> None:
     reasons = values["reasons"]
     nulls = {name for name in table if values[name] is None}
     for name in sorted(nulls - set(reasons)):
@@ -81,29 +149,7 @@ def _check_reasons(values: Mapping[str, Any], table: Table, source: str) -> None
             raise ResultError(f'{source}: "reasons" must give the null key "{name}" a sentence.')
 
 
-def _complaint(key: Key, value: Any) -> str | None:
-    """Return why a value cannot stand under a key, None when it can."""
-    if value is None:
-        return None if key.nullable else "must not be null"
-    if key.kind == "entries":
-        return _entries_complaint(key, value)
-    right, wrong = _RULES[key.kind]
-    if right(value):
-        return "must be finite" if key.kind == "number" and not math.isfinite(value) else None
-    return wrong
-
-
-def _entries_complaint(key: Key, value: Any) -> str | None:
-    names = [entry.name for entry in key.entries]
-    if not isinstance(value, list) or any(
-        not isinstance(held, dict) or set(held) != set(names) for held in value
-    ):
-        return f"must be a list of entries of exactly {', '.join(names)}"
-    wrong = ((entry, _complaint(entry, held[entry.name])) for held in value for entry in key.entries)
-    return next((f'has an entry whose "{entry.name}" {why}' for entry, why in wrong if why), None)
-
-
-def _limit_complaint(limits: Mapping[str, float], table: Table) -> str | None:
+def _limit_complaint(limits: Mapping[str, float], table: Mapping[str, Key]) -> str | None:
     strange = next((name for name in limits if name not in table or not table[name].banded), None)
     return None if strange is None else f'names "{strange}", a key that meshes give no limit'
 
@@ -123,31 +169,3 @@ def _refuse(wrong: str | None, name: str, value: Any, source: str) -> None:
 def _short(value: Any, limit: int = 60) -> str:
     text = value if isinstance(value, str) else repr(value)
     return text if len(text) <= limit else text[: limit - 3] + "..."
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
-
-
-def _maps(value: Any, right: Callable[[Any], bool]) -> bool:
-    return isinstance(value, dict) and all(map(right, value.values()))
-
-
-_RULES: Mapping[Kind, tuple[Callable[[Any], bool], str]] = {
-    "number": (_is_number, "must be a number"),
-    "count": (
-        lambda v: _is_number(v) and isinstance(v, int) and v >= 0,
-        "must be a whole number, zero or more",
-    ),
-    "flag": (lambda v: isinstance(v, bool), "must be true or false"),
-    "text": (lambda v: isinstance(v, str), "must be a text"),
-    "texts": (
-        lambda v: isinstance(v, list) and all(isinstance(item, str) for item in v),
-        "must be a list of texts",
-    ),
-    "named texts": (lambda v: _maps(v, lambda item: isinstance(item, str)), "must map names to texts"),
-    "named numbers": (
-        lambda v: _maps(v, lambda item: _is_number(item) and math.isfinite(item)),
-        "must map names to finite numbers",
-    ),
-}

@@ -52,7 +52,7 @@ class Outcome:
 
     Examples
     --------
-    >>> from fem_impact.scene import load
+    >>> from fem_impact.scene.shipped import load
     >>> from fem_impact.run.simulate import simulate
     >>> outcome = simulate(load("t5b"), "rigid")
     >>> round(outcome.restitution.edge.e, 2)
@@ -73,7 +73,7 @@ class Outcome:
     schema_version: ClassVar[int] = SCHEMA_VERSION
 
     def __post_init__(self) -> None:
-        check_record(self.to_dict(), KEY_TABLE, "outcome")
+        check_record(self.to_dict(), KEYS, "outcome")
 
     def __repr__(self) -> str:
         e, vibration = (_short(value) for value in (self.restitution.edge.e, self.energy.vibration))
@@ -137,7 +137,7 @@ class Outcome:
         ResultError
             A key is unknown, missing, of the wrong kind, not finite, or null without a reason.
         """
-        check_record(values, KEY_TABLE, source)
+        check_record(values, KEYS, source)
         made: Outcome = _made(cls, {key.path: _typed(key, values) for key in KEYS})
         return made
 

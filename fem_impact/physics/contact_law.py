@@ -71,8 +71,8 @@ def restitution(law: ContactLaw, mass: float, speed: float) -> float:
 
     Examples
     --------
-    >>> from fem_impact.scene import load
-    >>> law = contact_law(load("t5b"))
+    >>> from fem_impact.scene.shipped import load
+    >>> law = contact_law(ContactBodies(load("t5b"), True, True, True, f=0.57))
     >>> restitution(law, 0.1, 16.0) / restitution(law, 0.1, 1.0) < 0.6
     True
     """

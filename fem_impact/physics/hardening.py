@@ -76,7 +76,7 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
 
     Examples
     --------
-    >>> round(power_hardening(219e9, 546e6, 592e6).exponent, 3)
+    >>> print(round(power_hardening(219e9, 546e6, 592e6).exponent, 3))
     0.043
     """
     stiffness, ratio = E / yield_stress, ultimate_stress / yield_stress
