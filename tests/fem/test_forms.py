@@ -16,7 +16,6 @@ from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import NodeProduct, assemble, tie_operator
 from fem_impact.physics.hardening import linear_hardening
 from fem_impact.render.kinematics import stretch
-from fem_impact.solid.items import add_force
 from fem_impact.solid.yielding import YieldingZone
 from meshes import OUTER, Zone
 
@@ -143,7 +142,7 @@ def test_the_yielding_kernel_starts_as_the_form_with_mean_dilatation():
     state.dt = 1e-8
     state.x[:size] += u
     state.v[:size] = u / state.dt
-    add_force(zone, state)
+    zone.add(state)
     K = whole(forms.mean_dilatation_stiffness, forms.hex_mesh(points, cells), lame=LAME, G=G)
     assert off(-state.force[:size], K @ u) < 1e-5  # of strains of 1e-9 and of what positions round off
 

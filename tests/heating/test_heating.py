@@ -17,6 +17,7 @@ from fem_impact.physics.flash import (
     short_rise,
     sliding_speed,
 )
+from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load
@@ -114,11 +115,12 @@ def test_the_watch_finds_all_heat_and_the_patch(barrier, tip):
     """An elastic sliding tip: the patch is near that of Hertz, the heat f J V."""
     effects = ("vibration", "friction", barrier, "large-rotation", "contact-heating")
     changes = {"length": 0.08, "f": 0.2, "angle": 0.8, "v_n": -6.0, "v_t": -6.0, "tip": tip, "max_time": 5e-5}
-    result, stated = solid_scenes.run(*effects, **changes), solid_scenes.scene(*effects, **changes)
+    result = solid_scenes.run(*effects, **changes)
+    stated = result.plan.scene
     watch = result.heat
     heat = float(np.array(watch.power) @ np.diff(watch.t))
     assert heat == pytest.approx(result.accounts["friction"], rel=0.01)  # the last window is still open
-    found, size = reduce(stated, result), contact_estimate(stated)
+    found, size = reduce(result), contact_estimate(result.plan.bodies)
     assert found.heat.patch == pytest.approx(pi * size.a_t * size.a_b, rel=0.35)
     # the blow turns the rod and the tip slides faster and faster
     last = abs(result.motion.V_t - result.motion.Omega * arms(stated)[1])
@@ -144,7 +146,7 @@ def test_heat_does_not_act_on_the_motion():
     watched = solid_scenes.run(*effects, "contact-heating", **changes)
     assert plain.heat is None
     assert watched.accounts == plain.accounts
-    outcome = reduce(solid_scenes.scene(*effects, **changes), plain)
+    outcome = reduce(plain)
     assert outcome.heat.rise.reason == "the contact-heating effect is off"
     # a list without auto forces off what it does not name, and the outcome says so
     missed = {words.split()[0] for words in outcome.validity.warnings if "is left out by the scene" in words}
@@ -153,7 +155,7 @@ def test_heat_does_not_act_on_the_motion():
     shares = {choice.name: choice.share for choice in outcome.provenance.effect_choices}
     assert {name for name in shares if shares[name] is not None} == set(effects)
     assert 0.05 < shares["vibration"] < 1.0
-    heated = reduce(solid_scenes.scene(*effects, "contact-heating", **changes), watched).provenance
+    heated = reduce(watched).provenance
     assert next(0.0 < c.share < 0.5 for c in heated.effect_choices if c.name == "contact-heating")
 
 
@@ -164,17 +166,17 @@ def test_closed_form_of_the_rigid_fidelity():
     assert found.heat.flux * found.heat.patch == found.heat.power
     assert 5e-5 < power < 2e-4  # the contact time, s
     assert 100 < found.heat.rise < found.heat.bound
-    assert found.heat.bound == pytest.approx(293.15 + flash_bound(stated))
-    assert 0.2 < expected_rise(stated) / found.heat.rise < 5
+    assert found.heat.bound == pytest.approx(293.15 + flash_bound(plan(stated, "rigid").bodies))
+    assert 0.2 < expected_rise(plan(stated, "rigid").bodies) / found.heat.rise < 5
 
 
 def test_the_bound_by_hand():
     """Hardness of the plate, first speed along and across, all heat in the less effusive body."""
     stated = changed(load("t5b"), "heating.rod_conductivity", "20 W/(m K)")
     f, v = stated.surface.friction, abs(stated.impact.v_t) + abs(stated.impact.v_n)
-    seconds = 3 * contact_estimate(stated).duration
+    seconds = 3 * contact_estimate(plan(stated).bodies).duration
     alone = 2 * f * 3 * 446e6 * v * sqrt(seconds / (pi * 20.0 * 7850 * 440.0))
-    assert flash_bound(stated) == pytest.approx(alone)
+    assert flash_bound(plan(stated, "rigid").bodies) == pytest.approx(alone)
 
 
 def test_expected_rise_of_a_hertzian_patch_by_hand():
@@ -186,12 +188,12 @@ def test_expected_rise_of_a_hertzian_patch_by_hand():
         effects=("vibration", "friction", "barrier-rigid"),
         impact=replace(stated.impact, v_t=-1.0, omega=-2.0),
     )
-    size = contact_estimate(stated)
+    size = contact_estimate(plan(stated).bodies)
     speed = abs(-1.0 + 2.0 * arms(stated)[1])
     assert sliding_speed(stated) == pytest.approx(speed)
     flux = 0.1 * size.pressure * 0.5 * speed
     shared = 2 * flux * sqrt(size.duration / pi) / (2 * sqrt(53.0 * 7850 * 440.0))
-    assert expected_rise(stated) == pytest.approx(shared, rel=0.02)
+    assert expected_rise(plan(stated, "rigid").bodies) == pytest.approx(shared, rel=0.02)
 
 
 def test_heat_stays_for_a_while_when_the_source_is_gone():

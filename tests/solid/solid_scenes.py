@@ -48,11 +48,10 @@ def scene(
 
 def model(*effects, **changes):
     """A fresh model: its items hold what moves."""
-    stated = scene(*effects, **changes)
-    return build(plan(stated))
+    return build(plan(scene(*effects, **changes)))
 
 
 @cache
 def run(*effects, **changes):
     """The end of a run; read only."""
-    return solve(scene(*effects, **changes))
+    return solve(plan(scene(*effects, **changes)))

@@ -11,14 +11,15 @@ import solid_scenes as scenes
 
 import rigid
 from fem_impact.errors import RunError
+from fem_impact.fem.body import START_GAP
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
 from fem_impact.outcome.keys import Unknown
+from fem_impact.plan.plan import plan
 from fem_impact.run.markers import WINDOW, lever_of, replay
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.solid.build import START_GAP
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve
 from fem_impact.solid.separation import Separation, flight_heights, flown
@@ -150,14 +151,14 @@ def told(words, cause, place):
 
 def test_a_run_that_makes_energy_stops_and_keeps_its_answer():
     """At 1.1 times the stable step the highest mode of the rod grows: it is seen and stopped."""
-    scene = scenes.scene("vibration", "barrier-rigid", length=0.08)
+    planned = plan(scenes.scene("vibration", "barrier-rigid", length=0.08))
     model = scenes.model("vibration", "barrier-rigid", length=0.08)
-    result = solve(scene, model=replace(model, steps={"rod": 1.1 / SAFETY * model.step}))
+    result = solve(planned, model=replace(model, steps={"rod": 1.1 / SAFETY * model.step}))
     assert not result.finished
     assert result.steps < 400
     assert result.reason.startswith("The energy has grown by ")
     assert "the steps are too long" in result.reason
-    assert reduce(scene, result).validity.finished is False
+    assert reduce(result).validity.finished is False
 
 
 def test_gradients_of_a_cube():
@@ -249,7 +250,7 @@ def test_a_tail_that_strikes_first_ends_the_run(effects):
 
 
 def test_camera_reads_a_rigid_flight_exactly(result):
-    alpha, arm = result.scene.impact.angle, lever_of(0.08)
+    alpha, arm = result.plan.scene.impact.angle, lever_of(0.08)
     # the last two turn the rod by more than a quarter, and by more than a whole turn, in the window
     for V_n, V_t, Omega in ((0.4, -1.2, s) for s in (0.0, 12.0, -30.0, 500.0, -1700.0)):
         seen = replay(_moving(result, V_n, V_t, Omega), V_n, V_t)
@@ -282,7 +283,7 @@ def test_levers():
 @pytest.fixture(scope="module")
 def measured(result):
     """The run as if it repeated a measured set, so that all three sets of arms are filled."""
-    return reduce(replace(result.scene, measured="t5b"), result)
+    return reduce(replace(result, plan=plan(replace(result.plan.scene, measured="t5b"))))
 
 
 @pytest.mark.parametrize("arms", ["paper", "edge", "impulse"])
@@ -301,7 +302,7 @@ def _closure_defect(o, inertia, arms):
 def test_closure_with_gravity():
     """E_r must belong to the velocities of the record, from which gravity's share is taken out."""
     run = scenes.run("vibration", "friction", "barrier-rigid", "large-rotation", "gravity", **SHORT)
-    assert _closure_defect(reduce(run.scene, run), run.motion.inertia, "edge") == pytest.approx(0, abs=1e-6)
+    assert _closure_defect(reduce(run), run.motion.inertia, "edge") == pytest.approx(0, abs=1e-6)
 
 
 def test_restitution_of_moment_is_minus_one_at_the_centre_of_impulse(measured):
@@ -310,7 +311,7 @@ def test_restitution_of_moment_is_minus_one_at_the_centre_of_impulse(measured):
 
 
 def test_coefficients_are_those_of_the_velocities(measured, result):
-    m, impact = result.motion, result.scene.impact
+    m, impact = result.motion, result.plan.scene.impact
     d_c = measured.restitution.edge.d_c
     assert measured.restitution.edge.e == pytest.approx(-(m.V_n + d_c * m.Omega) / impact.v_n)
     assert measured.restitution.mu == pytest.approx((m.V_t - impact.v_t) / (m.V_n - impact.v_n))
@@ -330,33 +331,33 @@ def test_sign_of_omega_follows_the_impulse(result):
 
 
 def test_gravity_is_taken_out(result):
-    scene = replace(result.scene, effects=(*result.scene.effects, "gravity"))
-    with_fall = reduce(scene, replace(result, scene=scene))
-    without = reduce(result.scene, result)
+    scene = replace(result.plan.scene, effects=(*result.plan.scene.effects, "gravity"))
+    with_fall = reduce(replace(result, plan=plan(scene)))
+    without = reduce(result)
     fall = 9.80665 * result.time
     assert with_fall.motion.V_n - without.motion.V_n == pytest.approx(fall * cos(pi / 4), rel=1e-4)
     assert with_fall.motion.V_t - without.motion.V_t == pytest.approx(fall * sin(pi / 4), rel=1e-4)
 
 
 def test_unmeasured_scenes_say_why_they_have_no_paper_arms(result):
-    found = reduce(result.scene, result)
+    found = reduce(result)
     assert isinstance(found.restitution.paper.e, Unknown)
     assert "no measured set" in found.restitution.paper.e.reason
     assert found.validity.mesh_band.reason
 
 
 def test_an_open_ledger_fails_the_run(result):
-    spoiled = reduce(result.scene, replace(result, worst=2e-4 * result.E_0))
+    spoiled = reduce(replace(result, worst=2e-4 * result.E_0))
     assert spoiled.validity.finished is False
     assert "ledger misses 2.0e-04" in spoiled.validity.stopped_because
     assert spoiled.energy.vibration_floor == pytest.approx(2e-4)
-    assert reduce(result.scene, replace(result, worst=0.9e-4 * result.E_0)).validity.finished is True
+    assert reduce(replace(result, worst=0.9e-4 * result.E_0)).validity.finished is True
 
 
 def test_vibration_below_the_floor_is_marked(result):
     share = result.flight.energy
-    assert reduce(result.scene, replace(result, worst=1.01 * share)).energy.below_floor is True
-    assert reduce(result.scene, replace(result, worst=0.99 * share)).energy.below_floor is False
+    assert reduce(replace(result, worst=1.01 * share)).energy.below_floor is True
+    assert reduce(replace(result, worst=0.99 * share)).energy.below_floor is False
 
 
 def test_a_step_changes_momentum_by_the_contact_impulse_alone():
@@ -376,7 +377,7 @@ def test_a_step_changes_momentum_by_the_contact_impulse_alone():
 
 
 def test_a_run_that_ends_before_it_touches_has_no_outcome():
-    result = solve(scenes.scene(*PLANE, length=0.08, max_time=1e-6, v_n=-0.1))
+    result = solve(plan(scenes.scene(*PLANE, length=0.08, max_time=1e-6, v_n=-0.1)))
     assert result.model.book.intervals == []
     with pytest.raises(RunError, match=r"There was no contact in .* us, 100 steps. Reached max_time"):
-        reduce(result.scene, result)
+        reduce(result)

@@ -26,7 +26,7 @@ def test_a_side_that_comes_down_before_the_tip_is_refused():
 def test_steel_that_no_power_law_fits_is_refused():
     scene = replace(load("t5b"), "projectile.material.ultimate_stress", "20 GPa")
     with pytest.raises(SceneError, match=r"ultimate_stress of rod-steel.*must lie between the yield stress"):
-        specify(scene)
+        plan(scene)
 
 
 def test_a_block_of_a_million_cells_is_refused():

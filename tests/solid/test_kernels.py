@@ -12,7 +12,7 @@ from fem_impact.solid.watchers import Stopwatch
 TURNED = """
 import numpy as np
 from fem_impact.solid.frame import TurningFrame
-from fem_impact.solid.kernels import SETTINGS
+from fem_impact.fem.kernels import SETTINGS
 x, y, mass = np.random.default_rng(1).normal(size=(3, 300))
 frame, d = TurningFrame.at(x, abs(mass), np.arange(300).reshape(-1, 3)), np.zeros(300)
 frame.localise(y, d)

@@ -30,10 +30,12 @@ SCENE = replace_all(
 PROBE = """
 import sys
 from pathlib import Path
-from fem_impact.scene import load
-from fem_impact.simulate import simulate
+from fem_impact.options import RunOptions
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load
 print("ready", flush=True)
-simulate(load(sys.argv[1]), out=Path(sys.argv[2]), resume=True, checkpoint_s=float(sys.argv[3]))
+options = RunOptions(Path(sys.argv[2]), resume=True, checkpoint_s=float(sys.argv[3]))
+simulate(load(sys.argv[1]), options=options)
 """
 
 
@@ -57,7 +59,7 @@ def start(scene, out):
 
 
 def numbers(outcome):
-    return {k: v for k, v in outcome.items() if k not in scenes.OF_THE_CLOCK}
+    return {k: v for k, v in outcome.to_dict().items() if k not in scenes.OF_THE_CLOCK}
 
 
 def check_readable(out):

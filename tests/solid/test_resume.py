@@ -10,6 +10,9 @@ from fem_impact.effects.registry import NAMES
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.options import RunOptions
+from fem_impact.plan.plan import plan
+from fem_impact.run.program import stamp
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import put_back, take_out
@@ -42,15 +45,20 @@ def stop_at(step):
     return progress
 
 
+def kept(scene, out, **options):
+    """Run with files in ``out``, as `simulate` does."""
+    return solve(plan(scene), RunOptions(out, stamp=stamp(scene), **options))
+
+
 def interrupted(scene, out, step):
     out.mkdir()
     with pytest.raises(KeyboardInterrupt):
-        solve(scene, out, stop_at(step), interval=0.0)
+        kept(scene, out, progress=stop_at(step), checkpoint_s=0.0)
     return out
 
 
 def outcome_numbers(result):
-    return {k: v for k, v in reduce(result.scene, result).items() if k not in scenes.OF_THE_CLOCK}
+    return {k: v for k, v in reduce(result).to_dict().items() if k not in scenes.OF_THE_CLOCK}
 
 
 def test_these_sets_name_every_effect():
@@ -61,10 +69,10 @@ def test_these_sets_name_every_effect():
 def test_resumed_is_uninterrupted(effects, tmp_path):
     scene, whole = short(effects), tmp_path / "whole"
     whole.mkdir()
-    expected = solve(scene, whole)
+    expected = kept(scene, whole)
     parts = interrupted(scene, tmp_path / "parts", 400)
     assert (parts / CHECKPOINT).stat().st_size > 0
-    found = solve(scene, parts, resume=True)
+    found = kept(scene, parts, resume=True)
     assert found.steps == expected.steps > 500
     assert outcome_numbers(found) == outcome_numbers(expected)
     assert (parts / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
@@ -73,9 +81,9 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
 
 def test_killed_after_its_last_step_a_run_does_not_go_on_past_its_end(tmp_path):
     scene = short(SETS[1])
-    expected = solve(scene, tmp_path, interval=0.0)  # a checkpoint whenever one may be written
+    expected = kept(scene, tmp_path, checkpoint_s=0.0)  # a checkpoint whenever one may be written
     history = (tmp_path / "history.csv").read_bytes()
-    found = solve(scene, tmp_path, resume=True)
+    found = kept(scene, tmp_path, resume=True)
     assert found.steps == expected.steps
     assert outcome_numbers(found) == outcome_numbers(expected)
     assert (tmp_path / "history.csv").read_bytes() == history
@@ -85,7 +93,7 @@ def test_a_resumed_run_can_tell_its_drift_before_the_next_sample(tmp_path):
     scene = short(SETS[3])
     scene = replace(scene, save=replace(scene.save, history_every=5000))
     told = []
-    solve(scene, interrupted(scene, tmp_path / "parts", 400), told.append, resume=True)
+    kept(scene, interrupted(scene, tmp_path / "parts", 400), progress=told.append, resume=True)
     assert told[0].step < 5000 and told[0].energy_drift == 0.0  # that of the start
 
 
@@ -167,11 +175,11 @@ class Run:
     """A run laid open: whatever moves in it can be reached from ``roots``."""
 
     def __init__(self, scene, out, go_on):
-        spec = specify(scene)
-        self.model = build(scene, spec)
+        planned = plan(scene)
+        self.model = build(planned)
         self.state = self.model.initial_state()
         view = RodState.of(self.model)
-        self.looking = Watchers.of(scene, spec, self.model, view, out, go_on)
+        self.looking = Watchers.of(planned, self.model, view, out, go_on)
         self.holders = self.looking.holders(self.model, self.state, Stopwatch())
 
     def numbers(self):
@@ -232,7 +240,7 @@ def refusal(scene, place):
     """The words with which the run is refused; the files stay as they were."""
     before = {path.name: path.read_bytes() for path in place.iterdir()}
     with pytest.raises(ResultError, match=r"Run again without --resume to start anew\.") as refused:
-        solve(scene, place, resume=True)
+        kept(scene, place, resume=True)
     assert {path.name: path.read_bytes() for path in place.iterdir()} == before
     return str(refused.value)
 

@@ -19,7 +19,7 @@ ELASTIC = ("barrier-rigid", "large-rotation")
 
 
 def outcome(*effects, **changes):
-    return reduce(solid_scenes.scene(*effects, **changes), solid_scenes.run(*effects, **changes))
+    return reduce(solid_scenes.run(*effects, **changes))
 
 
 @pytest.fixture(scope="module")
@@ -41,13 +41,13 @@ def test_slices_and_modes_are_not_built():
 
 
 def test_mass_and_inertia_are_those_of_the_rod(sliding):
-    rod = projectile(sliding.scene)
+    rod = projectile(sliding.plan.scene)
     assert sliding.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert sliding.motion.inertia / sliding.motion.mass == pytest.approx(rod.k2, rel=0.01)
 
 
 def test_momentum_angular_momentum_and_energy_balance(sliding):
-    m, book, impact = sliding.motion, sliding.model.book, sliding.scene.impact
+    m, book, impact = sliding.motion, sliding.model.book, sliding.plan.scene.impact
     assert m.mass * (m.V_n - impact.v_n) == pytest.approx(2 * book.impulse[1], rel=1e-9)
     assert m.mass * (m.V_t - impact.v_t) == pytest.approx(2 * book.impulse[0], rel=1e-9)
     start = sliding.model.start[0][sliding.view.places]
@@ -72,7 +72,7 @@ def test_a_stiff_oblique_strike_is_that_of_rigid_theory():
 def test_a_stiff_axial_strike_loses_nothing():
     base = solid_scenes.scene(*ELASTIC, length=0.06, angle=0.0, v_t=0.0)
     stated = replace(base, projectile=replace(base.projectile, tip="A", tip_radius=7e-3))
-    result = solve(stated)
+    result = solve(plan(stated))
     assert result.motion.V_n / -stated.impact.v_n == pytest.approx(1.0, abs=0.005)
     assert abs(result.motion.Omega) < 0.02
     assert result.finished
@@ -90,7 +90,7 @@ def test_the_full_rod_comes_near_where_its_periods_are_short():
 
 
 def test_vibration_is_null_with_its_reason(sliding):
-    found = reduce(sliding.scene, sliding)
+    found = reduce(sliding)
     assert isinstance(found.energy.vibration, Unknown)
     assert "vibration effect is off" in found.energy.vibration.reason
     shares = ("E_r", "W_friction", "E_locked_rod", "W_closing", "residual")
@@ -128,6 +128,6 @@ def test_the_block_barrier_takes_it_too():
     )
     model = build(plan(stated))
     assert type(model.impulses[0]) is RigidRest
-    result = solve(stated)
+    result = solve(plan(stated))
     assert result.accounts["plastic_barrier"] > 0
     assert result.worst < 1e-4 * result.E_0

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from fem_impact.files.fields_read import read_fields
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
@@ -26,7 +27,7 @@ def run(tmp_path_factory):
         "save.frames": 60,
     }
     told = []
-    outcome = simulate(replace_all(load("t5b"), changes), out=out, progress=told.append)
+    outcome = simulate(replace_all(load("t5b"), changes), options=RunOptions(out, told.append))
     return out, outcome, told
 
 

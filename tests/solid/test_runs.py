@@ -7,13 +7,15 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.fem import body
+from fem_impact.fem.body import START_GAP
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan
 from fem_impact.run.solid import reduce
-from fem_impact.solid import build as built
-from fem_impact.solid.build import START_GAP
+from fem_impact.solid.build import build
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import advance, evaluate, march
 from fem_impact.solid.run import solve
@@ -35,7 +37,7 @@ def yielding():
 
 
 def _outcome(result):
-    return reduce(result.scene, result)
+    return reduce(result)
 
 
 def test_elastic_frictionless_long_rod_touches_twice_and_grazes_between(elastic):
@@ -70,7 +72,7 @@ def test_ledger_closes(which, request):
 
 
 def test_energies_are_those_of_the_whole_rod(elastic):
-    rod, impact = projectile(elastic.scene), elastic.scene.impact
+    rod, impact = projectile(elastic.plan.scene), elastic.plan.scene.impact
     assert elastic.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert elastic.E_0 == pytest.approx(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2), rel=1e-6)
     gained = elastic.motion.V_n - impact.v_n
@@ -87,7 +89,7 @@ def test_moment_of_the_contact_is_the_angular_momentum(yielding):
     m, book = yielding.motion, yielding.model.book
     start = yielding.model.start[0][yielding.view.places]
     centre = yielding.view.mass @ start / yielding.view.mass.sum()
-    impact = yielding.scene.impact
+    impact = yielding.plan.scene.impact
     before = m.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
     after = m.inertia * m.Omega + m.mass * (m.centre[2] * m.V_t - m.centre[0] * m.V_n)
     assert after - before == pytest.approx(-2 * book.impulse[2], rel=2e-3)
@@ -142,13 +144,13 @@ def test_sliding_rod_has_the_impulse_ratio_of_its_friction(f):
     found = _outcome(result)
     assert found.restitution.mu == pytest.approx(f, rel=0.01)
     worked = found.energy.friction * result.E_0
-    slide = [-result.scene.impact.v_t, -result.motion.V_t]
+    slide = [-result.plan.scene.impact.v_t, -result.motion.V_t]
     assert 0 < worked < f * result.model.book.impulse[1] * 2 * max(slide) * 1.5
     assert result.worst < 1e-6 * result.E_0
 
 
 def test_same_run_twice_is_the_same_to_the_last_bit(yielding):
-    again = solve(yielding.scene)
+    again = solve(yielding.plan)
     assert again.steps == yielding.steps
     assert again.accounts == yielding.accounts
     assert again.motion.V_n == yielding.motion.V_n
@@ -166,7 +168,7 @@ def vars_of(interval):
 @pytest.mark.parametrize("angle", [pi / 6, pi / 3])
 def test_stiff_short_rod_is_rigid_theory(angle):
     result = scenes.run(*PLANE, "large-rotation", length=0.03, v_n=-0.5, v_t=-0.4, angle=angle)
-    rod = projectile(result.scene)
+    rod = projectile(result.plan.scene)
     assert rod.gamma < 10
     found = _outcome(result)
     d_c, k2 = found.restitution.impulse.d_c, found.motion.k_squared
@@ -290,14 +292,13 @@ def test_body_and_tip_operators_are_the_assembled_rod():
 
 def _between(share):
     """Make meshes whose lowest point stands a share of a cell beside the middle of a cell."""
-    real = built.build_geometry
+    real = body.build_geometry
 
-    def made(scene, gap, meshed, vibrating):
-        base = scene.projectile.diameter / scene.accuracy.across
-        h = base / 2 ** round(np.log2(base / scene.accuracy.tip_size))
-        angle, turn = scene.impact.angle, share * h / scene.projectile.tip_radius
+    def made(scene, zones, gap, meshed, vibrating):
+        angle, h = scene.impact.angle, zones.tip_size
+        turn = share * h / scene.projectile.tip_radius
         # the middle of a cell is the lowest point of a rod that stands a little steeper
-        geometry = real(replace(scene, impact=replace(scene.impact, angle=angle + turn)), gap, meshed)
+        geometry = real(replace(scene, impact=replace(scene.impact, angle=angle + turn)), zones, gap, meshed)
         rho, z = projectile(scene).contact_point(angle)
         lowest = np.array([float(rho), 0.0, float(z)])
         points = (geometry.rod.mesh.points - lowest) @ to_barrier_frame(angle).T
@@ -313,8 +314,8 @@ def test_a_contact_in_the_middle_of_a_cell_is_nearest_to_that_of_finer_cells(mon
     stated = {"length": 0.08, "v_n": -2.1, "v_t": -2.1}
     finer = _outcome(scenes.run(*PLANE, "friction", **stated, tip=0.4e-3))
     middle = _outcome(scenes.run(*PLANE, "friction", **stated))
-    monkeypatch.setattr(built, "build_geometry", _between(0.48))
-    on_node = _outcome(solve(scenes.scene(*PLANE, "friction", **stated)))
+    monkeypatch.setattr(body, "build_geometry", _between(0.48))
+    on_node = _outcome(solve(plan(scenes.scene(*PLANE, "friction", **stated))))
     near, far = (abs(run.restitution.edge.e - finer.restitution.edge.e) for run in (middle, on_node))
     assert near < 0.02 < far
     near, far = (abs(run.restitution.mu - finer.restitution.mu) for run in (middle, on_node))
@@ -339,7 +340,7 @@ def test_gravity_is_an_account_of_its_own():
 
 
 def test_a_run_out_of_time_says_so():
-    result = solve(scenes.scene(*PLANE, length=0.08, max_time=2e-5))
+    result = solve(plan(scenes.scene(*PLANE, length=0.08, max_time=2e-5)))
     assert not result.finished
     assert "max_time" in result.reason
     found = _outcome(result)
@@ -363,7 +364,7 @@ def test_a_flat_strike_does_not_turn_the_rod_or_is_called_doubtful():
 
 def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):
     """Only patch nodes are contact candidates, so all other skin nodes must stay above the surface."""
-    model = built.build(yielding.scene, specify(yielding.scene))
+    model = build(yielding.plan)
     mesh = model.geometry.rod.mesh
     skin = np.unique(mesh.faces_with(SKIN))
     heights = model.layout.rod[skin, 2]

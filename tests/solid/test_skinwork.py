@@ -45,12 +45,12 @@ def test_a_run_tells_friction_and_skin_together():
     result = scenes.run(
         "vibration", "friction", "rod-plasticity", "barrier-elastoplastic", length=0.08, v_n=-2.1, v_t=-2.1
     )
-    found = reduce(result.scene, result)
+    found = reduce(result)
     friction, plate = found.energy.friction, found.energy.plastic_barrier
     assert 0.05 * plate < found.energy.skin - friction < 0.5 * plate
 
 
 def test_an_elastic_barrier_has_no_sheared_skin():
     result = scenes.run("vibration", "friction", "barrier-elastic", length=0.08, v_n=-1.0, v_t=-1.0)
-    found = reduce(result.scene, result)
+    found = reduce(result)
     assert found.energy.skin == found.energy.friction > 0.0

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.fem.geometry import DRAG, LOW, SLIDE, build_geometry, half_widths
+from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import contact_estimate
+from fem_impact.plan.plan import plan
+from fem_impact.plan.zones import DRAG, LOW, SLIDE, half_widths
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -14,16 +16,24 @@ from fem_impact.solid.run import solve
 SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
 
 
+def _geometry(scene):
+    return build_geometry(scene, plan(scene).zones, 2e-6, True)
+
+
+def _estimate(scene):
+    return contact_estimate(plan(scene).bodies)
+
+
 def _reach(scene):
     """Return the extent of the finest cells down and up the slope over the half-width along t."""
-    geometry = build_geometry(scene, 2e-6, True)
+    geometry = _geometry(scene)
     block = geometry.barrier
     t = block.points[block.cells[block.finest], 0]
     return -t.min() / _half_width(scene, geometry), t.max() / _half_width(scene, geometry)
 
 
 def _half_width(scene, geometry):
-    return half_widths(contact_estimate(scene), geometry.tip_size)[0]
+    return half_widths(_estimate(scene), geometry.tip_size)[0]
 
 
 def test_it_follows_the_surface_that_a_sticking_rod_drags_down_the_slope():
@@ -39,14 +49,14 @@ def test_without_sliding_it_lies_even():
 
 def test_it_follows_a_long_slide():
     steep = replace(SCENE, "impact.v_t", "-20 m/s")
-    slide = SLIDE * contact_estimate(steep).depth * 20 / -steep.impact.v_n
-    half = _half_width(steep, build_geometry(steep, 2e-6, True))
+    slide = SLIDE * _estimate(steep).depth * 20 / -steep.impact.v_n
+    half = _half_width(steep, _geometry(steep))
     assert slide > DRAG * half
     assert _reach(steep)[0] >= 1 + slide / half
 
 
 def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
-    here, there = (build_geometry(replace(SCENE, "accuracy.grid_shift", s), 2e-6, True) for s in (0, 0.5))
+    here, there = (_geometry(replace(SCENE, "accuracy.grid_shift", s)) for s in (0, 0.5))
     moved = there.barrier.points - here.barrier.points
     assert np.allclose(moved, [0.5 * here.tip_size, 0, 0], rtol=0, atol=1e-15)
     assert np.array_equal(here.barrier.cells, there.barrier.cells)
@@ -55,7 +65,9 @@ def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
 
 def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
-    e = [reduce(s, solve(s)).restitution.edge.e for s in (still, replace(still, "accuracy.grid_shift", 0.5))]
+    e = [
+        reduce(solve(plan(s))).restitution.edge.e for s in (still, replace(still, "accuracy.grid_shift", 0.5))
+    ]
     assert 0 < abs(e[1] - e[0]) < 0.002
 
 
@@ -68,7 +80,7 @@ def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     ],
 )
 def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
-    geometry = build_geometry(replace(SCENE, "effects", effects), 2e-6, True)
+    geometry = _geometry(replace(SCENE, "effects", effects))
     z = geometry.barrier.points[geometry.barrier.cells][:, :, 2]
     assert geometry.skin_rows == rows
     assert np.ptp(z, axis=1).min() / geometry.tip_size == pytest.approx(0.5**rows, rel=0.15)
@@ -76,12 +88,12 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
 
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     scene = replace(SCENE, "save.frames", 0)
-    part = solve(scene)
+    part = solve(plan(scene))
     monkeypatch.setattr("fem_impact.fem.geometry._round", lambda mesh, *_: mesh.finest)
-    whole = solve(scene)
+    whole = solve(plan(scene))
     counts = [[zone.count for zone in found.model.zones] for found in (part, whole)]
     assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75
-    few, many = (reduce(scene, found) for found in (part, whole))
+    few, many = (reduce(found) for found in (part, whole))
     for key in ("e_edge", "mu", "E_vib_over_E_0", "E_plastic_rod_over_E_0", "E_plastic_barrier_over_E_0"):
         assert few.to_dict()[key] == pytest.approx(many.to_dict()[key], abs=2e-4)
     assert few.restitution.edge.e != many.restitution.edge.e
@@ -89,15 +101,15 @@ def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
 
 def test_without_friction_no_row_is_thin_whatever_is_on():
     on = replace(SCENE, "effects", ("vibration", "friction", "barrier-elastoplastic"))
-    assert build_geometry(replace(on, "surface.friction", 0.0), 2e-6, True).skin_rows == 0
+    assert _geometry(replace(on, "surface.friction", 0.0)).skin_rows == 0
 
 
 def test_rows_are_no_lower_than_a_share_of_the_indentation():
     """Under a fast long rod cells were crushed at the edge of the contact."""
     fast = replace_all(load("t5b"), {"projectile.length": "200 mm", "impact.v_n": "-8 m/s"})
-    depth = contact_estimate(fast).depth
+    depth = _estimate(fast).depth
     for size in ("0.6 mm", "0.3 mm", "0.15 mm"):
-        geometry = build_geometry(replace(fast, "accuracy.tip_size", size), 2e-6, True)
+        geometry = _geometry(replace(fast, "accuracy.tip_size", size))
         assert 0 <= geometry.skin_rows < 3
         assert geometry.tip_size * 0.5**geometry.skin_rows >= LOW * depth
         assert geometry.tip_size * 0.5 ** (geometry.skin_rows + 1) < LOW * depth
@@ -106,7 +118,7 @@ def test_rows_are_no_lower_than_a_share_of_the_indentation():
 def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
     scene = replace(SCENE, "save.frames", 0)
     heavy = simulate(scene)
-    monkeypatch.setattr("fem_impact.solid.build.HEAVY", 0.0)
+    monkeypatch.setattr("fem_impact.fem.body.HEAVY", 0.0)
     true = simulate(scene)
     assert heavy.cost.steps < 0.3 * true.cost.steps
     for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0", "E_plastic_barrier_over_E_0"):
