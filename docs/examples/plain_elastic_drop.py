@@ -21,6 +21,7 @@ import rigid
 from fem_impact.fem import forms
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 
 EFFECTS = ("vibration", "friction", "barrier-rigid")  # what this file computes
@@ -117,7 +118,8 @@ def drop(rod, v_n, v_t, f, dt, time):
 
 def outcome(scene, time):
     """Return what `drop` does of a scene on its own mesh, with restitution e and impulse ratio mu."""
-    impact, geometry = scene.impact, build_geometry(scene, START_GAP, meshed_barrier=False)
+    impact, zones = scene.impact, plan(scene).zones
+    geometry = build_geometry(scene, zones, START_GAP, meshed_barrier=False)
     rod = Rod.of(geometry.rod.mesh, geometry.rod_points, scene.projectile.material)
     end = drop(rod, impact.v_n, impact.v_t, scene.surface.friction, rod.stable_step(), time)
     d_c = projectile(scene).arms(impact.angle)[0]

@@ -20,6 +20,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build
@@ -55,13 +56,13 @@ class Rung:
 
     def __init__(self, scene: Scene, effects: Sequence[str]) -> None:
         stated = replace(scene, measured=None, effects=tuple(effects))
-        spec = specify(stated)
-        self.model = build(stated, spec)
+        planned = plan(stated)
+        self.model = build(planned)
         self.state, self.best = self.model.initial_state(), float("inf")
         while self.state.time < UNTIL:
             evaluate(self.model, self.state)
             advance(self.model, self.state)
-        self.observers = list(_heat(self.model)) if spec.heat else []
+        self.observers = list(_heat(self.model)) if planned.slots.heat else []
 
     def round(self) -> None:
         """Time some steps."""

@@ -9,8 +9,8 @@ import pytest
 from fem_impact.effects.plasticity import DEEP
 from fem_impact.effects.radiation import number as radiated
 from fem_impact.effects.registry import BARRIERS, EFFECTS, NAMES
+from fem_impact.effects.slots import bodies_of, quick_impact
 from fem_impact.physics.beam import bending_period
-from fem_impact.physics.beam_impact import strike
 from fem_impact.physics.contact import (
     FLATTEST,
     arms,
@@ -20,11 +20,15 @@ from fem_impact.physics.contact import (
     start_energy,
 )
 from fem_impact.physics.flash import expected_rise, flash_bound
-from fem_impact.plan.choose import active, choices, everything
+from fem_impact.plan.choose import active, choices, everything, resolved
 from fem_impact.plan.measured import expected_shares
 from fem_impact.reference.hertz import radiated_share
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
+
+
+def bodies(stated):
+    return bodies_of(resolved(stated))
 
 
 def number(stated, name):
@@ -43,7 +47,7 @@ def test_first_yield_with_friction_and_its_cap():
     """A gentle touch is Hertz'; the other body holds no more than 2.8 of its ultimate stress."""
     stated = changed(changed(load("t5b"), "impact.v_n", "-0.001 m/s"), "surface.friction", 0.5)
     elastic = replace(stated, effects=("vibration", "friction", "barrier-elastic"))
-    peak = 1.5 * contact_estimate(elastic).pressure
+    peak = 1.5 * contact_estimate(bodies(elastic)).pressure
     assert number(stated, "barrier-elastoplastic") == pytest.approx(peak * sqrt(3) * 0.5 / 320e6)
     slippery = replace(stated, effects=("auto", "-friction"))
     assert number(slippery, "barrier-elastoplastic") < number(stated, "barrier-elastoplastic")
@@ -60,7 +64,7 @@ def test_gain_by_the_rate_by_hand():
     """Strain 0.2 a/R of the indentation in half the contact, C ln(rate); nothing below 1 per second."""
     stated = load("t5b")
     whole = replace(stated, effects=tuple(n for n in NAMES if n not in BARRIERS[:2]))
-    size, R = contact_estimate(whole), sqrt(3e-3 * 12.2e-3)
+    size, R = contact_estimate(bodies(whole)), sqrt(3e-3 * 12.2e-3)
     rate = 0.2 * sqrt(size.a_t * size.a_b) / R / (size.duration / 2)
     assert number(stated, "rate-hardening") == pytest.approx(0.022 * log(rate), rel=1e-3)
     assert number(changed(stated, "impact.v_n", "-1e-7 m/s"), "rate-hardening") == 0.0
@@ -69,7 +73,7 @@ def test_gain_by_the_rate_by_hand():
 def test_damped_share_and_fall_by_hand():
     stated = load("t5b")
     whole = replace(stated, effects=tuple(n for n in NAMES if n not in BARRIERS[:2]))
-    tau, T1 = contact_estimate(whole).duration, bending_period(whole)
+    tau, T1 = contact_estimate(bodies(whole)).duration, bending_period(whole)
     assert number(stated, "material-damping") == pytest.approx(2 * pi * 6e-4 * (tau + T1) / T1)
     speed = np.hypot(stated.impact.v_n, stated.impact.v_t)
     assert number(stated, "gravity") == pytest.approx(9.80665 * (tau + T1) / speed)
@@ -79,7 +83,11 @@ def test_angle_turned_by_hand():
     """The spin grows evenly while the rod touches and stays for a bending period."""
     stated = changed(load("elastic-frictionless"), "impact.omega", "-20 rad/s")
     whole = everything(stated)
-    after, tau, T1 = strike(whole).Omega, contact_estimate(whole).duration, bending_period(whole)
+    after, tau, T1 = (
+        quick_impact(whole).Omega,
+        contact_estimate(bodies(whole)).duration,
+        bending_period(whole),
+    )
     assert after > 10
     assert number(stated, "large-rotation") == pytest.approx(abs(after - 20) / 2 * tau + after * T1)
 
@@ -92,7 +100,7 @@ def harm(stated, name):
 
 
 def struck(*effects):
-    return strike(replace(load("t5b"), effects=effects))
+    return quick_impact(replace(load("t5b"), effects=effects))
 
 
 def test_two_strikes_tell_what_an_effect_changes():
@@ -120,14 +128,16 @@ def test_damping_and_turning_change_their_share_of_the_vibration():
     stated = load("t3-machined")
     whole = everything(stated)
     damped, turned = harm(stated, "material-damping"), harm(stated, "large-rotation")
-    assert damped.E_vib == pytest.approx(number(stated, "material-damping") * strike(whole).E_vib)
-    assert turned.E_vib == pytest.approx(2 * number(stated, "large-rotation") * strike(whole).E_vib)
-    assert turned.e == pytest.approx(turned.E_vib / normal_share(whole))
+    assert damped.E_vib == pytest.approx(number(stated, "material-damping") * quick_impact(whole).E_vib)
+    assert turned.E_vib == pytest.approx(2 * number(stated, "large-rotation") * quick_impact(whole).E_vib)
+    assert turned.e == pytest.approx(turned.E_vib / normal_share(bodies(whole)))
 
 
 def test_heating_is_weighed_by_the_rise_to_ignition():
     stated = load("t5b")
-    assert number(stated, "contact-heating") == pytest.approx(expected_rise(everything(stated)) / 410.0)
+    assert number(stated, "contact-heating") == pytest.approx(
+        expected_rise(bodies(everything(stated))) / 410.0
+    )
 
 
 def test_the_contact_is_that_of_its_own_approach():
@@ -137,11 +147,11 @@ def test_the_contact_is_that_of_its_own_approach():
     spun = replace_all(stated, {"impact.omega": "-30 rad/s"})
     down, along = stated.impact.v_n - 30 * d_c, stated.impact.v_t + 30 * d_d
     fallen = replace_all(stated, {"impact.v_n": f"{down} m/s", "impact.v_t": f"{along} m/s"})
-    assert contact_estimate(spun) == pytest.approx(contact_estimate(fallen))
-    assert flash_bound(spun) == pytest.approx(flash_bound(fallen))
-    assert contact_estimate(spun).depth > 1.3 * contact_estimate(stated).depth
+    assert contact_estimate(bodies(spun)) == pytest.approx(contact_estimate(bodies(fallen)))
+    assert flash_bound(bodies(spun)) == pytest.approx(flash_bound(bodies(fallen)))
+    assert contact_estimate(bodies(spun)).depth > 1.3 * contact_estimate(bodies(stated)).depth
     energy = start_energy(fallen) / start_energy(spun)
-    assert normal_share(spun) == pytest.approx(normal_share(fallen) * energy)
+    assert normal_share(bodies(spun)) == pytest.approx(normal_share(bodies(fallen)) * energy)
 
 
 def test_tip_radii_where_the_shape_ends():

@@ -8,7 +8,8 @@ import pytest
 
 from fem_impact.effects import registry as effect_names
 from fem_impact.effects.registry import EFFECTS
-from fem_impact.effects.slots import Effect, Harm
+from fem_impact.effects.slots import Effect, Harm, bodies_of
+from fem_impact.options import RunOptions
 from fem_impact.physics.contact import contact_estimate, projectile
 from fem_impact.plan import choose
 from fem_impact.plan.choose import active, choices, neglected
@@ -28,7 +29,7 @@ MOON = 1.62  # m/s2
 
 def number(scene):
     """Speed gained during the contact over the impact speed."""
-    return MOON * contact_estimate(scene).duration / hypot(scene.impact.v_n, scene.impact.v_t)
+    return MOON * contact_estimate(bodies_of(scene)).duration / hypot(scene.impact.v_n, scene.impact.v_t)
 
 
 def fill(scene, spec):
@@ -50,7 +51,7 @@ EFFECT = Effect(
 
 @pytest.fixture
 def moon(monkeypatch):
-    """What a line in `effects/catalogue.py` and one in `scene/effect_names.py` do."""
+    """What two lines in `effects/registry.py` do."""
     names = (*effect_names.NAMES, EFFECT.name)
     monkeypatch.setitem(EFFECTS, EFFECT.name, EFFECT)
     for module in (effect_names, choose):
@@ -69,7 +70,7 @@ def test_an_added_effect_is_chosen_by_its_number(moon):
     assert EFFECT.name not in active(fast)
     assert EFFECT.name in active(slow)
     (choice,) = [choice for choice in choices(slow) if choice.name == EFFECT.name]
-    assert choice.told().sentence == "The Moon pulls the rod down."
+    assert choice.told(None).sentence == "The Moon pulls the rod down."
     left_out = changed(slow, "effects", ["auto", f"-{EFFECT.name}"])
     assert any(EFFECT.name in words for words in neglected(left_out))
 
@@ -153,10 +154,10 @@ def test_an_own_item_closes_the_ledger():
 
 def test_a_run_with_an_own_item_comes_to_its_end(monkeypatch, tmp_path):
     """What `build` would do for a filled slot; the item's account and run time are its own."""
-    monkeypatch.setattr(run, "build", lambda scene, spec: with_drag(build(scene, spec), 50.0))
-    outcome = simulate(coarse_scene(), out=tmp_path)
-    assert outcome["finished"] and abs(outcome["residual_over_E_0"]) < 1e-4
+    monkeypatch.setattr(run, "build", lambda planned: with_drag(build(planned), 50.0))
+    outcome = simulate(coarse_scene(), options=RunOptions(tmp_path))
+    assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-4
     history = read_table(tmp_path / "history.csv")
     held = history.numbers("E_kinetic_rod_J")
     assert 0.005 * held[0] < history.numbers("E_air_J")[-1] < 0.05 * held[0]
-    assert outcome["E_vib_over_E_0"] > 0  # what comes after the march was computed too
+    assert outcome.energy.vibration > 0  # what comes after the march was computed too

@@ -8,6 +8,7 @@ import pytest
 
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import SHAPES, Nose
 
@@ -27,7 +28,8 @@ def test_an_added_tip_is_turned_meshed_and_touches_where_it_should(ball):
     assert rod.mass == pytest.approx(7850 * (cylinder + half_ball), rel=1e-12)
     rho, z = rod.contact_point(math.pi / 4)
     assert (rho, 0.0095 - z) == pytest.approx((0.0095 * math.sqrt(0.5),) * 2)
-    built = build_geometry(scene, 1e-5, meshed_barrier=False)
+    scene = replace(scene, "effects", ["vibration", "barrier-rigid"])
+    built = build_geometry(scene, plan(scene).zones, 1e-5, meshed_barrier=False)
     assert built.rod_points[:, 2].min() == pytest.approx(1e-5)
 
 
