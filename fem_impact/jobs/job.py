@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import FemImpactError, ResultError
+from fem_impact.options import RunOptions
+from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
 from fem_impact.scene.write import digest
 
@@ -104,13 +105,11 @@ def compute(job: Job) -> Answer:
 
 
 def _run(job: Job) -> str:
-    from fem_impact.run import simulate as simulated
-
-    simulate: Callable[..., Outcome] = simulated.simulate
+    options = RunOptions(out=job.out, resume=True)
     try:
-        return simulate(job.scene, fidelity=job.fidelity, out=job.out, resume=True).to_json()
+        return run.simulate(job.scene, job.fidelity, options).to_json()
     except ResultError:  # a checkpoint of another scene or program
-        return simulate(job.scene, fidelity=job.fidelity, out=job.out).to_json()
+        return run.simulate(job.scene, job.fidelity, replace(options, resume=False)).to_json()
 
 
 def read_outcome(job: Job, text: str) -> Outcome | None:

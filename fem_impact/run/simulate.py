@@ -46,7 +46,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
     from fem_impact.plan.plan import plan
 
     if scene.accuracy.target is not None:
-        remedy = "Give a mesh, or call fem_impact.simulate, which chooses one."
+        remedy = "Give a mesh, or call fem_impact.cost.to_target.simulate, which chooses one."
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )

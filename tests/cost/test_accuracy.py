@@ -4,14 +4,14 @@ import pytest
 from cost_fakes import Here, run
 
 import fem_impact.run.simulate
-from fem_impact.cost import to_target as achieve
-from fem_impact.cost import to_target as stored
+from fem_impact.cost import to_target
 from fem_impact.cost.judge import Judged
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.measure import measure
 from fem_impact.cost.settings import placed
 from fem_impact.cost.to_target import NEARNESS, choose_setting, nearest, summarise
 from fem_impact.errors import SceneError
+from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.plan.measured import summary
 from fem_impact.progress import NullMeter
@@ -26,9 +26,8 @@ def costs(monkeypatch, tmp_path):
     """Stored costs of t5b whose limit, order and times are known, measured on half as quick a machine."""
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     held = summarise({"t5b": measure(load("t5b"), tmp_path, NullMeter(), executor=Here())})
-    held["machine"] = {"csr_ns_per_element_step": 2 * stored.yardsticks()["csr_ns_per_element_step"]}
-    monkeypatch.setattr(stored, "summary", lambda: held)
-    monkeypatch.setattr(achieve, "simulate", run)
+    held["machine"] = {"csr_ns_per_element_step": 2 * to_target.yardsticks()["csr_ns_per_element_step"]}
+    monkeypatch.setattr(to_target, "summary", lambda: held)
 
 
 def asking(target, scene="t5b", **changes):
@@ -135,14 +134,14 @@ def test_a_scene_near_a_stored_one_is_taken(costs):
 def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     scene = asking(0.05)
     chosen = choose_setting(scene)
-    outcome = achieve.simulate_to_target(scene, out=tmp_path)
+    outcome = to_target.simulate(scene, options=RunOptions(out=tmp_path))
     assert chosen.setting.kind == "pair"
     assert outcome.validity.accuracy_target == 0.05
     assert outcome.validity.accuracy_setting == chosen.setting.name
     assert outcome.validity.expected_error == chosen.expected_error
     assert outcome.validity.achieved_wall == pytest.approx(chosen.setting.wall_s)
     assert 0 < outcome.validity.achieved_error < 1
-    scale = stored.summary()["scenes"]["t5b"]["quantities"]["e"]["scale"]
+    scale = to_target.summary()["scenes"]["t5b"]["quantities"]["e"]["scale"]
     assert outcome.validity.mesh_band["e_edge"] == pytest.approx(chosen.setting.band["e"] * scale)
     assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(chosen.setting.value["e"])
     assert (tmp_path / "outcome.json").exists()
@@ -150,7 +149,7 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
 
 def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
     scene = asking(0.05)
-    one, two = (achieve.simulate_to_target(scene, workers=workers) for workers in (1, 2))
+    one, two = (to_target.simulate(scene, workers=workers) for workers in (1, 2))
     assert choose_setting(scene, workers=2).expected_wall_s < choose_setting(scene).expected_wall_s
     assert two.validity.achieved_wall < one.validity.achieved_wall
     assert two.validity.mesh_limit == one.validity.mesh_limit
@@ -158,21 +157,20 @@ def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
 
 
 def test_a_reduced_run_does_not_claim_an_achieved_error(costs):
-    outcome = achieve.simulate_to_target(asking(0.2))
+    outcome = to_target.simulate(asking(0.2))
     assert (outcome.provenance.fidelity, outcome.validity.accuracy_setting) == ("modal", "modal")
     assert isinstance(outcome.validity.achieved_error, Unknown)
     assert "alone" in outcome.validity.achieved_error.reason
 
 
-def test_simulate_hands_over_a_scene_with_a_target(monkeypatch):
-    monkeypatch.setattr(fem_impact.cost, "simulate_to_target", lambda *words: words)
-    scene = asking(0.2)
-    assert fem_impact.run.simulate.simulate(scene)[:4] == (scene, None, None, None)
+def test_a_run_on_one_mesh_refuses_a_target():
+    with pytest.raises(SceneError, match="is an error, not a mesh"):
+        fem_impact.run.simulate.simulate(asking(0.2))
 
 
 def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     held = summary()
-    assert held["schema"] == stored.SUMMARY
+    assert held["schema"] == to_target.SUMMARY
     assert held["created_utc"] and held["versions"]["numpy"]
     assert held["machine"]["triad_GB_per_s"] > 0
     assert held["scenes"]
@@ -183,28 +181,28 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
         assert scene.impact == load(name).impact
         kinds = {setting["kind"] for setting in cost["settings"]}
         assert {"rigid", "modal", "mesh", "pair"} <= kinds
-    assert set(NEARNESS) == set(stored._features(load("t2")))
+    assert set(NEARNESS) == set(to_target._features(load("t2")))
 
 
 def test_a_target_chooses_the_place_of_the_grid_too():
     scene = replace(load("t5b"), "accuracy.grid_shift", 0.5)
     asked = replace(scene, "accuracy", "5 %")
-    assert "grid_shift" not in asked.to_dict()["accuracy"]
+    assert "grid_shift" not in to_dict(asked)["accuracy"]
     assert replace(asked, "accuracy.grid_shift", 0.25).accuracy.target is None
 
 
 def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatch):
     folders = []
 
-    def kept(scene, fidelity, out, *others):
-        folders.append(out)
+    def kept(scene, fidelity, options):
+        folders.append(options.out)
         return run(scene, fidelity)
 
-    monkeypatch.setattr(achieve, "simulate", kept)
-    outcome = achieve.simulate_to_target(asking(0.05), out=tmp_path)
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
+    outcome = to_target.simulate(asking(0.05), options=RunOptions(out=tmp_path))
     assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
     fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.05)).meshes)
-    assert outcome.provenance.scene_digest == fine[0].digest()
+    assert outcome.provenance.scene_digest == digest(fine[0])
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
     means = [sum(values) / len(values) for values in every]
     ratio = coarse[0].accuracy.tip_size / fine[0].accuracy.tip_size
@@ -212,10 +210,10 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
-    single = next(s for s in stored.summary()["scenes"]["t5b"]["settings"] if s["name"] == "solid 0.297 mm")
-    chosen = stored.Plan(0.2, Judged(**single), "t5b", 0.15, 1.0)
-    monkeypatch.setattr(achieve, "plan", lambda *_: chosen)
-    outcome = achieve.simulate_to_target(asking(0.2))
+    single = next(s for s in to_target.summary()["scenes"]["t5b"]["settings"] if s["name"] == "solid 0.297 mm")
+    chosen = to_target.ChosenSetting(0.2, Judged(**single), "t5b", 0.15, 1.0)
+    monkeypatch.setattr(to_target, "choose_setting", lambda *_: chosen)
+    outcome = to_target.simulate(asking(0.2))
     assert isinstance(outcome.validity.achieved_error, Unknown)
     assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(single["value"]["e"])
     assert outcome.validity.mesh_limit["e_edge"] != outcome.restitution.edge.e

@@ -279,7 +279,7 @@ def test_the_scatter_of_a_limit_is_that_of_its_means():
 
 
 def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
-    def failing(scene, fidelity="solid", **options):
+    def failing(scene, fidelity="solid", options=None):
         if fidelity == "solid" and scene.accuracy.across > most:
             raise RunError("out of patience.")
         return run(scene, fidelity)

@@ -9,9 +9,7 @@ import pytest
 from cost_fakes import Here, run
 from outcome_maker import altered
 
-import fem_impact.cost
 import fem_impact.run.simulate
-import fem_impact.scene
 from fem_impact.cost.document import summary_markdown
 from fem_impact.plan.measured import summary
 
@@ -52,7 +50,7 @@ def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):
 
 def test_all_scenes_of_the_paper_make_a_summary(cli, fake, monkeypatch):
     sets = ("t3-machined", "t5b")
-    monkeypatch.setattr(fem_impact.scene, "MEASURED_SETS", sets)
+    monkeypatch.setattr("fem_impact.scene.types.MEASURED_SETS", sets)
     code, out, _ = cli("cost", "paper", "--finest", "0.25 mm", "--out", "all", "--quiet")
     assert code == 0
     held = json.loads(Path("all/summary.json").read_text())
@@ -85,17 +83,17 @@ def test_wrong_words_are_refused_before_any_work(cli, words, complaint):
 
 
 def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
-    chosen = type("Plan", (), {"sentence": "accuracy 20 %: modal, expected error 15 %"})
-    monkeypatch.setattr(fem_impact.cost, "plan", lambda *_: chosen)
+    chosen = type("ChosenSetting", (), {"sentence": "accuracy 20 %: modal, expected error 15 %"})
+    monkeypatch.setattr("fem_impact.cost.to_target.choose_setting", lambda *_: chosen)
     stated = {"accuracy_target": 0.2, "accuracy_setting": "modal", "expected_error": 0.15}
     stated |= {"expected_wall_s": 0.01, "achieved_wall_s": 0.02}
     stated |= {"mesh_limit": {"e_edge": 0.31, "E_vib_over_E_0": 0.02}}
 
-    def answer(scene, **_):
+    def answer(scene, *_):
         reasons = {"achieved_error": "one run alone"}
         return altered(run(scene, "modal"), **stated | {"achieved_error": None, "reasons": reasons})
 
-    monkeypatch.setattr(fem_impact.run.simulate, "simulate", answer)
+    monkeypatch.setattr("fem_impact.cost.to_target.simulate", answer)
     code, out, err = cli("run", "t5b", "--set", "accuracy=20 %")
     assert code == 0
     assert "accuracy 20 %: modal, expected error 15 %" in err

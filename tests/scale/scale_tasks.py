@@ -28,7 +28,7 @@ def record(scene):
     return outcome(fidelity="rigid", scene_id=scene.id, scene_digest=digest(scene))
 
 
-def simulate(scene, fidelity="solid", out=None, **_):
+def simulate(scene, fidelity="solid", options=None):
     """Act as the title says; every call is logged."""
     if LOG in os.environ:
         with Path(os.environ[LOG]).open("a") as log:
@@ -36,8 +36,8 @@ def simulate(scene, fidelity="solid", out=None, **_):
     word, _, rest = scene.title.removeprefix("does ").partition(" ")
     act(word, rest)
     found = record(scene)
-    if out is not None:
-        found.write(out / "outcome.json")
+    if options and options.out is not None:
+        found.write(options.out / "outcome.json")
     return found
 
 

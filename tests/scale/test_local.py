@@ -25,7 +25,8 @@ import sys
 from pathlib import Path
 from scale_tasks import Acting, job
 from fem_impact.progress import NullMeter
-from fem_impact.scale import LocalProcesses, run_jobs
+from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.jobs.run import run_jobs
 if __name__ == "__main__":
     jobs = [job(f"j{i}", "sleep 0.15") for i in range(12)]
     with LocalProcesses(2) as processes:

@@ -19,9 +19,9 @@ class Told:
 def test_a_started_run_resumes_if_it_fits(fits, tries, tmp_path, monkeypatch):
     asked = []
 
-    def simulate(scene, fidelity, out, resume=False):
-        asked.append(resume)
-        if resume and not fits:
+    def simulate(scene, fidelity, options):
+        asked.append(options.resume)
+        if options.resume and not fits:
             raise ResultError("another program")
         return Told()
 
