@@ -1,1 +1,78 @@
-"""Where the energy of a dropped rod goes: explicit finite elements beside rigid theory."""
+"""Where the energy of a dropped rod goes: explicit finite elements beside rigid theory.
+
+The names that users need; each is imported from its module when it is first asked for, so that
+``import fem_impact`` costs nothing. The submodules hold the rest.
+
+Examples
+--------
+>>> import fem_impact
+>>> scene = fem_impact.replace(fem_impact.load("t5b"), "accuracy.tip_size", "0.5 mm")
+>>> outcome = fem_impact.simulate(scene, "rigid")
+>>> round(outcome.motion.v_n, 4)
+-1.5024
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from fem_impact.cost.to_target import simulate
+    from fem_impact.files.fields_read import read_fields
+    from fem_impact.options import RunOptions
+    from fem_impact.outcome.keys import Unknown, known
+    from fem_impact.outcome.record import Outcome
+    from fem_impact.plan.plan import Plan
+    from fem_impact.plan.plan import plan as make_plan
+    from fem_impact.scene.shipped import load, replace, replace_all
+    from fem_impact.scene.types import Scene
+    from fem_impact.scene.units import format_quantity, parse_quantity
+
+__all__ = [
+    "Outcome",
+    "Plan",
+    "RunOptions",
+    "Scene",
+    "Unknown",
+    "format_quantity",
+    "known",
+    "load",
+    "make_plan",
+    "parse_quantity",
+    "read_fields",
+    "replace",
+    "replace_all",
+    "simulate",
+]
+
+_PLACES = {
+    "Outcome": "outcome.record:Outcome",
+    "Plan": "plan.plan:Plan",
+    "RunOptions": "options:RunOptions",
+    "Scene": "scene.types:Scene",
+    "Unknown": "outcome.keys:Unknown",
+    "format_quantity": "scene.units:format_quantity",
+    "known": "outcome.keys:known",
+    "load": "scene.shipped:load",
+    "make_plan": "plan.plan:plan",  # the package `fem_impact.plan` has the name itself
+    "parse_quantity": "scene.units:parse_quantity",
+    "read_fields": "files.fields_read:read_fields",
+    "replace": "scene.shipped:replace",
+    "replace_all": "scene.shipped:replace_all",
+    "simulate": "cost.to_target:simulate",
+}
+
+
+def __getattr__(name: str) -> object:
+    """Import what the menu names, and keep it."""
+    if name not in _PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    module, _, attribute = _PLACES[name].partition(":")
+    value: object = getattr(import_module(f"{__name__}.{module}"), attribute)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
