@@ -11,6 +11,7 @@ from ..arrays import Floats
 from .estimate import MOTION, Errors, Estimate, named, stack_tests
 
 SOURCES = ("scatter", "contact", "tracking")
+BLOCK = 500_000  # tests drawn at a time: five velocities and an index of each take 24 MB
 
 
 def bootstrap(
@@ -57,17 +58,23 @@ def _draw(
     rng: np.random.Generator,
 ) -> dict[str, Floats]:
     """Coefficients of `samples` random repetitions of the set, (samples,) each."""
-    n = rows.shape[1]
-    chosen = (
-        rng.integers(n, size=(samples, n)) if "scatter" in sources else np.tile(np.arange(n), (samples, 1))
-    )
-    means = rows[:, chosen].mean(axis=2)
+    means = _resampled(rows, samples, rng) if "scatter" in sources else rows.mean(axis=1)[:, None]
     tracking = errors.tracking if "tracking" in sources else 0.0
-    means = means * (1.0 + tracking * rng.uniform(-1, 1, means.shape))
+    means = means * (1.0 + tracking * rng.uniform(-1, 1, (len(rows), samples)))
     shift = (errors.contact if "contact" in sources else 0.0) * rng.uniform(-1, 1, (2, samples))
     return named(
         **dict(zip(MOTION, means, strict=True)), d_c=d_c + shift[0], d_d=d_d + shift[1], k2=np.asarray(k2)
     )
+
+
+def _resampled(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
+    """Means (5, samples) of the tests drawn anew with replacement, at most `BLOCK` numbers at a time."""
+    n = rows.shape[1]
+    means, height = np.empty((len(rows), samples)), max(1, BLOCK // n)
+    for first in range(0, samples, height):
+        block = means[:, first : first + height]
+        block[:] = rows[:, rng.integers(n, size=(block.shape[1], n))].mean(axis=2)
+    return means
 
 
 def _estimate(value: float, together: Floats, alone: Mapping[str, Floats]) -> Estimate:
