@@ -1,4 +1,4 @@
-"""What a run tells while it works, and the meters that show it: a live line, plain lines, or nothing."""
+"""Progress of a run or a study, and the meters that show it: a live line, plain lines, or nothing."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Protocol, TextIO
 __all__ = [
     "CaseProgress",
     "LineMeter",
+    "Notice",
     "NullMeter",
     "Progress",
     "ProgressMeter",
@@ -52,10 +53,17 @@ class CaseProgress:
     eta_s: float
 
 
+@dataclass(frozen=True, slots=True)
+class Notice:
+    """A sentence that the user must see, whatever the rate of progress lines."""
+
+    text: str
+
+
 class ProgressMeter(Protocol):
     """Anything that takes progress, and may be closed when the work is over or interrupted."""
 
-    def __call__(self, progress: Progress | CaseProgress) -> None:
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
         """Take one report."""
 
     def close(self) -> None:
@@ -65,7 +73,7 @@ class ProgressMeter(Protocol):
 class NullMeter:
     """A meter that shows nothing."""
 
-    def __call__(self, progress: Progress | CaseProgress) -> None:
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
         """Ignore the report."""
 
     def close(self) -> None:
@@ -79,8 +87,13 @@ class TerminalMeter:
         self._stream, self._clock, self._width = stream, clock, width
         self._next, self._dirty = 0.0, False
 
-    def __call__(self, progress: Progress | CaseProgress) -> None:
-        """Rewrite the line when a tenth of a second has passed."""
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
+        """Rewrite the line when a tenth of a second has passed; a notice gets a line of its own."""
+        if isinstance(progress, Notice):
+            self.close()
+            self._stream.write(f"{progress.text}\n")
+            self._dirty = False
+            return
         now = self._clock()
         if now < self._next:
             return
@@ -105,8 +118,11 @@ class LineMeter:
         self._stream, self._every, self._clock = stream, every_s, clock
         self._next: dict[str, float] = {}
 
-    def __call__(self, progress: Progress | CaseProgress) -> None:
-        """Write a line when it is due for this work."""
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
+        """Write a line when it is due for this work, a notice at once."""
+        if isinstance(progress, Notice):
+            self._stream.write(f"{progress.text}\n")
+            return
         now = self._clock()
         if now < self._next.get(progress.note, now):
             return

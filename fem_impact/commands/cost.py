@@ -88,10 +88,9 @@ def _measured(scene: Scene, out: Path, options: Options, family: list[Mesh]) -> 
     """Run the ladder, or with ``--stored`` judge what has run."""
     from fem_impact.cost.measure import judge_stored, measure
 
-    if options.stored:
-        return judge_stored(scene, out, family)
+    work = judge_stored if options.stored else measure
     with closing(chosen_meter(options)) as meter:
-        return measure(scene, out, meter, family)
+        return work(scene, out, meter, family)
 
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:

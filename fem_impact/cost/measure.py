@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor, ProcessPoolExecutor
+from concurrent.futures import Executor
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +15,9 @@ from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
 from fem_impact.errors import RunError
 from fem_impact.fem.kernels import compiled_before
+from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job, compute
-from fem_impact.jobs.run import Results, run_jobs, stored
+from fem_impact.jobs.run import Results, run_jobs, stored_results
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.scene.write import to_dict
@@ -97,18 +98,16 @@ def measure(
     """
     settings = ladder(scene, family)
     jobs = _jobs(settings)
-    # a fresh process for every run: its peak memory is its own
-    owned = executor or ProcessPoolExecutor(1, mp_context=get_context("spawn"), max_tasks_per_child=1)
-    try:
-        _compile(scene, owned)
-        results = run_jobs(jobs, out / STORE, progress, owned)
-    finally:
-        if executor is None:
-            owned.shutdown(cancel_futures=True)
+    # a process of its own for every run: its peak memory is its own
+    with LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor) as process:
+        _compile(scene, process)
+        results = run_jobs(jobs, out / STORE, progress, process)
     return conclude(scene, settings, results)
 
 
-def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> CostStudy:
+def judge_stored(
+    scene: Scene, out: Path, progress: ProgressMeter, family: Sequence[Mesh] = FAMILY
+) -> CostStudy:
     """Judge what `measure` has stored in ``out`` so far, and run nothing.
 
     Raises
@@ -118,14 +117,13 @@ def judge_stored(scene: Scene, out: Path, family: Sequence[Mesh] = FAMILY) -> Co
     """
     settings = ladder(scene, family)
     with Store.open(out / STORE) as base:
-        held = {job.name: stored(base, job) for job in _jobs(settings)}
-    found = {name: result for name, result in held.items() if result is not None}
-    if not found:
+        results = stored_results(base, _jobs(settings), progress)
+    if not results:
         raise RunError(
             f"{out}: holds no run of {scene.id} by this version of the program. "
             "Leave out --stored to run its settings."
         )
-    return conclude(scene, settings, found)
+    return conclude(scene, settings, results)
 
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:
@@ -152,7 +150,7 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
     ]
     meshes = {s.meshes[0]: runs[s.name][0] for s in settings if s.kind == "mesh" and runs[s.name]}
     if len(meshes) < 2:
-        reasons = " ".join(failure["reason"] for failure in failures)
+        reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
     truth, judged = truths(list(meshes.values())), []
     for setting in settings:

@@ -1,9 +1,10 @@
-"""How many processor cores there are to use."""
+"""Where jobs run: processes on this machine, or the workers of a dask scheduler."""
 
 from __future__ import annotations
 
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
@@ -16,34 +17,38 @@ from fem_impact.errors import MissingLibraryError, UsageError
 
 __all__ = ["LocalProcesses", "cores", "on_scheduler"]
 
+P = ParamSpec("P")
+T = TypeVar("T")
+
+TRIES = 2  # a process may be killed for memory that others took; a job that kills two is at fault
+GRACE = 3.0  # s that a process has to remove its drafts before it is killed
+ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
+SCHEDULER_PATIENCE = 20  # s to wait for the scheduler and its first worker
+
 
 def cores() -> int:
     """Return how many processor cores this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-P = ParamSpec("P")
-T = TypeVar("T")
-TRIES = 2  # a process may be killed for memory that others took; a job that kills two is at fault
-ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
-
-
 class LocalProcesses(Executor):
-    """An executor of processes, each fed by a thread here.
+    """An executor of processes, each fed by a thread of this process.
 
-    Unlike a pool that breaks as a whole, a process that dies costs its own job only: a new process
-    tries it once more, and then the job fails. The processes end when this one does, however it ends.
+    A process that dies costs its own job only (a pool of the standard library breaks as a whole): a new
+    process tries the job once more, and then the job fails. The processes end when this one does, however
+    it ends.
 
     Parameters
     ----------
     workers : int
-        Processes; as many as there are cores when None.
+        Number of processes; as many as there are cores when None.
+    reuse : bool
+        Whether a process computes one job after another; if not, each job has a new process.
     """
 
-    def __init__(self, workers: int | None = None) -> None:
-        workers = workers or cores()
-        self._threads = ThreadPoolExecutor(workers, thread_name_prefix="study")
-        self._own, self._lanes, self._closed = threading.local(), set[_Lane](), False
+    def __init__(self, workers: int | None = None, *, reuse: bool = True) -> None:
+        self._threads = ThreadPoolExecutor(workers or cores(), thread_name_prefix="study")
+        self._own, self._workers, self._closed, self._reuse = threading.local(), set[_Worker](), False, reuse
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Run ``fn`` in the next free process."""
@@ -63,37 +68,45 @@ class LocalProcesses(Executor):
         self.shutdown(cancel_futures=kind is not None)
 
     def _end(self) -> None:
-        for lane in tuple(self._lanes):
-            lane.end()
+        for worker in tuple(self._workers):
+            worker.ask_to_end()  # all of them before the first is waited for
+        for worker in tuple(self._workers):
+            worker.end()
 
     def _call(self, fn: Callable[..., T], args: Any, kwargs: Any) -> T:
         for _ in range(TRIES):
             if self._closed:
                 break
             try:
-                return self._lane().call(fn, args, kwargs)
+                return self._worker().call(fn, args, kwargs)
             except _DiedError:
                 self._drop()
+            finally:
+                if not self._reuse:
+                    self._drop()
         raise BrokenExecutor("the process that computed it was killed")
 
-    def _lane(self) -> _Lane:
-        if getattr(self._own, "lane", None) is None:
-            self._own.lane = _Lane()
-            self._lanes.add(self._own.lane)
-        lane: _Lane = self._own.lane
-        return lane
+    def _worker(self) -> _Worker:
+        """Return the process of this thread, a new one if it has none."""
+        if getattr(self._own, "worker", None) is None:
+            self._own.worker = _Worker()
+            self._workers.add(self._own.worker)
+        worker: _Worker = self._own.worker
+        return worker
 
     def _drop(self) -> None:
-        self._own.lane.end()
-        self._lanes.discard(self._own.lane)
-        self._own.lane = None
+        """End the process of this thread, if it has one."""
+        worker, self._own.worker = getattr(self._own, "worker", None), None
+        if worker is not None:
+            worker.end()
+            self._workers.discard(worker)
 
 
 class _DiedError(Exception):
     """The process at the other end of a pipe is gone."""
 
 
-class _Lane:
+class _Worker:
     """One process and the pipe to it."""
 
     def __init__(self) -> None:
@@ -115,16 +128,23 @@ class _Lane:
         result: T = value
         return result
 
+    def ask_to_end(self) -> None:
+        """Send SIGTERM, upon which the process leaves its job and removes its drafts."""
+        self._process.terminate()
+
     def end(self) -> None:
-        with self._ending:  # an interrupt ends it here while its own thread sees it die: a pipe closes once
+        with self._ending:  # the main thread may end it while its own thread sees it die: a pipe closes once
+            self._process.terminate()
+            self._process.join(GRACE)
             self._process.kill()
             self._process.join()
             self._pipe.close()
 
 
 def _serve(pipe: Connection) -> None:
-    """Answer calls until the other end is gone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the study's own process decides what an interrupt stops
+    """Answer calls until the other end is gone or SIGTERM comes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process of the study decides what an interrupt stops
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # blocks of `finally` remove the drafts of files
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # before the first call imports numpy
     threading.Thread(target=_end_with_parent, daemon=True).start()
     while True:
@@ -138,7 +158,7 @@ def _serve(pipe: Connection) -> None:
 def _answer(fn: Callable[..., object], args: Any, kwargs: Any) -> tuple[object, Exception | None]:
     try:
         return fn(*args, **kwargs), None
-    except Exception as error:  # it is raised in the study's own process
+    except Exception as error:  # it is raised in the process of the study
         return None, error
 
 
@@ -147,9 +167,6 @@ def _end_with_parent() -> None:
     if parent is not None:
         connection.wait([parent.sentinel])
         os._exit(1)
-
-
-PATIENCE = 20  # s for scheduler and first worker
 
 
 @contextmanager
@@ -168,15 +185,15 @@ def on_scheduler(address: str) -> Iterator[Executor]:
     try:
         from distributed import Client
     except ImportError:
-        words = "--scheduler needs dask.distributed: pip install 'fem-impact[cluster]'."
-        raise MissingLibraryError(words) from None
+        problem = "--scheduler needs dask.distributed: pip install 'fem-impact[cluster]'."
+        raise MissingLibraryError(problem) from None
     try:
-        client = Client(address, timeout=PATIENCE, set_as_default=False)
+        client = Client(address, timeout=SCHEDULER_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:
         raise _refused(address, f"no scheduler answers ({error}).") from None
     with client:
         try:
-            client.wait_for_workers(1, timeout=PATIENCE)
+            client.wait_for_workers(1, timeout=SCHEDULER_PATIENCE)
         except TimeoutError:
             raise _refused(address, "the scheduler has no worker.") from None
         yield client.get_executor(pure=False)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.jobs.run import expected_costs, makespan, run_jobs, stored
+from fem_impact.jobs.run import expected_costs, makespan, run_jobs, stored_results
 from fem_impact.jobs.store import Store
 
 if TYPE_CHECKING:
@@ -46,17 +46,18 @@ def estimate(
     Where no job of a fidelity was measured yet, a few are: the cheapest ones, evenly spread. Compilation, the
     start of workers and sharing a machine's memory among them are not in the figures.
     """
-    every = list(jobs)
+    wanted = list(jobs)
     with Store.open(store) as base:
         measured = {fidelity for fidelity, _ in base.costs()}
-    run_jobs(_samples(every, measured), store, progress, executor)
+    run_jobs(_samples(wanted, measured), store, progress, executor)
     with Store.open(store) as base:
-        costs, left = base.costs(), [job for job in every if stored(base, job) is None]
+        costs, done = base.costs(), stored_results(base, wanted, progress)
+    left = [job for job in wanted if job.name not in done]
     expected = expected_costs(left, costs)
     wall = {n: makespan(expected.values(), n) for n in CROWDS}
     longest = max(expected.values(), default=0.0)
     kinds = _kinds(left, expected, costs)
-    return WorkForecast(len(every), len(every) - len(left), sum(expected.values()), longest, wall, kinds)
+    return WorkForecast(len(wanted), len(done), sum(expected.values()), longest, wall, kinds)
 
 
 def _samples(jobs: list[Job], measured: set[str]) -> list[Job]:
@@ -73,16 +74,16 @@ def _samples(jobs: list[Job], measured: set[str]) -> list[Job]:
 def _kinds(
     jobs: list[Job], expected: dict[str, float], costs: dict[Kind, list[float]]
 ) -> list[dict[str, Any]]:
-    found: dict[Kind, list[float]] = {}
+    by_kind: dict[Kind, list[float]] = {}
     for job in jobs:
-        found.setdefault(job.kind, []).append(expected[job.name])
+        by_kind.setdefault(job.kind, []).append(expected[job.name])
     return [
         {
             "fidelity": fidelity,
             "tip_size_m": size or None,
-            "jobs": len(each),
-            "cost_s": each[0],
+            "jobs": len(times),
+            "cost_s": times[0],
             "measured": len(costs.get((fidelity, size), [])),
         }
-        for (fidelity, size), each in found.items()
+        for (fidelity, size), times in by_kind.items()
     ]

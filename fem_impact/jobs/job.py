@@ -112,23 +112,28 @@ def _run(job: Job) -> str:
         return run.simulate(job.scene, job.fidelity, replace(options, resume=False)).to_json()
 
 
-def read_outcome(job: Job, text: str) -> Outcome | None:
-    """Return a stored outcome, or None if it cannot be read or the files of its run are gone."""
+def read_outcome(job: Job, text: str) -> Outcome:
+    """Return the outcome of a job from its JSON text.
+
+    Raises
+    ------
+    ResultError
+        The text is damaged, or of another scene or fidelity, or the directory of the run does not hold the
+        files of this run.
+    """
     from fem_impact.outcome.record import Outcome
 
-    try:
-        found = Outcome.from_json(text, source=job.name)
-        if job.out is None:
-            return found
-        beside = Outcome.read(job.out / "outcome.json")
-    except FemImpactError:
-        return None
-    return found if _same_run(found, beside) else None
+    outcome = Outcome.from_json(text, source=job.name)
+    stated = outcome.provenance.scene_digest, outcome.provenance.fidelity
+    if stated != (digest(job.scene), job.fidelity):
+        raise ResultError(f"{job.name}: is an outcome of another scene or fidelity.")
+    if job.out is not None:
+        path = job.out / "outcome.json"
+        if _run_of(Outcome.read(path)) != _run_of(outcome):
+            raise ResultError(f"{path}: is of another run.")
+    return outcome
 
 
-def _same_run(one: Outcome, other: Outcome) -> bool:
-    return (one.provenance.scene_digest, one.provenance.created_utc, one.cost.wall) == (
-        other.provenance.scene_digest,
-        other.provenance.created_utc,
-        other.cost.wall,
-    )
+def _run_of(outcome: Outcome) -> tuple[str, str, object]:
+    """Return what tells one run from another: scene, date and wall time."""
+    return outcome.provenance.scene_digest, outcome.provenance.created_utc, outcome.cost.wall

@@ -1,4 +1,4 @@
-"""How long a study will take, and what more workers would give, from what jobs like these have cost."""
+"""Run jobs through an executor, keep their answers in a store, and say how long the others will take."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import RunError
+from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Answer, Failure, Job, compute, read_outcome
 from fem_impact.jobs.store import Store
-from fem_impact.progress import CaseProgress
+from fem_impact.progress import CaseProgress, Notice
 from fem_impact.run.program import source_digest
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["Eta", "Results", "expected_costs", "makespan", "run_jobs", "stored"]
+__all__ = ["Eta", "Results", "expected_costs", "makespan", "run_jobs", "stored_results"]
 
 
 GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
@@ -107,7 +107,8 @@ def run_jobs(
     ----------
     jobs : names must differ
     store : SQLite file, made if it is not there
-    progress : told after every job, with the time that all jobs still need
+    progress : told after every job, with the time that all jobs still need, and of every stored answer that
+        is not of its job and is computed again
     executor : any, such as what `on_scheduler` lends; local processes, one a core, when None
 
     Raises
@@ -117,8 +118,7 @@ def run_jobs(
     """
     wanted = {job.name: _placed(job) for job in jobs}
     with Store.open(store) as base:
-        found = {name: stored(base, job) for name, job in wanted.items()}
-        results = {name: result for name, result in found.items() if result is not None}
+        results = stored_results(base, wanted.values(), progress)
         costs = expected_costs((wanted[name] for name in wanted if name not in results), base.costs())
         if costs:
             # the longest first, so that no worker is left alone with one at the end
@@ -133,13 +133,18 @@ def _placed(job: Job) -> Job:
     return job if job.out is None else replace(job, out=job.out.absolute())
 
 
-def stored(base: Store, job: Job) -> Outcome | Failure | None:
-    """Return the result of a job if the store holds it."""
-    held = base.get(job.key)
-    if held is None:
-        return None
-    outcome, reason = held
-    return Failure(job.name, reason) if reason else read_outcome(job, outcome)
+def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> Results:
+    """Return the stored results of jobs by name; an answer that is not of its job is told and left out."""
+    results: Results = {}
+    for job in jobs:
+        try:
+            answer = base.get(job)
+            if answer is not None:
+                outcome, reason = answer
+                results[job.name] = Failure(job.name, reason) if reason else read_outcome(job, outcome)
+        except ResultError as error:
+            progress(Notice(f"{job.name} is not taken from the store: {error}"))
+    return results
 
 
 def _compute(waiting: list[Job], base: Store, executor: Executor, results: Results, meter: Eta) -> None:
@@ -149,12 +154,21 @@ def _compute(waiting: list[Job], base: Store, executor: Executor, results: Resul
             job, answer = futures[future], _answer(future)
             if answer.outcome or answer.lasting:
                 base.put(job, answer)
-            outcome = read_outcome(job, answer.outcome) if answer.outcome else None
-            results[job.name] = outcome or Failure(job.name, answer.reason or "its files cannot be read back")
+            results[job.name] = _result(job, answer)
             meter(job.name, len(results))
     finally:
         for future in futures:
             future.cancel()
+
+
+def _result(job: Job, answer: Answer) -> Outcome | Failure:
+    """Return what a worker has handed back, read as the store would be."""
+    if answer.reason:
+        return Failure(job.name, answer.reason)
+    try:
+        return read_outcome(job, answer.outcome)
+    except ResultError as error:
+        return Failure(job.name, str(error))
 
 
 def _answer(future: Future[Answer]) -> Answer:

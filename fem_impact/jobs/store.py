@@ -1,7 +1,9 @@
-"""Results by content address in one SQLite file, written by the study's own process only."""
+"""Answers of jobs by content address in one SQLite file, written by the process of the study only."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,11 +18,27 @@ __all__ = ["STORE", "Store"]
 
 STORE = "store.sqlite"
 _TABLE = """
-CREATE TABLE IF NOT EXISTS results (
-  key TEXT PRIMARY KEY, name TEXT, fidelity TEXT, tip_size_m REAL, outcome TEXT, reason TEXT, wall_s REAL
+CREATE TABLE IF NOT EXISTS answers (
+  key TEXT PRIMARY KEY, name TEXT, fidelity TEXT, tip_size_m REAL, outcome TEXT, reason TEXT, wall_s REAL,
+  checksum TEXT
 )
 """
-PATIENCE = 30.0  # s to wait for another study that writes
+_INSERT = "INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?, ?, ?, ?)"
+_COSTS = """
+SELECT fidelity, tip_size_m, wall_s FROM answers
+WHERE reason = '' AND typeof(tip_size_m) = 'real' AND typeof(wall_s) = 'real' AND wall_s > 0
+"""
+PATIENCE = 30.0  # s to wait while another process reads or writes
+# faults of the place, by SQLite's primary result code, with what helps; any other is a damaged file
+_PLACE = {
+    sqlite3.SQLITE_FULL: "Free some space.",
+    sqlite3.SQLITE_BUSY: "Close the program that uses it.",
+    sqlite3.SQLITE_LOCKED: "Close the program that uses it.",
+    **dict.fromkeys(
+        (sqlite3.SQLITE_READONLY, sqlite3.SQLITE_PERM, sqlite3.SQLITE_CANTOPEN, sqlite3.SQLITE_IOERR),
+        "Check that its place can be read and written, or choose another place with --out.",
+    ),
+}
 
 
 class Store:
@@ -56,36 +74,54 @@ class Store:
         finally:
             base.close()
 
-    def get(self, key: str) -> tuple[str, str] | None:
-        """Return outcome text (which carries its own checksum) and reason, None if there is no result."""
+    def get(self, job: Job) -> tuple[str, str] | None:
+        """Return outcome text and reason of a failure, None if there is no answer.
+
+        Raises
+        ------
+        ResultError
+            What is stored under the key of the job is not what was stored there.
+        """
+        key = job.key
         with _named(self._path):
-            found = self._base.execute("SELECT outcome, reason FROM results WHERE key = ?", (key,)).fetchone()
-        return found and (str(found[0]), str(found[1]))
+            row = self._base.execute("SELECT outcome, reason, checksum FROM answers WHERE key = ?", (key,))
+            found = row.fetchone()
+        if found is None:
+            return None
+        outcome, reason, checksum = found
+        if checksum != _checksum(key, outcome, reason):
+            raise ResultError(f"{job.name}: its stored answer does not match its checksum.")
+        return outcome, reason
 
     def put(self, job: Job, answer: Answer) -> None:
         """Keep an answer."""
         row = (job.key, job.name, *job.kind, answer.outcome, answer.reason, answer.wall_s)
         with _named(self._path), self._base:
-            self._base.execute("INSERT OR REPLACE INTO results VALUES (?, ?, ?, ?, ?, ?, ?)", row)
+            self._base.execute(_INSERT, (*row, _checksum(job.key, answer.outcome, answer.reason)))
 
     def costs(self) -> dict[Kind, list[float]]:
         """Return the wall times, s, of the finished jobs of each kind, of whatever program."""
-        words = "SELECT fidelity, tip_size_m, wall_s FROM results WHERE reason = ''"
-        found: dict[Kind, list[float]] = {}
+        costs: dict[Kind, list[float]] = {}
         with _named(self._path):
-            for fidelity, size, wall in self._base.execute(words):
-                found.setdefault((fidelity, size), []).append(wall)
-        return found
+            for fidelity, size, wall in self._base.execute(_COSTS):
+                costs.setdefault((fidelity, size), []).append(wall)
+        return costs
+
+
+def _checksum(key: str, outcome: object, reason: object) -> str:
+    """Return a digest that binds an answer to the key of its job; of whatever type a spoiled row holds."""
+    return hashlib.sha256(json.dumps([key, outcome, reason], default=repr).encode()).hexdigest()
 
 
 @contextmanager
 def _named(path: Path) -> Iterator[None]:
-    """Tell a full or locked disk from a damaged file."""
+    """Raise OutputPathError for a fault of the place, ResultError for a damaged file."""
     try:
         yield
-    except sqlite3.OperationalError as error:
-        words = f"{path}: cannot be used ({error}). Free some space, or close what uses it."
-        raise OutputPathError(words) from error
-    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:  # a spoiled name in the words of the library
-        words = f"{path}: is damaged ({error}). Move it away; its results are computed again."
-        raise ResultError(words) from error
+    except (sqlite3.Error, UnicodeDecodeError) as error:  # the library quotes a spoiled name in its message
+        code = getattr(error, "sqlite_errorcode", sqlite3.SQLITE_CORRUPT)
+        remedy = _PLACE.get(code & 0xFF)
+        if remedy and code != sqlite3.SQLITE_IOERR_SHORT_READ:
+            raise OutputPathError(f"{path}: cannot be used ({error}). {remedy}") from error
+        problem = f"{path}: is damaged ({error}). Move it away; its results are computed again."
+        raise ResultError(problem) from error

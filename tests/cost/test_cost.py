@@ -230,7 +230,7 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
     first, second = Here(), Here()
     measure(SCENE, tmp_path, NullMeter(), FAMILY[:3], first)
     assert len(set(first.names)) == len(first.names) > 5
-    held = judge_stored(SCENE, tmp_path)
+    held = judge_stored(SCENE, tmp_path, NullMeter())
     assert [one.name for one in held.settings if one.kind == "mesh"][-1] == "solid 0.297 mm"
     assert [one.name for one in held.settings if one.kind == "pair"] == [
         "solid 0.594 and 0.297 mm extrapolated"
@@ -242,7 +242,7 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
 
 def test_what_never_ran_cannot_be_judged(tmp_path):
     with pytest.raises(RunError, match=r"holds no run of t5b .* Leave out --stored"):
-        judge_stored(SCENE, tmp_path)
+        judge_stored(SCENE, tmp_path, NullMeter())
 
 
 def test_two_meshes_assume_an_order_and_say_none():

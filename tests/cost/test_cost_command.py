@@ -21,7 +21,7 @@ def fake(monkeypatch):
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     measure = import_module("fem_impact.cost.measure")
     monkeypatch.setattr(measure, "compiled_before", lambda: True)
-    monkeypatch.setattr(measure, "ProcessPoolExecutor", lambda *_, **__: Here())
+    monkeypatch.setattr(measure, "LocalProcesses", lambda *_, **__: Here())
 
 
 def test_cost_prints_table_and_advice(cli, fake):

@@ -26,8 +26,10 @@ import meshes
 import rigid
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.jobs import store as store_module
+from fem_impact.jobs.job import Job
 from fem_impact.jobs.store import Store
 from fem_impact.outcome.record import Outcome
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.solid.checkpoint import Checkpoint
@@ -161,7 +163,7 @@ def test_spoiled_checkpoints(how):
 
 def signed(body):
     """Give a forged archive the mark and the right checksum."""
-    return b"fem-ckp1" + digest(hashlib.sha256(body)) + body
+    return b"fem-ckp1" + hashlib.sha256(body).digest() + body
 
 
 @pytest.mark.parametrize("how", SETTINGS)
@@ -227,7 +229,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from fem_impact.errors import FemImpactError, ResultError
-from fem_impact.output import read_fields
+from fem_impact.files.fields_read import read_fields
 whole, refused = Path("fields.vtkhdf").read_bytes(), 0
 chance = np.random.default_rng(int(sys.argv[1]))
 for k in range(int(sys.argv[2])):
@@ -281,7 +283,7 @@ def test_spoiled_stores_of_studies(how):
         TRIED["stores"] += 1
         try:
             with Store.open(Path("store.sqlite")) as store:
-                store.get("a key")
+                store.get(Job("a", load("t5b")))
                 store.costs()
         except FemImpactError as error:
             assert error.exit_code in (4, 5)
@@ -310,7 +312,7 @@ def test_a_report_of_spoiled_files_is_refused_and_not_half_written(name):
 )
 def test_an_id_that_would_leave_its_directory_is_refused(id):
     with pytest.raises(SceneError, match="id"):
-        load("t5b").from_dict({**SCENE, "id": id})
+        read_dict({**SCENE, "id": id})
     Path("mine.toml").write_text(toml({**SCENE, "id": id}))
     assert answered("ids", {3}, "run", "mine.toml", "--quiet") == 3
     assert files() == {"inside/mine.toml"}

@@ -12,6 +12,7 @@ from outcome_maker import outcome
 import fem_impact.run.simulate
 from fem_impact.errors import RunError
 from fem_impact.jobs.job import Job, compute
+from fem_impact.options import RunOptions
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 
@@ -23,9 +24,9 @@ def job(name, does="", **kept):
     return Job(name, replace_all(load("t5b"), {"id": name, "title": f"does {does}"}), "rigid", **kept)
 
 
-def record(scene):
+def record(scene, fidelity="rigid"):
     """A complete outcome of a scene."""
-    return outcome(fidelity="rigid", scene_id=scene.id, scene_digest=digest(scene))
+    return outcome(fidelity=fidelity, scene_id=scene.id, scene_digest=digest(scene))
 
 
 def simulate(scene, fidelity="solid", options=None):

@@ -69,6 +69,15 @@ def test_an_error_of_a_call_comes_back_and_the_process_stays():
         assert processes.submit(os.getpid).result() == first
 
 
+def test_a_process_of_its_own_for_every_job():
+    with LocalProcesses(1, reuse=False) as processes:
+        first = processes.submit(os.getpid).result()
+        with pytest.raises(FileNotFoundError):
+            processes.submit(os.stat, "no-such-place").result()
+        assert processes.submit(os.getpid).result() != first
+        assert not alive(first)
+
+
 def test_an_interrupt_stops_running_jobs_at_once():
     begun = time.monotonic()
     with pytest.raises(KeyboardInterrupt), LocalProcesses(1) as processes:

@@ -2,13 +2,14 @@
 
 import json
 import shutil
+import sqlite3
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 from outcome_maker import altered
-from scale_tasks import Here, job, simulate
+from scale_tasks import Here, job, record, simulate
 
 import fem_impact.run.program as sources_module
 import fem_impact.run.simulate
@@ -17,11 +18,11 @@ from fem_impact.jobs import job as job_module
 from fem_impact.jobs.job import Failure
 from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import Store
-from fem_impact.progress import NullMeter
+from fem_impact.progress import Notice, NullMeter
 from fem_impact.run.program import source_digest, stamp
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace
 
-ROOT = Path(fem_impact.run.simulate.__file__).parents[1]
+ROOT = Path(fem_impact.run.simulate.__file__).parents[2]
 
 
 @pytest.fixture(autouse=True)
@@ -46,7 +47,7 @@ def test_what_is_stored_is_not_computed_again(tmp_path):
 def test_a_result_belongs_to_one_scene_fidelity_and_program(tmp_path, monkeypatch):
     store = tmp_path / "store.sqlite"
     run(store, job("a"))
-    other = job_module.Job("a", job("a").scene.replace("impact.v_n", "-1 m/s"), "rigid")
+    other = job_module.Job("a", replace(job("a").scene, "impact.v_n", "-1 m/s"), "rigid")
     assert run(store, other)[1] == ["a"]
     assert run(store, job_module.Job("a", job("a").scene, "solid"))[1] == ["a"]
     monkeypatch.setattr(job_module, "source_digest", lambda: "another program")
@@ -82,8 +83,81 @@ def test_a_damaged_record_is_computed_again(tmp_path):
     store = tmp_path / "store.sqlite"
     run(store, job("a"))
     with Store.open(store) as base, base._base:
-        base._base.execute("UPDATE results SET outcome = replace(outcome, '0.25', '0.26')")
+        base._base.execute("UPDATE answers SET outcome = replace(outcome, '0.25', '0.26')")
     assert run(store, job("a"))[1] == ["a"]
+
+
+COLUMNS = ("outcome, reason", "outcome, reason, checksum")
+
+
+@pytest.mark.parametrize("columns", COLUMNS)
+def test_answers_of_other_jobs_are_computed_again_and_told(tmp_path, columns):
+    """Rows whose answers were exchanged, each whole in itself, as another program may leave them."""
+    store, jobs, told = tmp_path / "store.sqlite", [job("a"), job("b"), job("c", "fail")], []
+    first, _ = run(store, *jobs)
+    with Store.open(store) as base, base._base:
+        rows = base._base.execute(f"SELECT {columns} FROM answers ORDER BY key").fetchall()
+        keys = [key for (key,) in base._base.execute("SELECT key FROM answers ORDER BY key")]
+        marks = ", ".join("?" for _ in rows[0])
+        for key, row in zip(keys, [*rows[1:], rows[0]], strict=True):
+            base._base.execute(f"UPDATE answers SET ({columns}) = ({marks}) WHERE key = ?", (*row, key))
+    engine = Here()
+    again = run_jobs(jobs, store, told.append, engine)
+    assert (again, sorted(engine.names)) == (first, ["a", "b", "c"])
+    texts = [notice.text for notice in told if isinstance(notice, Notice)]
+    assert len(texts) == 3
+    assert all("not taken from the store" in text and "checksum" in text for text in texts)
+    assert run(store, *jobs)[1] == []
+
+
+@pytest.mark.parametrize("other", ["scene", "fidelity"])
+def test_an_outcome_of_another_scene_or_fidelity_is_computed_again_and_told(tmp_path, other):
+    """Though its row was signed anew: the outcome itself says what it was computed from."""
+    store, wanted, told = tmp_path / "store.sqlite", job("a"), []
+    strange = record(job("b").scene) if other == "scene" else record(wanted.scene, "modal")
+    with Store.open(store) as base:
+        base.put(wanted, job_module.Answer("", strange.to_json(), "", False, 1.0))
+    engine = Here()
+    found = run_jobs([wanted], store, told.append, engine)
+    assert (engine.names, found["a"].provenance.scene_id) == (["a"], "a")
+    assert "another scene or fidelity" in told[0].text
+
+
+@pytest.mark.parametrize("damage", ["drop column", "text in a number", "no table"])
+def test_a_damaged_store_is_told_as_damaged(tmp_path, damage):
+    store = tmp_path / "store.sqlite"
+    run(store, job("a"))
+    base = sqlite3.connect(store)
+    if damage == "drop column":
+        base.execute("ALTER TABLE answers DROP COLUMN reason")
+    elif damage == "text in a number":
+        base.execute("UPDATE answers SET wall_s = 'long', tip_size_m = x'00'")
+    else:
+        base.execute("DROP TABLE answers")
+        base.execute("CREATE VIEW answers AS SELECT 1")
+    base.commit()
+    base.close()
+    if damage == "text in a number":
+        assert run(store, job("a"), job("b"))[1] == ["b"]
+        return
+    with pytest.raises(ResultError, match="is damaged") as caught:
+        run(store, job("a"))
+    assert "space" not in str(caught.value)
+
+
+def test_a_full_disk_and_a_busy_store_are_told_apart(tmp_path, monkeypatch):
+    monkeypatch.setattr("fem_impact.jobs.store.PATIENCE", 0.05)
+    store = tmp_path / "store.sqlite"
+    run(store, job("a"))
+    other = sqlite3.connect(store)
+    other.execute("BEGIN EXCLUSIVE")
+    with pytest.raises(OutputPathError, match="Close the program that uses it"):
+        run(store, job("b"))
+    other.close()
+    with Store.open(store) as base, pytest.raises(OutputPathError, match="Free some space"):
+        pages = base._base.execute("PRAGMA page_count").fetchone()[0]
+        base._base.execute(f"PRAGMA max_page_count = {pages}")
+        base.put(job("large"), job_module.Answer("", "x" * 100_000, "", False, 1.0))
 
 
 def test_a_file_that_is_no_store_is_named(tmp_path):
@@ -111,9 +185,9 @@ def test_sources_changed_during_a_run_do_not_sign_its_result(tmp_path, monkeypat
     source.write_text("old")
     monkeypatch.setattr(sources_module, "_sources", lambda: {"kernel.py": source})
 
-    def slow(scene, **rest):
+    def slow(scene, *others):
         source.write_text("new")
-        return simulate(scene, **rest)
+        return simulate(scene, *others)
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", slow)
     source_digest.cache_clear()
@@ -129,15 +203,21 @@ def test_the_digest_covers_what_makes_numbers():
     names = set(sources_module._sources())
     wanted = (
         "solid/yielding_kernel.py",
-        "reduce.py",
-        "markers.py",
-        "modes/eigen.py",
+        "run/solid.py",
+        "run/markers.py",
+        "fem/eigen.py",
         "scene/data/surfaces.toml",
-        "cost/data/summary.json",
+        "plan/data/summary.json",
     )
     assert {f"fem_impact/{name}" for name in wanted} <= names
     assert {"meshes/rod.py", "rigid/experiments/data/sets.toml"} <= names
-    others = ("render/film.py", "cli_run.py", "scale/run.py", "wrap.py", "effects/data/effect-cost.csv")
+    others = (
+        "render/film.py",
+        "commands/run.py",
+        "jobs/run.py",
+        "tables/text.py",
+        "plan/data/effect-cost.csv",
+    )
     assert not {f"fem_impact/{name}" for name in others} & names
     assert stamp(load("t5b")) != stamp(load("t5c"))
 
@@ -145,11 +225,11 @@ def test_the_digest_covers_what_makes_numbers():
 @pytest.mark.parametrize(
     ("file", "moves"),
     [
-        ("fem_impact/cost/data/summary.json", True),
+        ("fem_impact/plan/data/summary.json", True),
         ("fem_impact/scene/data/materials.toml", True),
         ("rigid/massive.py", True),
         ("fem_impact/tables/text.py", False),
-        ("fem_impact/effects/data/effect-cost.csv", False),
+        ("fem_impact/plan/data/effect-cost.csv", False),
     ],
 )
 def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, file, moves):
@@ -164,7 +244,7 @@ def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, f
 def test_the_digest_covers_all_modules_that_a_run_imports():
     """All but those that refuse, write files or show progress."""
     probe = (
-        "import sys\nfrom fem_impact.scene import load\nfrom fem_impact.run.simulate import simulate\n"
+        "import sys\nfrom fem_impact.scene.shipped import load\nfrom fem_impact.run.simulate import simulate\n"
         "import fem_impact.run.solid, fem_impact.solid.run\n"
         "simulate(load('t5b'), 'rigid'), simulate(load('t5b'), 'modal')\n"
         "print(*(name for name in sys.modules if name.startswith('fem_impact.')))"
@@ -173,7 +253,7 @@ def test_the_digest_covers_all_modules_that_a_run_imports():
     known = {name.removesuffix(".py").replace("/", ".") for name in sources_module._sources()}
     known |= {name.removesuffix(".__init__") for name in known} | {"fem_impact.solid"}  # has no __init__
     others = {name.split(".")[1] for name in set(done.stdout.split()) - known}
-    assert others == {"errors", "output", "progress", "run_files", "sources"}
+    assert others == {"arrays", "errors", "files", "options", "progress", "tables"}
 
 
 def test_the_digest_covers_the_libraries(monkeypatch):
