@@ -18,7 +18,7 @@ from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.scene.write import digest, to_dict
-from fem_impact.solid.separation import HORIZON, horizon
+from fem_impact.physics.beam import HORIZON, horizon
 from fem_impact.study.compare import compare, text_table
 from rigid import solve
 
