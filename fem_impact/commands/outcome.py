@@ -20,8 +20,8 @@ _MOTION = (
     ("V_t after", "V_t_m_per_s", "m/s"),
     ("Omega after", "Omega_rad_per_s", "rad/s"),
 )
-_IF_ON = ("damping", "gravity")
-"""Shares that are not mentioned where their effect is off."""
+_IF_ON = ("damping", "contact", "gravity")
+"""Shares that are not mentioned where there are none."""
 
 
 def print_outcome(outcome: Outcome, out: Path) -> None:

@@ -21,7 +21,7 @@ from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import Plan
 from meshes import HexMesh, RodMesh
 
-START_GAP = 2e-6  # m between the lowest point and the barrier at time 0
+HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
 
 
 class Elastic(Protocol):
@@ -127,19 +127,16 @@ def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
 
 
 class MeshedBodies:
-    """The meshed bodies of a plan, their masses and places; each part is made when first asked for, and kept.
+    """The meshed bodies of a plan, their masses and places; each part is made when asked for, and kept."""
 
-    ``gap`` is the height of the rod's lowest point over the barrier at time 0, m; below 0 bodies overlap.
-    """
-
-    def __init__(self, plan: Plan, gap: float = START_GAP) -> None:
-        self.plan, self.scene, self.spec, self.gap = plan, plan.scene, plan.slots, gap
+    def __init__(self, plan: Plan) -> None:
+        self.plan, self.scene, self.spec = plan, plan.scene, plan.slots
 
     @cached_property
     def geometry(self) -> Geometry:
         """Return the meshes."""
         return build_geometry(
-            self.scene, self.plan.zones, self.gap, self.spec.meshed_barrier, self.spec.vibrating
+            self.scene, self.plan.zones, HEIGHT, self.spec.meshed_barrier, self.spec.vibrating
         )
 
     @cached_property
@@ -212,6 +209,11 @@ class MeshedBodies:
             x[body.places] = body.points
         self.drawn.draw_in(self.layout.slices_of(x))
         return x
+
+    def move_rod(self, t: float, n: float) -> None:
+        """Move the rod at time 0 along t and n, m."""
+        self.x[self.rod.places[:, [0, 2]]] += t, n
+        self.geometry.rod_points[:, [0, 2]] += t, n
 
     @cached_property
     def free_nodes(self) -> Ints:

@@ -11,10 +11,22 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import compiled_before
-from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
+from fem_impact.modal.march import (
+    HARDEST,
+    MOST_CONTACTS,
+    NOTHING,
+    PEAK,
+    WORK_G,
+    WORK_T,
+    Bounds,
+    End,
+    Modes,
+    Start,
+    drop,
+)
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.beam import horizon
-from fem_impact.physics.contact import contact_estimate
+from fem_impact.physics.contact import contact_estimate, fall
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
@@ -33,12 +45,14 @@ class ModalResult:
 
     Attributes
     ----------
-    V_n, V_t, Omega : after the last separation, gravity removed, m/s, rad/s
-    E_0, kinetic, friction, plastic, residual : J, of the whole rod; kinetic is the rigid motion's
+    V_n, V_t, Omega : after the last separation, what gravity gave in contact removed, m/s, rad/s
+    E_0, kinetic, friction, plastic, stored, residual : J, of the whole rod; kinetic is the rigid motion's,
+        stored what the contact still holds elastically where the run was cut off
     fallen : what gravity added to these and to the vibration, J
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
+    finished, reason : whether the impact is over, and why the march ended
     step, steps, wall, cpu : s, -, s, s
     """
 
@@ -51,11 +65,13 @@ class ModalResult:
     energies: Array
     friction: float
     plastic: float
+    stored: float
     residual: float
     fallen: float
     contacts: Array
     force: float
     finished: bool
+    reason: str
     step: float
     steps: int
     wall: float
@@ -76,21 +92,22 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     dt = contact_estimate(plan.bodies).duration / STEPS
     dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt
     contacts = np.zeros((MOST_CONTACTS, 4))
-    start = _start(plan, rod)
+    start, modes = _start(plan, rod), Modes(rod.omega, rod.along_t, rod.along_n)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
     bounds = Bounds(dt, horizon(scene), scene.accuracy.max_time, reach(law, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    drop(start, law, rod.omega, rod.along_t, rod.along_n, bounds._replace(horizon=0.0), contacts)
+    drop(start, law, modes, rod.others, bounds._replace(horizon=0.0), contacts)
     wall, cpu = time.perf_counter(), time.process_time()
-    motion, q, rate, works, (peak, force), end, steps, count, over = drop(
-        start, law, rod.omega, rod.along_t, rod.along_n, bounds, contacts
-    )
+    end = drop(start, law, modes, rod.others, bounds, contacts)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    energies = 0.5 * (rate**2 + (rod.omega * q) ** 2)
-    plastic, friction = plastic_work(law, peak), -works[1]
-    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic
-    V_n, V_t = motion[0] - start.g_n * end, motion[1] - start.g_t * end
-    residual, kinetic = E_0 + works[2] - spent, _kinetic(rod, V_n, V_t, motion[2])
+    motion, tally = end.motion.rigid[:3], end.tally
+    energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
+    # the contact gives back what it stores: the normal force by itself, the springs out of friction
+    plastic, friction = plastic_work(law, tally[PEAK]), -tally[WORK_T] - end.held[1]
+    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held)
+    fell = fall(plan.slots.gravity, end.time, contacts[: end.touches, :2])
+    V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
+    kinetic = _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(
         rod=rod,
         V_n=V_n,
@@ -101,15 +118,35 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
         energies=energies,
         friction=friction,
         plastic=plastic,
-        residual=residual,
-        fallen=works[2] + kinetic - _kinetic(rod, *motion),
-        contacts=contacts[:count],
-        force=force,
-        finished=over,
+        stored=sum(end.held),
+        residual=E_0 + tally[WORK_G] - spent,
+        fallen=tally[WORK_G] + kinetic - _kinetic(rod, *motion),
+        contacts=contacts[: end.touches],
+        force=tally[HARDEST],
+        finished=end.over,
+        reason=_reason(rod, end, V_n, bounds),
         step=dt,
-        steps=steps,
+        steps=end.steps,
         wall=wall,
         cpu=cpu,
+    )
+
+
+def _reason(rod: ModalRod, end: End, V_n: float, bounds: Bounds) -> str:
+    """Return why the march ended, as a sentence."""
+    if end.over and V_n > 0:
+        return f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no further contact."
+    if end.over:
+        return (
+            f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no contact; the rod, whose mass "
+            f"centre still comes down at {-V_n:.3g} m/s, strikes again later."
+        )
+    if end.struck == NOTHING:
+        return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
+    when = f"{end.wait * 1e6:.3g} us later" if end.wait else f"at {end.time * 1e6:.4g} us"
+    return (
+        f"The rod's {rod.names[end.struck]} strikes {when}, and the reduced model follows one point of its "
+        "tip: this is the motion before."
     )
 
 

@@ -1,8 +1,8 @@
-"""The compiled march: impulses of the contact between exact flights of the modes.
+"""The compiled march: impulses of the contact between exact flights of the rod and its modes.
 
-Each step kicks with the force at the present place and then flies exactly, so a flight without contact
-is exact for any step. All compiled code of the reduced model stands in this file: the compiler's cache
-looks at one file at a time.
+Each step kicks with the force at the present place and then flies exactly, gravity included, so a flight
+without contact is exact for any step, and the work of a force is the trapezoidal sum of it over its path. All
+compiled code of the reduced model stands in this file: the compiler's cache looks at one file at a time.
 """
 
 from __future__ import annotations
@@ -15,11 +15,17 @@ from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
 
-__all__ = ["MOST_CONTACTS", "Bounds", "Start", "drop"]
+__all__ = ["ALONE", "MOST_CONTACTS", "RIGID", "Bounds", "End", "Modes", "Others", "Start", "drop"]
 
 
 MOST_CONTACTS = 200
 SPRINGS = 100
+LOOK = 8  # steps between looks at the rod's other points
+TILT = 0.5  # of the largest depth: a face has tipped over where an edge is so much lower than its middle
+
+V_N, V_T, SPIN, HEIGHT, ALONG, TURN = range(6)  # of the rigid motion: m/s, m/s, rad/s, m, m, rad
+PEAK, HARDEST, WORK_N, WORK_T, WORK_G = range(5)  # of the tally: m, N, J, J, J
+NOTHING, TIP = -1, -2  # of what strikes
 
 
 class Start(NamedTuple):
@@ -37,6 +43,35 @@ class Start(NamedTuple):
     g_n: float
 
 
+class Modes(NamedTuple):
+    """Modes of the rod: (k,) rad/s and the displacement of the followed point, kg^-1/2."""
+
+    omega: Array
+    along_t: Array
+    along_n: Array
+
+
+class Others(NamedTuple):
+    """Other round edges that may touch: centres from the mass centre at first contact and radii, (m,) m.
+
+    ``along_t``, ``along_n`` (m, k) are their displacements by each mode, kg^-1/2. They strike where they are
+    lower than the barrier; edges of a face that lands ``flat`` touch with it until it tips over.
+    """
+
+    t: Array
+    n: Array
+    radius: Array
+    along_t: Array
+    along_n: Array
+    flat: bool
+
+
+NONE = np.zeros(0)
+RIGID = Modes(NONE, NONE, NONE)
+ALONE = Others(NONE, NONE, NONE, np.zeros((0, 0)), np.zeros((0, 0)), False)
+"""No modes, and no other points."""
+
+
 class Bounds(NamedTuple):
     """Step, free flight that ends an impact, latest time of touch, s; largest contact radius, m."""
 
@@ -44,6 +79,45 @@ class Bounds(NamedTuple):
     horizon: float
     latest: float
     reach: float
+
+
+class ModalState(NamedTuple):
+    """What moves: (6,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
+
+    rigid: Array
+    q: Array
+    rate: Array
+
+
+class Springs(NamedTuple):
+    """Tangential springs of a contact: (SPRINGS,) distances from its centre, widths and shifts, m."""
+
+    place: Array
+    width: Array
+    shift: Array
+
+
+class End(NamedTuple):
+    """The end of a march.
+
+    Attributes
+    ----------
+    motion : then; tally : (5,) largest depth and force, works of normal force, tangential force and gravity
+    held : energy in the contact and in its springs, J, 0 but for a run that was cut off
+    time, steps, touches : s, number of steps, of contacts
+    struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s
+    over : nothing strikes within the horizon
+    """
+
+    motion: ModalState
+    tally: Array
+    held: tuple[float, float]
+    time: float
+    steps: int
+    touches: int
+    struck: int
+    wait: float
+    over: bool
 
 
 @inlined
@@ -80,15 +154,14 @@ def press(depth: float, peak: float, law: ContactLaw) -> tuple[float, float]:
 
 
 @inlined
-def grip(
-    shift: Array, place: Array, width: Array, moved: float, F: float, a: float, law: ContactLaw
-) -> float:
+def grip(springs: Springs, moved: float, F: float, a: float, law: ContactLaw) -> float:
     """Move the contact's tangential springs by ``moved``, m, and return their force, N.
 
-    A row of springs at distances ``place``, m, each bound to its share f q(x) of Coulomb's limit, maps the
-    Cattaneo-Mindlin contact of round bodies with its history exactly (Popov & Hess 2015,
-    doi:10.1007/978-3-642-53876-6); springs beyond the contact radius ``a`` are free of force.
+    A row of springs, each bound to its share f q(x) of Coulomb's limit, maps the Cattaneo-Mindlin contact of
+    round bodies with its history exactly (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6); springs beyond
+    the contact radius ``a`` are free of force.
     """
+    place, width, shift = springs
     stiffness, total = 0.5 * law.shear, 0.0
     load = law.friction * 0.75 * F / (a * stiffness)
     for i in range(len(place)):
@@ -101,11 +174,20 @@ def grip(
 
 
 @inlined
-def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, largest: float) -> int:
-    """Enter an impulse into the intervals of contact; return their number."""
+def stored(depth: float, peak: float, F: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
+    """Return the energies, J, that the contact holds: Hertz' above the crater, and that of its springs."""
+    total = 0.0
+    for i in range(len(springs.shift)):
+        total += springs.width[i] * springs.shift[i] ** 2
+    return 0.4 * F * (depth - crater(peak, law)[1]), 0.25 * law.shear * total
+
+
+@inlined
+def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, largest: float, gap: float) -> int:
+    """Enter an impulse into the intervals of contact, joined over a ``gap``, s; return their number."""
     if p_n <= FAINT * largest:
         return count
-    if (count == 0 or time - contacts[count - 1, 1] > MERGE_GAP) and count < MOST_CONTACTS:
+    if (count == 0 or time - contacts[count - 1, 1] > gap) and count < MOST_CONTACTS:
         contacts[count, 0] = time
         count += 1
     contacts[count - 1, 1] = time
@@ -114,83 +196,173 @@ def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, large
     return count
 
 
-@allocating_kernel
-def drop(
+@inlined
+def reach_to(
+    now: ModalState, t: float, n: float, along_t: Array, along_n: Array
+) -> tuple[float, float, float, float]:
+    """Return cosine and sine of the rod's turn, and the arm (t, n), m, from its mass centre to a point."""
+    c, s = np.cos(now.rigid[TURN]), np.sin(now.rigid[TURN])
+    for i in range(len(now.q)):
+        t += along_t[i] * now.q[i]
+        n += along_n[i] * now.q[i]
+    return c, s, c * t + s * n, c * n - s * t
+
+
+@inlined
+def strikes(now: ModalState, others: Others, depth: float, peak: float) -> int:
+    """Return the place of a point that strikes beside the followed one, ``depth`` m deep, or `NOTHING`."""
+    low = min(0.0, -depth - TILT * max(depth, peak)) if others.flat else 0.0
+    for i in range(len(others.t)):
+        arm_n = reach_to(now, others.t[i], others.n[i], others.along_t[i], others.along_n[i])[3]
+        if now.rigid[HEIGHT] + arm_n - others.radius[i] < low:
+            return i
+    return NOTHING
+
+
+@inlined
+def fly(
+    now: ModalState, omega: Array, turns: tuple[Array, Array], dt: float, g_t: float, g_n: float
+) -> float:
+    """Move on by a step of free flight; return the work of gravity, J/kg."""
+    (rigid, q, rate), (cosine, sine) = now, turns
+    lift = g_n * (rigid[V_N] + 0.5 * dt * g_n) + g_t * (rigid[V_T] + 0.5 * dt * g_t)
+    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n)
+    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t)
+    rigid[TURN] += dt * rigid[SPIN]
+    rigid[V_N] += dt * g_n
+    rigid[V_T] += dt * g_t
+    for i in range(len(q)):
+        a, b = q[i], rate[i]
+        q[i] = cosine[i] * a + sine[i] * b / omega[i]
+        rate[i] = cosine[i] * b - sine[i] * omega[i] * a
+    return float(dt * lift)
+
+
+@inlined
+def push(
+    now: ModalState,
+    start: Start,
+    modes: Modes,
+    arm: tuple[float, float, float, float],
+    p_n: float,
+    p_t: float,
+    tally: Array,
+) -> None:
+    """Change the motion by an impulse at the followed point, N s, and book its work."""
+    (c, s, arm_t, arm_n), (rigid, _, rate) = arm, now
+    w_n, w_t = rigid[V_N] - rigid[SPIN] * arm_t, rigid[V_T] + rigid[SPIN] * arm_n
+    rigid[V_N] += p_n / start.mass
+    rigid[V_T] += p_t / start.mass
+    rigid[SPIN] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
+    w_n += rigid[V_N] - rigid[SPIN] * arm_t
+    w_t += rigid[V_T] + rigid[SPIN] * arm_n
+    for i in range(len(rate)):
+        on_n = c * modes.along_n[i] - s * modes.along_t[i]
+        on_t = c * modes.along_t[i] + s * modes.along_n[i]
+        gained = on_n * p_n + on_t * p_t
+        w_n += on_n * (2 * rate[i] + gained)
+        w_t += on_t * (2 * rate[i] + gained)
+        rate[i] += gained
+    tally[WORK_N] += 0.5 * p_n * w_n
+    tally[WORK_T] += 0.5 * p_t * w_t
+
+
+@inlined
+def ahead(
+    now: ModalState,
+    start: Start,
+    modes: Modes,
+    others: Others,
+    turns: tuple[Array, Array],
+    bounds: Bounds,
+    law: ContactLaw,
+    peak: float,
+) -> tuple[int, int]:
+    """Fly on until something strikes or to the horizon; return the steps and what strikes.
+
+    Gravity has no part in that: a rod that falls back strikes anew.
+    """
+    steps, residual = 0, crater(peak, law)[1]
+    while steps * bounds.step < bounds.horizon:
+        fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
+        steps += 1
+        arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)[3]
+        depth = start.radius - now.rigid[HEIGHT] - arm_n
+        if depth > residual:
+            return steps, TIP
+        if steps % LOOK == 0:
+            struck = strikes(now, others, depth, peak)
+            if struck != NOTHING:
+                return steps, struck
+    return steps, NOTHING
+
+
+@inlined
+def touch(
+    now: ModalState,
     start: Start,
     law: ContactLaw,
-    omega: Array,
-    along_t: Array,
-    along_n: Array,
-    bounds: Bounds,
-    contacts: Array,
-) -> tuple[
-    tuple[float, float, float],
-    Array,
-    Array,
-    tuple[float, float, float],
-    tuple[float, float],
-    float,
-    int,
-    int,
-    bool,
-]:
-    """Follow a rod from first contact until the free flight ahead has none.
+    modes: Modes,
+    springs: Springs,
+    arm: tuple[float, float, float, float],
+    force: tuple[float, float],
+    moved: float,
+    span: float,
+    tally: Array,
+) -> tuple[float, float]:
+    """Push the rod by its contact of normal force, N, and radius, m, for a ``span``, s; return impulses, N s.
 
-    Parameters
-    ----------
-    start : Start; law : ContactLaw; bounds : Bounds
-    omega, along_t, along_n : (k,) of `ModalRod`
-    contacts : (MOST_CONTACTS, 4) zeros; filled with start, end, s, and impulses along n and t, N s
-
-    Returns
-    -------
-    motion : V_n, V_t, Omega at the end; q, rate : (k,) modal amplitudes and their rates, sqrt(kg) m
-    works : of normal force, tangential force and gravity on the rod, J
-    most : largest depth, m, and force, N
-    time, steps, count of contacts, whether it is over
+    The contact has ``moved`` along t, m, since its springs were last loaded.
     """
-    dt, k = bounds.step, len(omega)
-    cosine, sine = np.cos(omega * dt), np.sin(omega * dt)
-    q, rate = np.zeros(k), np.zeros(k)
-    V_n, V_t, spin, turn = start.v_n, start.v_t, start.omega, 0.0
-    height, along, before = start.radius - start.centre_n, 0.0, start.centre_t
-    peak, hardest, W_n, W_t, W_g = 0.0, 0.0, 0.0, 0.0, 0.0
+    p_n, p_t = span * force[0], -span * grip(springs, moved, force[0], force[1], law)
+    push(now, start, modes, arm, p_n, p_t, tally)
+    tally[HARDEST] = max(tally[HARDEST], force[0])
+    return p_n, p_t
+
+
+@allocating_kernel
+def drop(start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array) -> End:
+    """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
+
+    ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.
+    """
+    dt, k, tally = bounds.step, len(modes.omega), np.zeros(5)
+    turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
+    rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0])
+    now = ModalState(rigid, np.zeros(k), np.zeros(k))
     # even steps of area: slip begins at the rim, where the springs then lie closer together
     edge = bounds.reach * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
-    place, width, shift = 0.5 * (edge[1:] + edge[:-1]), 2 * np.diff(edge), np.zeros(SPRINGS)
-    time, last, steps, count = 0.0, 0.0, 0, 0
+    springs = Springs(0.5 * (edge[1:] + edge[:-1]), 2 * np.diff(edge), np.zeros(SPRINGS))
+    gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), start.centre_t, False, 0.0
+    time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
+    depth, force = 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
-        c, s = np.cos(turn), np.sin(turn)
-        bent_t, bent_n = start.centre_t + along_t @ q, start.centre_n + along_n @ q
-        arm_t, arm_n = c * bent_t + s * bent_n, c * bent_n - s * bent_t - start.radius
-        depth, place_t = -(height + arm_n), along + arm_t - start.radius * turn
-        F, a = press(depth, peak, law)
-        if F > 0.0:
-            if time > bounds.latest:
-                break
-            on_n, on_t = c * along_n - s * along_t, c * along_t + s * along_n
-            w_n, w_t = V_n - spin * arm_t + on_n @ rate, V_t + spin * arm_n + on_t @ rate
-            p_n, p_t = dt * F, -dt * grip(shift, place, width, place_t - before, F, a, law)
-            V_n += p_n / start.mass
-            V_t += p_t / start.mass
-            spin += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
-            rate += on_n * p_n + on_t * p_t
-            W_n += 0.5 * p_n * (w_n + V_n - spin * arm_t + on_n @ rate)
-            W_t += 0.5 * p_t * (w_t + V_t + spin * arm_n + on_t @ rate)
-            peak, hardest, last = max(peak, depth), max(hardest, F), time
-            count = book(contacts, count, time, p_n, p_t, dt * hardest)
+        c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
+        depth, place = start.radius - rigid[HEIGHT] - arm_n, rigid[ALONG] + arm_t - start.radius * rigid[TURN]
+        force = press(depth, tally[PEAK], law)
+        struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
+        late = force[0] > 0.0 and time > bounds.latest
+        if force[0] > 0.0:
+            span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
+            arm = (c, s, arm_t, arm_n - start.radius)
+            p_n, p_t = touch(now, start, law, modes, springs, arm, force, place - before, span, tally)
+            count = book(contacts, count, time, p_n, p_t, dt * tally[HARDEST], gap)
+            tally[PEAK], last = max(tally[PEAK], depth), time
         else:
-            shift[:] = 0.0
-        before = place_t
-        lift = start.g_n * (V_n + 0.5 * dt * start.g_n) + start.g_t * (V_t + 0.5 * dt * start.g_t)
-        W_g += start.mass * dt * lift
-        V_n += dt * start.g_n
-        V_t += dt * start.g_t
-        height += dt * V_n
-        along += dt * V_t
-        turn += dt * spin
-        q, rate = cosine * q + sine * rate / omega, cosine * rate - sine * omega * q
+            springs.shift[:] = 0.0
+        if late or struck != NOTHING:
+            break
+        if pressed and force[0] == 0.0:
+            flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
+            flown, struck = ahead(flight, start, modes, others, turns, bounds, law, tally[PEAK])
+            steps += flown
+            if struck != TIP:
+                wait = flown * dt
+                break
+        pressed, before = force[0] > 0.0, place
+        tally[WORK_G] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
         time += dt
         steps += 1
-    over = time - last >= bounds.horizon
-    return (V_n, V_t, spin), q, rate, (W_n, W_t, W_g), (peak, hardest), time, steps, count, over
+    held = stored(depth, tally[PEAK], force[0], springs, law)
+    over = struck in (NOTHING, TIP) and not late
+    return End(now, tally, held, time, steps, count, struck, wait, over)

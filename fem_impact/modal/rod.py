@@ -10,6 +10,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.body import MeshedBodies
+from fem_impact.modal.march import Others
 from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
 from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import ACCURACY
@@ -33,6 +34,7 @@ class ModalRod:
     radius : of the tip's meridian, m
     omega : (k,) rad/s
     along_t, along_n : (k,) kg^-1/2, displacement of the contact point by each mode of the whole rod
+    others : what else of the rod may touch, and ``names`` for it
     """
 
     mass: float
@@ -43,6 +45,8 @@ class ModalRod:
     omega: Array
     along_t: Array
     along_n: Array
+    others: Others
+    names: tuple[str, ...]
 
 
 def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
@@ -50,22 +54,56 @@ def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
     body, alpha = projectile(scene), scene.impact.angle
     d_c, d_d = arms(scene)
     radius = principal_radii(scene)[0]
-    omega, x, z = _touch(scene) if vibrating else np.zeros((3, 0))
-    along_t, along_n = cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
-    return ModalRod(body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t, along_n)
+    edges = _other_edges(scene)
+    places = np.array([touch_point(scene), *((x, z) for _, x, z, _ in edges)])
+    omega, moved = _moved(scene, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
+    along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
+    flat = alpha == 0 and body.nose.face > 0
+    t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
+    others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:], flat)
+    names = tuple(edge[0] for edge in edges)
+    return ModalRod(
+        body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t[0], along_n[0], others, names
+    )
 
 
-def _touch(scene: Scene) -> tuple[Array, Array, Array]:
-    """Return omega and the displacements (x, z) of the contact point in the rod frame, kg^-1/2."""
+def _turned(alpha: float, x: Array, z: Array) -> tuple[Array, Array]:
+    """Return (t, n) of vectors (x, z) in the rod frame."""
+    return cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
+
+
+def _other_edges(scene: Scene) -> list[tuple[str, float, float, float]]:
+    """Return name, centre (x, z) in the rod frame, m, and radius, m, of each round edge that is not followed.
+
+    In the plane of motion the rod is the hull of the arcs of its tip, the shoulders of its cone and its tail.
+    """
+    body, alpha = projectile(scene), scene.impact.angle
+    nose, R = body.nose, body.diameter / 2
+    on_shoulder = nose.has_cone and alpha > nose.sweep
+    on_arc = not on_shoulder and (alpha > 0 or nose.face == 0)
+    shoulders = [x for x in (-R, R) if nose.has_cone and not (on_shoulder and x > 0)]
+    arcs = {-nose.face, nose.face} - ({nose.face} if on_arc else set())
+    return [
+        *(("tail", x, body.length, 0.0) for x in (-R, R)),
+        *(("shoulder", x, nose.z_side, 0.0) for x in shoulders),
+        *(("other edge", x, nose.r, nose.r) for x in sorted(arcs)),
+    ]
+
+
+def _moved(scene: Scene, places: Array) -> tuple[Array, Array]:
+    """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
     points, shape, omega = _modes(_elastic(scene.projectile), scene.accuracy.across)
-    rho, z = touch_point(scene)
-    from_touch = points - np.array([rho, 0.0, z])
-    near = np.linalg.norm(from_touch, axis=1) < AROUND * scene.projectile.diameter
-    affine = np.column_stack([np.ones(near.sum()), from_touch[near][:, [0, 2]]])
-    at_touch = np.linalg.pinv(affine)[0]
     kept = omega < section_frequency(scene)
-    x, _, z = np.einsum("n,ncm->cm", at_touch, shape[near][:, :, kept])
-    return omega[kept], x, z
+    return omega[kept], np.array([_moved_place(scene, points, shape[:, :, kept], *place) for place in places])
+
+
+def _moved_place(scene: Scene, points: Array, shape: Array, x: float, z: float) -> Array:
+    """Return what modes (n, 3, k) with nodes at points (n, 3) move a place of the rod by, (2, k)."""
+    away = points - np.array([x, 0.0, z])
+    near = np.linalg.norm(away, axis=1) < AROUND * scene.projectile.diameter
+    affine = np.column_stack([np.ones(near.sum()), away[near][:, [0, 2]]])
+    moved = np.einsum("n,ncm->cm", np.linalg.pinv(affine)[0], shape[near])
+    return np.asarray(moved[[0, 2]])
 
 
 def _elastic(rod: ProjectileSpec) -> ProjectileSpec:

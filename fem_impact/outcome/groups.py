@@ -219,6 +219,12 @@ class Energy:
         True,
     )
     damping: Num = key("W_damping_over_E_0", "-", "Work of material damping" + SHARE, True)
+    contact: Num = key(
+        "E_contact_over_E_0",
+        "-",
+        "Elastic energy that a contact still held when the run was cut off" + SHARE,
+        True,
+    )
     gravity: Num = key(
         "W_gravity_over_E_0",
         "-",

@@ -56,6 +56,7 @@ SHARES = (
     _share("W_radiated", "radiated", "yellow"),
     _share("W_closing", "contact closing", "grey", "comparison"),
     _share("W_damping", "damping", "sand", "comparison"),
+    _share("E_contact", "held by the contact", "grey", "comparison", "figure"),
     _share("W_gravity", "gravity", "grey", "comparison", "figure"),
 )
 """Every share, in the order of tables and figures; what gravity adds is no part of E_0 and no area."""

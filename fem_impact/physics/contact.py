@@ -16,6 +16,7 @@ from math import inf, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from fem_impact.arrays import Array
     from fem_impact.scene.types import Material, Scene
     from rigid import Projectile
 
@@ -104,6 +105,18 @@ def approach(scene: Scene) -> float:
 def sliding(scene: Scene) -> float:
     """Return the velocity, m/s, of the contact point up the slope before the impact, spin included."""
     return scene.impact.v_t - arms(scene)[1] * scene.impact.omega
+
+
+def fall(gravity: float | None, time: float, intervals: Array) -> float:
+    """Return the speed, m/s, that gravity, m/s2, gave the rod while it touched and after that.
+
+    Parameters
+    ----------
+    time : s since first contact at which the rod's motion is taken
+    intervals : (k, 2) start and end of each contact, s; what it fell in flights between them stays with it
+    """
+    between = (intervals[1:, 0] - intervals[:-1, 1]).sum()
+    return float((gravity or 0.0) * (time - between))
 
 
 def shear_speed(scene: Scene) -> float:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from math import cos
 from typing import TYPE_CHECKING
 
 import rigid
+from fem_impact.arrays import Array
 from fem_impact.outcome.groups import (
     ArmCoefficients,
     EffectChoice,
@@ -17,7 +19,7 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import installed_versions, utc_now
-from fem_impact.physics.contact import ContactBodies, arms, projectile
+from fem_impact.physics.contact import ContactBodies, approach, arms, fall, projectile
 from fem_impact.physics.contact_law import softer
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.plan.plan import Plan
@@ -27,12 +29,24 @@ from rigid.experiments import measured_set
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = ["heat", "motion", "plastic_shares", "provenance", "restitution", "validity"]
+__all__ = [
+    "gravity_warning",
+    "heat",
+    "motion",
+    "open_ledger",
+    "plastic_shares",
+    "provenance",
+    "restitution",
+    "too_slow",
+    "validity",
+]
 
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
+RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
+GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 ROUND_OFF = 1e-9  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
@@ -78,6 +92,42 @@ def validity(
         achieved_wall=NO_TARGET,
         mesh_limit=Unknown(meshes),
         mesh_band=Unknown(meshes),
+    )
+
+
+def open_ledger(share: float) -> str:
+    """Return why a run whose ledger misses a share of E_0 failed, nothing where it closes."""
+    if abs(share) <= RESIDUAL_LIMIT:
+        return ""
+    limit = f"more than {RESIDUAL_LIMIT:g}: do not use this run."
+    return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
+
+
+def gravity_warning(plan: Plan, intervals: Array) -> list[str]:
+    """Warn where gravity acts on the rod for so long while it touches that the result moves."""
+    speed, share = _borne(plan, intervals)
+    if not GRAVITY_TOLD < share <= GRAVITY_RULES:
+        return []
+    why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
+    return [f"{_gained(speed, share)}. {why}"]
+
+
+def too_slow(plan: Plan, intervals: Array) -> str:
+    """Return why an impact in which gravity rules failed, nothing where it does not."""
+    speed, share = _borne(plan, intervals)
+    remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
+    return f"{_gained(speed, share)}: {remedy}" if share > GRAVITY_RULES else ""
+
+
+def _borne(plan: Plan, intervals: Array) -> tuple[float, float]:
+    """Return the speed, m/s, that gravity gives the rod in contact, and its normal part over the approach."""
+    speed = fall(plan.slots.gravity, intervals[-1, 1], intervals)
+    return speed, speed * cos(plan.scene.impact.angle) / approach(plan.scene)
+
+
+def _gained(speed: float, share: float) -> str:
+    return (
+        f"Gravity gives the rod {speed * 1e3:.3g} mm/s while it touches, {100 * share:.2g} % of its approach"
     )
 
 

@@ -7,12 +7,21 @@ from functools import cache
 from typing import Any
 
 from fem_impact.modal.impact import ModalResult
-from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
-from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, Restitution, RunCost
+from fem_impact.outcome.keys import Unknown, or_none, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.plan.measured import summary
 from fem_impact.plan.plan import Plan
-from fem_impact.run.common import motion, plastic_shares, provenance, restitution, validity
+from fem_impact.run.common import (
+    gravity_warning,
+    motion,
+    open_ledger,
+    plastic_shares,
+    provenance,
+    restitution,
+    too_slow,
+    validity,
+)
 from fem_impact.scene.types import Scene
 
 __all__ = ["ASSUMPTIONS", "beside_solid", "reduce"]
@@ -27,20 +36,22 @@ KEPT = Unknown("the modes of a rod are computed once and kept")
 
 def reduce(plan: Plan, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
-    rod, scene = result.rod, plan.scene
+    rod, scene, contacts = result.rod, plan.scene, result.contacts[:, :2]
     moved = motion(plan, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
+    coefficients = restitution(scene, moved)
+    failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
     return Outcome(
         provenance=provenance(plan, CHOICES, WITHOUT),
         validity=validity(
             plan,
-            result.finished,
-            _end(result),
+            result.finished and not failed,
+            failed or result.reason,
             "the reduced model has no second mesh",
             (*ASSUMPTIONS, *beside_solid(scene)),
-            [] if result.finished else ["The impact was not over at max_time."],
+            [*_doubts(coefficients), *gravity_warning(plan, contacts)],
         ),
         motion=moved,
-        restitution=restitution(scene, moved),
+        restitution=coefficients,
         energy=_energy(plan, result),
         contact=_contact(result),
         heat=unknown(Heat, "heat is followed on the finite elements only"),
@@ -48,10 +59,15 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     )
 
 
-def _end(result: ModalResult) -> str:
-    if result.finished:
-        return "The free flight ahead has no further contact."
-    return "Reached max_time before the last separation."
+def _doubts(coefficients: Restitution) -> list[str]:
+    """Say why the restitution is negative, where it is."""
+    e = or_none(coefficients.edge.e)
+    if e is None or e >= 0:
+        return []
+    return [
+        f"e = {e:.3g} is below 0: the rod turns so fast that its tip lifts off by turning, while its contact "
+        "point, with the arms at first contact, still approaches."
+    ]
 
 
 def _energy(plan: Plan, result: ModalResult) -> Energy:
@@ -74,6 +90,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         radiated=Unknown("a local contact law sends no waves into the barrier"),
         closing=Unknown("no contact nodes close"),
         damping=Unknown("the reduced model has no material damping"),
+        contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
         gravity=result.fallen / E_0 if plan.slots.gravity else Unknown("the gravity effect is off"),
         residual=result.residual / E_0,
     )

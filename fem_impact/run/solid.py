@@ -20,15 +20,24 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import flash, halves
-from fem_impact.run.common import heat, motion, provenance, restitution, validity
+from fem_impact.run.common import (
+    gravity_warning,
+    heat,
+    motion,
+    open_ledger,
+    provenance,
+    restitution,
+    too_slow,
+    validity,
+)
 from fem_impact.run.markers import replay
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
 
 
-RESIDUAL_LIMIT = 1e-4  # of E_0: above it the run failed
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
 ONE_MESH = "one mesh alone has no limit and no band: run the study, or a second tip size"
@@ -65,13 +74,14 @@ def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
 
 
 def _validity(result: SolidResult) -> Validity:
-    open_ledger = _open_ledger(result)
+    plan, contacts = result.plan, result.model.book.table[:, :2]
+    failed = open_ledger(result.worst / result.E_0) or too_slow(plan, contacts)
     return validity(
-        result.plan,
-        result.finished and not open_ledger,
-        open_ledger or result.reason,
+        plan,
+        result.finished and not failed,
+        failed or result.reason,
         ONE_MESH,
-        warnings=[*_doubts(result), *result.plan.warnings],
+        warnings=[*_doubts(result), *gravity_warning(plan, contacts), *plan.warnings],
     )
 
 
@@ -103,18 +113,11 @@ def _unresolved(result: SolidResult) -> list[str]:
     ]
 
 
-def _open_ledger(result: SolidResult) -> str:
-    share = result.worst / result.E_0
-    if share <= RESIDUAL_LIMIT:
-        return ""
-    return f"The energy ledger misses {share:.1e} of E_0, more than {RESIDUAL_LIMIT:g}: do not use this run."
-
-
 def _motion(result: SolidResult) -> RodMotion:
-    """Return velocities before and after; gravity's share of the fall since time 0 is taken out."""
-    plan, m = result.plan, result.motion
-    alpha, fall = plan.scene.impact.angle, (plan.slots.gravity or 0.0) * result.time
-    V_n, V_t = m.V_n + fall * np.cos(alpha), m.V_t + fall * np.sin(alpha)
+    """Return velocities before and after; what gravity gave the rod in contact and after it is taken out."""
+    plan, m, alpha = result.plan, result.motion, result.plan.scene.impact.angle
+    fallen = fall(plan.slots.gravity, result.time, result.model.book.table[:, :2])
+    V_n, V_t = m.V_n + fallen * np.cos(alpha), m.V_t + fallen * np.sin(alpha)
     return motion(plan, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
 
 
@@ -145,6 +148,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         radiated=share(a["radiated"]),
         closing=share(a["closing"]),
         damping=_if_on("material-damping", result, share(a["damping"])),
+        contact=Unknown("what a contact holds is strain energy of the meshed bodies"),
         gravity=_if_on("gravity", result, share(kept - result.motion.kinetic - a["gravity"])),
         residual=share(a["residual"]),
     )

@@ -14,7 +14,6 @@ import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.body import (
-    START_GAP,
     MeshedBodies,
     MeshedBody,
     slices_of,
@@ -25,6 +24,7 @@ from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sparse import Hanging, NodeProduct, tie_operator
 from fem_impact.fem.stable import stable_step
+from fem_impact.physics.contact import approach, sliding
 from fem_impact.physics.hardening import Hardening
 from fem_impact.plan.plan import Plan
 from fem_impact.solid.contact.patch import STEEP, make_patch
@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
 
 
+START_GAP = 1e-10  # m: the first step touches, so that neither gravity nor spin has time before
 PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 
@@ -128,7 +129,17 @@ class Builder:
     """The parts of a plan's model; each is made when it is first asked for, from others, and kept."""
 
     def __init__(self, plan: Plan, gap: float) -> None:
-        self.scene, self.spec, self.meshed = plan.scene, plan.slots, MeshedBodies(plan, gap)
+        self.scene, self.spec, self.meshed = plan.scene, plan.slots, MeshedBodies(plan)
+        self.meshed.move_rod(*self.way_to(gap))
+
+    def way_to(self, gap: float) -> tuple[float, float]:
+        """Return how far along t and n, m, the rod flies, not turning, until the skins are a ``gap`` apart.
+
+        One that comes down so flat that it would slide by more than a cell meanwhile slides by one.
+        """
+        height, h = self.contact.clearance(self.meshed.x) - gap, self.meshed.geometry.tip_size
+        slid = sliding(self.scene) * height / approach(self.scene)
+        return min(max(slid, -h), h), -height
 
     @cached_property
     def v(self) -> Array:
@@ -270,7 +281,7 @@ class Builder:
 def build(plan: Plan, gap: float = START_GAP) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
 
-    ``gap`` is the height of the lowest point over the barrier at time 0, m; below 0 bodies overlap.
+    ``gap`` is the least height of the rod's skin over the barrier's at time 0, m; below 0 bodies overlap.
 
     Raises
     ------

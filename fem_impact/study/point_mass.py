@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
+from fem_impact.modal.march import ALONE, MOST_CONTACTS, RIGID, Bounds, Start, drop
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.reference.oblique import ObliqueRod
 
@@ -23,8 +23,8 @@ def contact_time(law: ContactLaw, mass: float, speed: float) -> float:
     """Return the contact time, s, of a rigid mass, kg, that falls along the normal with a speed, m/s."""
     start = Start(mass, 1.0, 0.0, 0.0, 0.0, 0.0, -speed, 0.0, 0.0, 0.0)
     bounds = Bounds(STEP, FREE, LATEST, reach(law, 0.5 * mass * speed**2))
-    none, contacts = np.zeros(0), np.zeros((MOST_CONTACTS, 4))
-    drop(start, law, none, none, none, bounds, contacts)
+    contacts = np.zeros((MOST_CONTACTS, 4))
+    drop(start, law, RIGID, ALONE, bounds, contacts)
     return float(contacts[0, 1] - contacts[0, 0])
 
 

@@ -31,7 +31,7 @@ from fem_impact.jobs.store import Store
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.scene.write import to_dict, to_toml
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.state import State
 from fem_impact.tables.csv import read_table

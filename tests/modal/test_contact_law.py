@@ -7,7 +7,18 @@ import numpy as np
 import pytest
 
 from fem_impact.modal.impact import plastic_work, reach
-from fem_impact.modal.march import MOST_CONTACTS, Bounds, Start, drop
+from fem_impact.modal.march import (
+    ALONE,
+    HARDEST,
+    MOST_CONTACTS,
+    PEAK,
+    RIGID,
+    WORK_N,
+    WORK_T,
+    Bounds,
+    Start,
+    drop,
+)
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
 from fem_impact.scene.shipped import load
@@ -16,7 +27,6 @@ NU, R = 0.29, 9.5e-3
 MASS = 4 / 3 * pi * R**3 * 7850
 E_STAR = 210e9 / 2 / (1 - NU**2)
 HERTZ = 4 / 3 * E_STAR * sqrt(R)
-NONE = np.zeros(0)
 
 
 def law(f=0.0, limit=inf):
@@ -30,9 +40,10 @@ def strike(contact, v_n, v_t=0.0, omega=0.0, steps=1000):
     start = Start(MASS, 0.4 * R**2, 0.0, 0.0, R, v_t, -v_n, omega, 0.0, 0.0)
     contacts = np.zeros((MOST_CONTACTS, 4))
     bounds = Bounds(60e-6 / v_n**0.2 / steps, 1e-4, 1e-3, reach(contact, 0.5 * MASS * v_n**2))
-    motion, _, _, works, most, _, _, count, over = drop(start, contact, NONE, NONE, NONE, bounds, contacts)
-    assert over
-    return motion, works, most, contacts[:count]
+    end = drop(start, contact, RIGID, ALONE, bounds, contacts)
+    assert end.over
+    works, most = end.tally[[WORK_N, WORK_T]], end.tally[[PEAK, HARDEST]]
+    return end.motion.rigid[:3], works, most, contacts[: end.touches]
 
 
 @pytest.mark.parametrize(("v", "force", "duration"), [(1.0, 1575.7, 65.82e-6), (4.0, 8317.0, 49.89e-6)])

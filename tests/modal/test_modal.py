@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 import fem_impact.modal.impact as impact
 from fem_impact.modal.impact import solve
+from fem_impact.modal.march import ALONE
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.contact import contact_modulus, projectile
 from fem_impact.reference.hertz import SpringRow, tangential_ratio
@@ -178,9 +179,8 @@ def test_energy_and_momentum(v_n, v_t, omega, f, frequency, along, plastic):
     if plastic:
         scene = replace(scene, effects=("vibration", "friction", "barrier-elastoplastic"))
     scene = replace(scene, impact=replace(scene.impact, v_n=-v_n, v_t=-v_t, omega=omega))
-    base = ModalRod(
-        0.178, 5.6e-4, -0.022, -0.032, 3e-3, *map(np.array, ([frequency], [along[0]], [along[1]]))
-    )
+    modes = map(np.array, ([frequency], [along[0]], [along[1]]))
+    base = ModalRod(0.178, 5.6e-4, -0.022, -0.032, 3e-3, *modes, ALONE, ())
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(impact, "modal_rod", lambda _: base)
         found = solve(scene)

@@ -12,7 +12,6 @@ from outcome_maker import outcome
 import fem_impact.run.simulate
 from fem_impact.errors import RunError
 from fem_impact.jobs.job import Job, compute
-from fem_impact.options import RunOptions
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 

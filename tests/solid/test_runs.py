@@ -8,7 +8,6 @@ import pytest
 import solid_scenes as scenes
 
 from fem_impact.fem import body
-from fem_impact.fem.body import START_GAP
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
@@ -200,16 +199,12 @@ def test_spin_before_the_impact_enters_with_its_sign():
 )
 def test_first_contact_comes_at_gap_over_speed(barrier, angle):
     """The lowest point lies on the symmetry plane: a search that drops those nodes comes late."""
-    model = scenes.model("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=0.0, angle=angle)
+    gap = 2e-6
+    stated = scenes.scene("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=0.0, angle=angle)
+    model = build(plan(stated), gap)
     state = model.initial_state()
-    lowest = np.argmin(model.geometry.rod_points[:, 2])
-    assert model.geometry.rod_points[lowest, 1] == 0.0
-    gap = model.geometry.rod_points[lowest, 2]
-    if barrier == "barrier-elastoplastic":  # its nodes lie up to half a cell beside the lowest point
-        gap = model.contact.clearance(state.x)
-        assert START_GAP <= gap < START_GAP + (model.geometry.tip_size / 2) ** 2 / (2 * 3e-3)
-    else:
-        assert gap == pytest.approx(START_GAP, rel=1e-9)
+    assert model.geometry.rod_points[np.argmin(model.geometry.rod_points[:, 2]), 1] == 0.0
+    assert model.contact.clearance(state.x) == pytest.approx(gap, rel=1e-6)
     while not model.book.intervals:
         evaluate(model, state)
         advance(model, state)

@@ -55,6 +55,10 @@ class PlaneContact:
         )
         self.book.close_step(state.time)
 
+    def clearance(self, x: Array) -> float:
+        """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
+        return float(x[self.nodes[:, 2]].min())
+
     def energies(self, state: State) -> tuple[float, ...]:
         """Return friction heat and closing loss."""
         return self.book.friction, self.book.closing

@@ -1,0 +1,157 @@
+"""Where the reduced model ends or refuses a run: its ledger, gravity, other points of the rod."""
+
+from dataclasses import replace
+from math import cos, radians, sin
+
+import numpy as np
+import pytest
+
+from fem_impact.modal.impact import solve
+from fem_impact.modal.rod import modal_rod
+from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan
+from fem_impact.run.modal import reduce
+from fem_impact.scene.shipped import load, replace_all
+
+SLOW = {"impact.v_n": "-30 mm/s", "impact.v_t": "-10 mm/s", "accuracy.max_time": "50 ms"}
+
+
+def result_of(scene):
+    return solve(plan(scene, "modal"))
+
+
+def outcome_of(scene):
+    return reduce(plan(scene, "modal"), result_of(scene))
+
+
+def slow(*effects, **changes):
+    """Return the 0.08 m rod at 32 mm/s."""
+    return replace(replace_all(load("t5b"), SLOW | changes), effects=("vibration", "friction", *effects))
+
+
+@pytest.mark.parametrize("barrier", ["barrier-elastic", "barrier-elastoplastic"])
+def test_the_ledger_closes_with_gravity(barrier):
+    """Flight in gravity was half a step's gain of speed too fast, which is much of a slow rod's speed."""
+    result = result_of(slow(barrier, "gravity"))
+    assert result.finished
+    assert abs(result.residual) < 5e-6 * result.E_0
+
+
+@pytest.mark.parametrize("time", [30e-6, 80e-6, 150e-6])
+def test_a_contact_that_is_cut_off_holds_energy_in_an_account_of_its_own(time):
+    scene = load("t5b")
+    outcome = outcome_of(replace(scene, accuracy=replace(scene.accuracy, max_time=time)))
+    energy = outcome.energy
+    assert not outcome.validity.finished
+    assert 1e-4 < energy.contact
+    assert abs(energy.residual) < 2e-6
+    parts = (energy.rigid, energy.vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
+    assert sum(parts) + energy.contact == pytest.approx(1, abs=2e-6)
+    assert "nothing touches" in outcome_of(scene).energy.contact.reason
+
+
+def test_an_open_ledger_fails_a_run_of_the_reduced_model():
+    planned = plan(load("t5b"), "modal")
+    result = solve(planned)
+    spoiled = reduce(planned, replace(result, residual=-2e-4 * result.E_0)).validity
+    assert not spoiled.finished
+    assert "ledger misses 2.0e-04" in spoiled.stopped_because
+    assert reduce(planned, replace(result, residual=0.9e-4 * result.E_0)).validity.finished
+
+
+UPRIGHT = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
+SPUN = {**UPRIGHT, "impact.v_n": "-10 m/s", "impact.omega": "974 rad/s"}
+FLAT = {"impact.angle": "86 deg", "impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "name"), [(SPUN, "other edge"), (FLAT, "tail")], ids=["upright and spun", "nearly flat"]
+)
+def test_another_point_that_strikes_ends_the_run(changes, name):
+    scene = replace(replace_all(load("t5b"), changes), effects=("vibration", "friction", "barrier-elastic"))
+    told = outcome_of(scene).validity
+    assert not told.finished
+    assert f"The rod's {name} strikes" in told.stopped_because
+    assert "follows one point" in told.stopped_because
+
+
+@pytest.mark.parametrize("changes", [{}, {"impact.v_t": "-0.1 m/s", "impact.omega": "-0.5 rad/s"}])
+def test_an_upright_rod_that_lands_flat_is_followed_to_its_end(changes):
+    """A little turning, by spin or friction, tips no face over."""
+    scene = replace_all(load("t5b"), UPRIGHT | changes)
+    scene = replace(scene, effects=("vibration", "friction", "barrier-elastic"))
+    result = result_of(scene)
+    assert result.finished
+    assert result.V_n > 1.4
+    assert "no further contact" in result.reason
+
+
+def test_a_rod_that_still_comes_down_is_not_said_to_have_no_further_contact():
+    """The measured 0.24 m rods too turn about their tip, their centre still coming down at .2 to .7 m/s."""
+    result = result_of(load("t2"))
+    assert result.V_n < 0
+    assert "no further" not in result.reason
+    assert "still comes down at 0.723 m/s, strikes again" in result.reason
+
+
+def test_a_negative_restitution_is_explained():
+    """The spin takes nearly all of the approach away, and lifts the tip as the rod turns."""
+    scene = replace_all(load("t5b"), {"impact.omega": "69 rad/s"})
+    outcome = outcome_of(replace(scene, effects=("friction", "barrier-rigid")))
+    assert outcome.validity.finished
+    assert outcome.restitution.edge.e < 0
+    assert "lifts off by turning" in outcome.validity.warnings[0]
+
+
+@pytest.mark.parametrize(
+    "tip", [("A", "7 mm"), ("A", "2 mm"), ("B", "3 mm"), ("B", "9.5 mm"), ("plain", "0 mm")]
+)
+@pytest.mark.parametrize("angle", [0.0, 5.0, 45.0, 75.0])
+def test_the_lowest_of_a_turned_rod_is_the_point_that_is_followed_or_another_one(tip, angle):
+    changes = {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], "impact.angle": f"{angle} deg"}
+    scene = replace(replace_all(load("t5b"), changes), effects=("friction", "barrier-rigid"))
+    rod, body, alpha = modal_rod(scene), projectile(scene), radians(angle)
+    rho, z = np.append(body.meridian(400), [[body.diameter / 2, body.length]], axis=0).T
+    x, z = np.append(rho, -rho), np.tile(z - body.z_c, 2)
+    for turn in np.radians([-80.0, -20.0, -1.0, 0.0, 1.0, 20.0, 80.0, 170.0]):
+        lowest = (cos(alpha + turn) * z - sin(alpha + turn) * x).min()
+        heights = cos(turn) * rod.others.n - sin(turn) * rod.others.t - rod.others.radius
+        followed = cos(turn) * rod.centre_n - sin(turn) * rod.centre_t - rod.radius
+        sharp = 2 * rod.radius if tip[0] == "plain" or tip[1] == "2 mm" or angle == 75.0 else 0.0
+        assert min(heights.min(), followed) == pytest.approx(lowest, abs=1e-6 + sharp)
+
+
+def test_a_long_step_does_not_cut_a_contact_to_pieces():
+    """A contact of 15 ms takes steps longer than the gap that joins contacts, 10 us."""
+    heavy = {"projectile.length": "2 m", "projectile.diameter": "60 mm", "impact.v_n": "-1e-6 m/s"}
+    scene = replace_all(load("t5b"), heavy | {"impact.v_t": "0 m/s", "accuracy.max_time": "0.5 s"})
+    result = result_of(replace(scene, effects=("friction", "barrier-rigid")))
+    assert result.step > 10e-6
+    assert len(result.contacts) == 1
+    assert result.contacts[0, 1] - result.contacts[0, 0] > 5e-3
+
+
+def test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so():
+    on, off = (outcome_of(scene) for scene in (slow("barrier-elastic", "gravity"), slow("barrier-elastic")))
+    contact = on.contact.intervals[0]
+    borne = 9.80665 * cos(radians(45)) * contact.duration / 0.03
+    assert 0.05 < borne < 0.2
+    assert on.restitution.edge.e - off.restitution.edge.e == pytest.approx(borne, rel=0.2)
+    assert "Gravity gives the rod" in on.validity.warnings[0]
+    assert not off.validity.warnings
+
+
+def test_what_falls_back_strikes_anew_and_is_not_followed():
+    """At 10 mm/s a rod falls back within the 4 ms of free flight that are looked through."""
+    scene = slow("barrier-elastic", "gravity", **{"impact.v_n": "-10 mm/s", "impact.v_t": "-10 mm/s"})
+    outcome = outcome_of(scene)
+    assert len(outcome.contact.intervals) == 1
+    assert 0.9 < outcome.restitution.edge.e < 1.4
+    assert outcome.energy.rigid + outcome.energy.friction < 1 + outcome.energy.gravity
+
+
+def test_an_impact_in_which_gravity_rules_is_no_result():
+    scene = slow("barrier-elastic", "gravity", **{"impact.v_n": "-2 mm/s", "impact.v_t": "-2 mm/s"})
+    told = outcome_of(scene).validity
+    assert not told.finished
+    assert "no impact any more" in told.stopped_because
