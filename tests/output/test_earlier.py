@@ -1,11 +1,11 @@
 """A run sets aside what an older one left in its directory: nothing that was computed is lost."""
 
-import importlib
 import os
 
 import pytest
 
 from fem_impact.files.run_directory import earlier, set_aside
+from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_toml
@@ -36,8 +36,8 @@ def test_a_scene_alone_is_no_run(tmp_path):
 
 
 def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch):
-    first = simulate(load("t5b"), "rigid", out=tmp_path)
-    second = simulate(load("t5c"), "rigid", out=tmp_path)
+    first = simulate(load("t5b"), "rigid", RunOptions(out=tmp_path))
+    second = simulate(load("t5c"), "rigid", RunOptions(out=tmp_path))
     (place,) = earlier(tmp_path)
     assert Outcome.read(place / "outcome.json") == first
     assert read_toml(place / "scene.toml") == load("t5b")
@@ -46,9 +46,9 @@ def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch
     def killed(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(importlib.import_module("fem_impact.run.simulate"), "_compute", killed)
+    monkeypatch.setattr("fem_impact.run.simulate._compute", killed)
     with pytest.raises(KeyboardInterrupt):
-        simulate(load("t5d"), "rigid", out=tmp_path)
+        simulate(load("t5d"), "rigid", RunOptions(out=tmp_path))
     assert not (tmp_path / "outcome.json").exists()
     assert Outcome.read(earlier(tmp_path)[-1] / "outcome.json") in (first, second)
 
@@ -56,7 +56,7 @@ def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch
 def test_a_reduced_run_does_not_go_on_from_a_checkpoint(tmp_path):
     (tmp_path / "run.checkpoint").write_bytes(b"of a finite-element run")
     (tmp_path / "fields.vtkhdf").write_bytes(b"its fields")
-    simulate(load("t5b"), "rigid", out=tmp_path, resume=True)
+    simulate(load("t5b"), "rigid", RunOptions(out=tmp_path, resume=True))
     (place,) = earlier(tmp_path)
     assert {path.name for path in place.iterdir()} == {"run.checkpoint", "fields.vtkhdf"}
     assert not (tmp_path / "fields.vtkhdf").exists()

@@ -7,11 +7,11 @@ import pytest
 from outcome_maker import altered, outcome
 
 from fem_impact.effects.registry import BARRIERS
-from fem_impact.effects.slots import Harm
-from fem_impact.physics.beam_impact import BeamImpact, strike
-from fem_impact.plan.choose import choices, everything
+from fem_impact.effects.slots import Harm, quick_impact
+from fem_impact.physics.beam_impact import BeamImpact
+from fem_impact.plan.choose import active, choices, everything, resolved
 from fem_impact.run.simulate import simulate
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.document import Request
 from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_row, plan, row, told
@@ -23,18 +23,18 @@ def test_every_scene_runs_with_auto_and_with_everything(tmp_path):
     jobs = {job.name: job.scene for job in plan(Request(tmp_path), {})}
     for name in (*MEASURED_SETS, *DESIGNED):
         assert jobs[f"{name}-auto"].effects == ("auto",)
-        assert set(jobs[f"{name}-auto"].active) - set(BARRIERS) <= set(jobs[f"{name}-everything"].active)
+        assert set(active(jobs[f"{name}-auto"])) - set(BARRIERS) <= set(active(jobs[f"{name}-everything"]))
     assert all(f"{name}-without-friction" in jobs for name in COSTED)
-    assert "friction" not in jobs["t5b-without-friction"].active
-    assert "gravity" in jobs["t5b-with-gravity"].active
+    assert "friction" not in active(jobs["t5b-without-friction"])
+    assert "gravity" in active(jobs["t5b-with-gravity"])
 
 
 def test_the_designed_scenes_switch_every_effect(tmp_path):
     """Each effect that a scene can lack is off in one of them, and on in another where steel can need it."""
-    active = [set(job.scene.active) for job in plan(Request(tmp_path), {}) if job.name.endswith("-auto")]
+    planned = [set(active(job.scene)) for job in plan(Request(tmp_path), {}) if job.name.endswith("-auto")]
     for name in ("vibration", "friction", "rod-plasticity", "rate-hardening", "radiation", "gravity"):
-        assert {name in found for found in active} == {True, False}, name
-    assert {next(b for b in BARRIERS if b in found) for found in active} == set(BARRIERS)
+        assert {name in effects for effects in planned} == {True, False}, name
+    assert {next(b for b in BARRIERS if b in effects) for effects in planned} == set(BARRIERS)
 
 
 @pytest.mark.parametrize(
@@ -68,9 +68,9 @@ def test_a_change_stands_beside_what_was_expected_of_it():
     scene = replace(load("t5b"), effects=("auto",))
     harm = {choice.name: choice.harm for choice in choices(scene)}
     slippery, plane = (replace(scene, effects=("auto", word)) for word in ("-friction", "barrier-rigid"))
-    base = strike(scene)
-    assert told(scene, slippery.effects).e == strike(slippery).e - base.e
-    assert told(scene, plane.effects).E_vib == strike(plane).E_vib - base.E_vib
+    base = quick_impact(resolved(scene))
+    assert told(scene, slippery.effects).e == quick_impact(resolved(slippery)).e - base.e
+    assert told(scene, plane.effects).E_vib == quick_impact(resolved(plane)).E_vib - base.E_vib
     assert abs(told(scene, slippery.effects).e) == pytest.approx(harm["friction"].e, rel=0.05)
     assert told(scene, ("auto", "radiation")) == harm["radiation"]
 
@@ -83,8 +83,8 @@ def test_vibration_stands_beside_what_was_expected():
 def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
     """A fast case of the study, on a coarser tip; only gravity and damping are left out."""
     (auto, _, *_) = plan(Request(tmp_path, ids=("stiff-barrier",)), {})
-    scene = auto.scene.replace("accuracy.tip_size", "1.2 mm").replace("accuracy.max_time", "1 ms")
-    whole = replace(everything(scene), effects=(*scene.active, "gravity", "material-damping"))
+    scene = replace_all(auto.scene, {"accuracy.tip_size": "1.2 mm", "accuracy.max_time": "1 ms"})
+    whole = replace(everything(scene), effects=(*active(scene), "gravity", "material-damping"))
     found = row("x", simulate(scene), simulate(whole))
     assert found[-1] == "within", found
     assert not isclose(found[3], 0.0, abs_tol=1e-12)

@@ -10,16 +10,10 @@ from fem_impact.cost.limits import LOWEST
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import NullMeter
-from fem_impact.study import document as request_module
 from fem_impact.study.catalogue import run_study
 from fem_impact.study.document import Request
 from fem_impact.study.inputs import INPUT_CHANGES
 from fem_impact.study.sets import COARSER, QUICK_SETS, conclude, jobs_of, plan
-
-
-@pytest.fixture(autouse=True)
-def no_pages(monkeypatch):
-    monkeypatch.setattr("fem_impact.study.sets.present", lambda *_: ["no film"])  # tested elsewhere
 
 
 def computed(jobs, broken=()):
@@ -46,7 +40,7 @@ def test_a_set_is_two_meshes_and_a_table(tmp_path):
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
     assert (tmp_path / "comparison.csv").is_file()
     assert "t5b" in found.text
-    assert found.notes == ["no film"]
+    assert found.runs == (tmp_path / "t5b",)
     stored = Outcome.read(tmp_path / "t5b" / "outcome.json")
     assert stored.validity.mesh_band["e_paper"] == pytest.approx(half)
 
@@ -58,7 +52,7 @@ def test_the_study_runs_its_jobs_through_the_store(tmp_path, monkeypatch):
         asked.append((store, executor))
         return computed(jobs)
 
-    monkeypatch.setattr(request_module, "run_jobs", run_jobs)
+    monkeypatch.setattr("fem_impact.study.catalogue.run_jobs", run_jobs)
     found = run_study("sets", Request(tmp_path / "s", ("t5b",), quick=True), NullMeter(), "an executor")
     assert asked == [(tmp_path / "s" / "store.sqlite", "an executor")]
     assert found.document["failures"] == []

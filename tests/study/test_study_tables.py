@@ -4,11 +4,10 @@ import pytest
 from outcome_maker import altered
 from study_fakes import outcome
 
-import fem_impact.render
-import fem_impact.report
 from fem_impact.errors import MissingLibraryError
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.shares import shares
+from fem_impact.plan.choose import active
 from fem_impact.progress import NullMeter
 from fem_impact.report.present import pictures, present
 from fem_impact.study.inputs import explanations, sensitivity_rows
@@ -80,7 +79,7 @@ def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     jobs = jobs_of("t3-contaminated", False, tmp_path)
     changed = ["friction-low", "friction-high", "yield", "rate", "block"]
     assert list(jobs) == ["fine", "coarse", *changed]
-    assert "rate-hardening" not in jobs["rate"].scene.active
+    assert "rate-hardening" not in active(jobs["rate"].scene)
     base = jobs["coarse"].scene
     assert jobs["friction-low"].scene.surface.friction == base.surface.friction_low
     assert jobs["friction-high"].scene.surface.friction == base.surface.friction_high
@@ -125,8 +124,8 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
     def no_film(place, **_):
         raise MissingLibraryError("install libegl1")
 
-    monkeypatch.setattr(fem_impact.render, "render", no_film)
-    monkeypatch.setattr(fem_impact.report, "write_report", pages.append)
+    monkeypatch.setattr("fem_impact.render.film.render", no_film)
+    monkeypatch.setattr("fem_impact.report.write.write_report", pages.append)
     assert pictures(run) == ["t4: install libegl1"]
     assert pages == [run]
 
