@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.parser import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
+from fem_impact.files.lock import LOCK
 from fem_impact.files.run_directory import COMPUTED
 from fem_impact.progress import NullMeter, ProgressMeter, meter_for
 
@@ -74,7 +75,7 @@ def chosen_meter(options: Options) -> ProgressMeter:
 
 RESULT_FILES = ("outcome.json", "study.json")
 _OF_STUDIES = ("store.sqlite", "ledger.csv")
-_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *COMPUTED, "scene.toml", "row.json")
+_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *COMPUTED, "scene.toml", "row.json", LOCK)
 
 
 def checked_out(out: Path) -> Path:

@@ -42,9 +42,11 @@ def cost(options: Options) -> int:
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.cost.document import text_table, write_cost
     from fem_impact.cost.judge import advice, pair_sentence
+    from fem_impact.files.lock import directory_lock
 
-    found = _measured(scene, out, options, family)
-    write_cost(found, out, names)
+    with directory_lock(out):
+        found = _measured(scene, out, options, family)
+        write_cost(found, out, names)
     answers = advice(found.settings, names, target, budget)
     if target is not None:
         answers.append(pair_sentence(found.settings, found.quantities, names, target))
@@ -98,18 +100,20 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     from fem_impact.cost.document import summary_markdown, write_cost
     from fem_impact.cost.to_target import summarise
     from fem_impact.files.atomic import write_text
+    from fem_impact.files.lock import directory_lock
     from fem_impact.scene.types import MEASURED_SETS
 
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
     families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
     costs: dict[str, CostStudy] = {}
-    for name, scene in scenes.items():
-        costs[name] = _measured(scene, out / name, options, families[name])
-        write_cost(costs[name], out / name, names)
-    document = summarise(costs)
-    write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
-    write_text(out / "summary.md", summary_markdown(document))
+    with directory_lock(out):
+        for name, scene in scenes.items():
+            costs[name] = _measured(scene, out / name, options, families[name])
+            write_cost(costs[name], out / name, names)
+        document = summarise(costs)
+        write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
+        write_text(out / "summary.md", summary_markdown(document))
     if options.json:
         print_json(document)
     else:

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import errno
 import os
+import signal
 import sys
+import threading
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
@@ -28,6 +30,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not options.handler:
         build_parser().print_help(sys.stderr)
         return 2
+    if threading.current_thread() is threading.main_thread():  # no other may set what a signal does
+        signal.signal(signal.SIGTERM, signal.default_int_handler)  # like Ctrl-C: drafts and workers go
     return _guarded(_handler(options.handler), options)
 
 

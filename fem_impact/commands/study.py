@@ -29,12 +29,14 @@ def study(options: Options) -> int:
     _check_options(options)
     ids = _checked_ids(options.ids)
     out = checked_out(options.out or Path("results") / options.name)
-    if options.name == "report":
-        return _report(options, out)
+    from fem_impact.files.lock import directory_lock
     from fem_impact.study.document import Request
 
+    if options.name == "report":
+        with directory_lock(out):
+            return _report(options, out)
     request = Request(out, ids, options.quick, options.fidelity)
-    with closing(chosen_meter(options)) as meter, _workers(options) as executor:
+    with directory_lock(out), closing(chosen_meter(options)) as meter, _workers(options) as executor:
         if options.estimate:
             return _estimate(options, request, meter, executor)
         return _study(options, request, meter, executor)

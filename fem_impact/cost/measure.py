@@ -15,6 +15,7 @@ from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
 from fem_impact.errors import RunError
 from fem_impact.fem.kernels import compiled_before
+from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job, compute
 from fem_impact.jobs.run import Results, run_jobs, stored_results
@@ -93,13 +94,16 @@ def measure(
 
     Raises
     ------
+    OutputPathError
+        Another process writes to ``out``, or it cannot be written.
     RunError
         Fewer than two meshes gave a result, so nothing is known of the limit.
     """
     settings = ladder(scene, family)
     jobs = _jobs(settings)
     # a process of its own for every run: its peak memory is its own
-    with LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor) as process:
+    processes = LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor)
+    with directory_lock(out), processes as process:
         _compile(scene, process)
         results = run_jobs(jobs, out / STORE, progress, process)
     return conclude(scene, settings, results)

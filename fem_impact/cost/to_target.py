@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import islice, zip_longest
@@ -16,6 +17,7 @@ from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
+from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -220,12 +222,18 @@ def simulate(
 
     Raises
     ------
-    UsageError, SceneError, ResultError, RunError
+    UsageError, SceneError, OutputPathError, ResultError, RunError
         As `fem_impact.run.simulate.simulate` and `choose_setting`.
     """
     if scene.accuracy.target is None:
         return run.simulate(scene, fidelity or "solid", options)
     chosen = choose_setting(scene, fidelity, workers)
+    with nullcontext() if options.out is None else directory_lock(options.out):
+        return _simulate(scene, chosen, options, workers)
+
+
+def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int) -> Outcome:
+    """Return the outcome of a chosen setting, all its runs done."""
     if not chosen.meshes:
         alone = run.simulate(_plain(scene), chosen.setting.fidelity, options)
         return _kept(_stated(alone, chosen, wall_seconds(alone)), options.out)

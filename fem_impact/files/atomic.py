@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -10,7 +11,7 @@ from tempfile import mkstemp
 
 from fem_impact.errors import OutputPathError, ResultError
 
-__all__ = ["atomic_path", "make_directory", "read_text", "write_bytes", "write_text"]
+__all__ = ["atomic_path", "make_directory", "read_text", "unwritable", "write_bytes", "write_text"]
 
 
 @contextmanager
@@ -31,7 +32,7 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         yield draft
         _settle(draft, target)
     except OSError as error:
-        raise OutputPathError(_sentence(target, error)) from error
+        raise unwritable(target, error) from error
     finally:
         draft.unlink(missing_ok=True)
 
@@ -75,7 +76,7 @@ def make_directory(path: str | Path) -> Path:
     try:
         Path(path).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise OutputPathError(_sentence(Path(path), error)) from error
+        raise unwritable(Path(path), error) from error
     return Path(path)
 
 
@@ -84,7 +85,7 @@ def _draft(target: Path) -> Path:
     try:
         handle, name = mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
     except OSError as error:
-        raise OutputPathError(_sentence(target, error)) from error
+        raise unwritable(target, error) from error
     os.close(handle)
     return Path(name)
 
@@ -103,6 +104,8 @@ def _umask() -> int:
     return mask
 
 
-def _sentence(path: Path, error: OSError) -> str:
+def unwritable(path: Path, error: OSError) -> OutputPathError:
+    """Return the error of the user for one of the operating system."""
+    full = "free some space or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
     why = error.strerror or str(error)
-    return f"{path}: cannot be written ({why}); free some space or choose another place with --out."
+    return OutputPathError(f"{path}: cannot be written ({why}); {full}choose another place with --out.")

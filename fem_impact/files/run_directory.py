@@ -1,4 +1,4 @@
-"""Names of the files in the directory of a run."""
+"""The directory of a run: names of its files, older runs set aside, drafts removed."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from pathlib import Path
 
 from fem_impact.files.atomic import make_directory
 
-__all__ = ["CHECKPOINT", "COMPUTED", "earlier", "set_aside"]
-
+__all__ = ["CHECKPOINT", "COMPUTED", "earlier", "remove_drafts", "set_aside"]
 
 CHECKPOINT = "run.checkpoint"
 COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
@@ -27,6 +26,13 @@ def set_aside(out: Path) -> Path | None:
     for path in [*computed, *(found for name in MADE_OF_IT for found in out.glob(name))]:
         path.rename(place / path.name)
     return place
+
+
+def remove_drafts(out: Path) -> None:
+    """Remove the drafts that a killed run left; nobody else may write there (`directory_lock`)."""
+    for name in map(Path, ("scene.toml", *COMPUTED)):
+        for draft in out.glob(f".{name.stem}-????????{name.suffix}"):
+            draft.unlink()
 
 
 def earlier(out: Path) -> list[Path]:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.files.lock import directory_lock
 from fem_impact.hard_cases.scenes import CASES, HardCase
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.options import RunOptions
@@ -55,11 +56,10 @@ class Row:
 
 def run_cases(names: Sequence[str], out: Path, told: Callable[[Row], None], workers: int) -> list[Row]:
     """Run cases in processes; rows of the same scenes and sources that lie in ``out`` are kept."""
-    make_directory(out)
-    rows = {name: row for name in names if (row := _kept(CASES[name], out)) is not None}
-    waiting = [name for name in names if name not in rows]
-    if waiting:
-        with LocalProcesses(min(workers, len(waiting))) as pool:
+    with directory_lock(out):
+        rows = {name: row for name in names if (row := _kept(CASES[name], out)) is not None}
+        waiting = [name for name in names if name not in rows]
+        with LocalProcesses(min(workers, max(len(waiting), 1))) as pool:
             futures = [pool.submit(run_case, name, out) for name in waiting]
             for done in as_completed(futures):
                 rows[done.result().name] = done.result()

@@ -40,6 +40,8 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         business of `fem_impact.cost.to_target.simulate`.
     ResultError
         If the checkpoint is damaged, or of another scene or program.
+    OutputPathError
+        If another process writes to ``options.out``, or it cannot be written.
     RunError
         If the run cannot go on; what was computed stays in ``options.out``.
     """
@@ -51,22 +53,27 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )
     planned, out = plan(scene, fidelity), options.out
-    goes_on = fidelity == "solid" and options.resume and out is not None and (out / CHECKPOINT).exists()
-    if out is not None and not goes_on:
-        _begin(scene, out)
-    outcome = _compute(planned, replace(options, resume=goes_on))
-    if out is not None:
+    if out is None:
+        return _compute(planned, replace(options, resume=False))
+    from fem_impact.files.lock import directory_lock
+    from fem_impact.files.run_directory import remove_drafts
+
+    with directory_lock(out):
+        remove_drafts(out)
+        goes_on = fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
+        if not goes_on:
+            _begin(scene, out)
+        outcome = _compute(planned, replace(options, resume=goes_on))
         _write(outcome, out)
     return outcome
 
 
 def _begin(scene: Scene, out: Path) -> None:
     """Set an older run aside, so that nothing of it is taken for this one, and name the scene."""
-    from fem_impact.files.atomic import make_directory, write_text
+    from fem_impact.files.atomic import write_text
     from fem_impact.files.run_directory import set_aside
     from fem_impact.scene.write import to_toml
 
-    make_directory(out)
     set_aside(out)
     write_text(out / "scene.toml", to_toml(scene))
 

@@ -6,7 +6,7 @@ from concurrent.futures import Executor
 from importlib import import_module
 from typing import TYPE_CHECKING
 
-from fem_impact.files.atomic import make_directory
+from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.forecast import WorkForecast, estimate
 from fem_impact.jobs.run import Results, run_jobs
 from fem_impact.jobs.store import STORE
@@ -29,20 +29,26 @@ def run_study(
         for jobs, with the results so far, until it names no new one; the second says what follows
     progress : told after every job
     executor : any; local processes when None
+
+    Raises
+    ------
+    OutputPathError
+        Another process writes to ``request.out``, or it cannot be written.
     """
     plan, conclude = _study(name)
-    make_directory(request.out)
     results: Results = {}
-    while new := [job for job in plan(request, results) if job.name not in results]:
-        results |= run_jobs(new, request.out / STORE, progress, executor)
-    return conclude(request, results, progress)
+    with directory_lock(request.out):
+        while new := [job for job in plan(request, results) if job.name not in results]:
+            results |= run_jobs(new, request.out / STORE, progress, executor)
+        return conclude(request, results, progress)
 
 
 def estimate_study(
     name: str, request: Request, progress: ProgressMeter, executor: Executor | None = None
 ) -> WorkForecast:
     """Return what the study would take, later rounds of its plan apart; a few samples are computed."""
-    return estimate(_study(name)[0](request, {}), request.out / STORE, progress, executor)
+    with directory_lock(request.out):
+        return estimate(_study(name)[0](request, {}), request.out / STORE, progress, executor)
 
 
 def _study(name: str) -> tuple[Plan, Conclude]:
