@@ -8,12 +8,20 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json, print_table
+from fem_impact.commands.common import (
+    changed_scene,
+    checked_out,
+    chosen_meter,
+    print_json,
+    print_table,
+    read_changes,
+)
 from fem_impact.commands.parser import Options
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
+from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import shipped, source_of
 from fem_impact.scene.shipped import load
@@ -24,8 +32,12 @@ from fem_impact.tables.text import wrapped
 if TYPE_CHECKING:
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
+    from fem_impact.plan.size import RunSize
 
 __all__ = ["check", "run", "scenes"]
+
+
+LONG = 600.0  # s: a run that takes longer says so before it starts
 
 
 def run(options: Options) -> int:
@@ -34,6 +46,7 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
+    _say_old_fall(scene, options)
     _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.commands.outcome import print_outcome
@@ -57,14 +70,45 @@ def run(options: Options) -> int:
 
 
 def _say_plan(scene: Scene, options: Options) -> None:
-    """Before the work: what the measured costs chose for the error that the scene allows."""
+    """Before the work: what the measured costs chose for the error that the scene allows, or a long run."""
     if scene.accuracy.target is None:
-        return
-    from fem_impact.cost.to_target import choose_setting
+        sentence = "" if options.fidelity in ("rigid", "modal") else _long_run(scene)
+    else:
+        from fem_impact.cost.to_target import choose_setting
 
-    sentence = choose_setting(scene, options.fidelity or None, cores()).sentence
-    if not options.quiet:
+        sentence = choose_setting(scene, options.fidelity or None, cores()).sentence
+    if sentence and not options.quiet:
         sys.stderr.write(f"{sentence}\n")
+
+
+def _long_run(scene: Scene) -> str:
+    from fem_impact.plan.plan import plan
+
+    size = plan(scene).size
+    if size.time <= LONG:
+        return ""
+    return f"This run takes about {clock_text(size.time)} ({_elements(size)}); a larger tip_size is quicker."
+
+
+def _elements(size: RunSize) -> str:
+    from fem_impact.plan.size import about
+
+    return f"{about(size.rod + size.barrier)} elements, {about(size.steps)} steps"
+
+
+def _say_old_fall(scene: Scene, options: Options) -> None:
+    """Warn where ``--set`` changed the angle of a fall and left its velocities."""
+    changed, impact = read_changes(options.changes), scene.impact
+    if not {"impact.angle", "impact.angle_rad"} & set(changed):
+        return
+    if any(key.startswith(("impact.v_n", "impact.v_t")) for key in changed):
+        return
+    speed = math.hypot(impact.v_n, impact.v_t)
+    v_n, v_t = -speed * math.cos(impact.angle), -speed * math.sin(impact.angle)
+    sys.stderr.write(
+        "fem-impact: warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
+        f"--set impact.v_n='{v_n:.4g} m/s' --set impact.v_t='{v_t:.4g} m/s'\n"
+    )
 
 
 def _way_on(out: Path) -> str:
@@ -107,6 +151,7 @@ def check(options: Options) -> int:
     from fem_impact.plan.plan import plan
 
     planned = plan(changed_scene(options.scene, options.changes))
+    _say_old_fall(planned.scene, options)
     statement = _statement(planned)
     if options.json:
         print_json(statement)
@@ -136,6 +181,21 @@ def _statement(planned: Plan) -> dict[str, Any]:
         "effects": [_flat(choice.told(choice.share)) for choice in planned.choices],
         "validity": list(planned.validity),
         "warnings": list(planned.warnings),
+        "size": None if scene.accuracy.target else _size_entry(planned.size),
+    }
+
+
+def _size_entry(size: RunSize) -> dict[str, float]:
+    return {
+        "elements_rod": size.rod,
+        "elements_barrier": size.barrier,
+        "elements_yielding": size.yielding,
+        "step_s": size.step,
+        "steps": size.steps,
+        "most_steps": size.most_steps,
+        "memory_MB": round(size.memory / 1e6),
+        "cpu_s": size.time,
+        "most_cpu_s": size.most_time,
     }
 
 
@@ -163,10 +223,26 @@ def _readable(planned: Plan, statement: dict[str, Any]) -> str:
     lines += ["", "Effects"]
     lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
+    lines += _size_lines(planned)
     lines += ["", "Validity"]
     inside = "inside the measured range of speed, angle, rod, steels and surfaces"
     lines += _wrapped(statement["validity"] or [inside])
     return "\n".join([*lines, "", "The scene is valid; its digest:", statement["digest"]]) + "\n"
+
+
+def _size_lines(planned: Plan) -> list[str]:
+    if planned.scene.accuracy.target:
+        return []
+    from fem_impact.plan.size import about
+
+    size = planned.size
+    sentences = (
+        f"about {_elements(size)} of {size.step * 1e9:.2g} ns ({about(size.most_steps)} if it lasts until "
+        f"max_time), {about(size.memory / 1e6)} MB of memory",
+        f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
+        "machine of the stored costs, within a factor of two there",
+    )
+    return ["", "Size of a run with finite elements", *_wrapped(sentences)]
 
 
 def _wrapped(sentences: Iterable[str]) -> list[str]:

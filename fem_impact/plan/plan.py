@@ -9,7 +9,8 @@ from fem_impact.effects.slots import ModelSpec, bodies_of
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.limits import coarse_tip, require_approach, require_shallow, validity
+from fem_impact.plan.limits import coarse_tip, off_axis, require_approach, require_shallow, validity
+from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
 from fem_impact.scene.types import FIDELITIES, Scene
 
@@ -49,7 +50,12 @@ class Plan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return sentences on what the reader should distrust."""
-        return (*neglected(self.scene), *coarse_tip(self.bodies))
+        return (*neglected(self.scene), *coarse_tip(self.bodies), *off_axis(self.scene))
+
+    @property
+    def size(self) -> RunSize:
+        """Return about what a run of the solid fidelity takes: elements, memory, steps, time."""
+        return run_size(self.slots, self.bodies, self.zones)
 
 
 def plan(scene: Scene, fidelity: str = "solid") -> Plan:
@@ -61,7 +67,8 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
         If the fidelity is unknown.
     SceneError
         If an effect is unknown, the rod does not come towards the barrier, or the solid
-        fidelity cannot hold it: an indentation as deep as the rod, a tip without a fine zone.
+        fidelity cannot hold it: an indentation as deep as the rod, a tip without a fine zone, a mesh that
+        needs more memory than the machine has.
     """
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
@@ -69,14 +76,12 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     in_model = resolved(scene)
     bodies = bodies_of(in_model)
     require_approach(scene)
+    slots, zones = ModelSpec(), zones_of(bodies)
+    for name in in_model.effects:
+        EFFECTS[name].fill(in_model, slots)
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)
-    return Plan(scene, fidelity, in_model.effects, _filled(in_model), bodies, zones_of(bodies))
-
-
-def _filled(scene: Scene) -> ModelSpec:
-    slots = ModelSpec()
-    for name in scene.effects:
-        EFFECTS[name].fill(scene, slots)
-    return slots
+        if scene.accuracy.target is None:  # a target chooses its own mesh
+            require_memory(slots, bodies, zones)
+    return Plan(scene, fidelity, in_model.effects, slots, bodies, zones)

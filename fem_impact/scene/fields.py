@@ -95,7 +95,7 @@ IMPACT = (
         math.pi / 2,
         high_open=True,
     ),
-    Field("v_n", "velocity along the normal", "speed", -500.0, 0.0, high_open=True, remedy=_INTO),
+    Field("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO),
     Field("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN),
     Field(
         "omega",

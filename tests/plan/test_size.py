@@ -1,0 +1,98 @@
+"""The estimated size of a run beside meshes that are built and runs that were measured."""
+
+from math import exp, log
+
+import pytest
+
+from fem_impact.cost.settings import FEWER_PLACES, FINEST, PLACES
+from fem_impact.errors import SceneError
+from fem_impact.fem.geometry import build_geometry
+from fem_impact.plan import size as sizes
+from fem_impact.plan.measured import summary
+from fem_impact.plan.plan import plan
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load, replace_all
+
+UPRIGHT = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
+WIDE = {"projectile.diameter": "40 mm", "projectile.length": "0.4 m", "projectile.tip_radius": "6 mm"}
+PLANE = {"effects": ["vibration", "friction", "barrier-rigid", "rod-plasticity"]}
+STIFF = {"effects": ["friction", "barrier-elastic"]}
+
+
+def off(estimate, true):
+    """The factor between two numbers, at least one."""
+    return exp(abs(log(estimate / true)))
+
+
+@pytest.mark.parametrize("changes", [{}, UPRIGHT, WIDE, PLANE, STIFF, {"accuracy.tip_size": "0.12 mm"}])
+def test_elements_of_changed_scenes(changes):
+    check_elements(replace_all(load("t5b"), changes))
+
+
+@pytest.mark.parametrize("name", ["quick", "t6-17", "t3-machined", "t2", "elastic-frictionless"])
+def test_elements_of_shipped_scenes(name):
+    check_elements(load(name))
+
+
+def check_elements(scene):
+    planned = plan(scene)
+    size, slots = planned.size, planned.slots
+    built = build_geometry(scene, planned.zones, 2e-6, slots.meshed_barrier, slots.vibrating)
+    rod, barrier = len(built.rod.mesh.cells), len(built.barrier.cells) if built.barrier else 0
+    assert off(size.rod + size.barrier, rod + barrier) < 1.25
+    assert off(size.rod, rod) < 1.5 and (size.barrier == 0) == (barrier == 0)
+    laws = {"rod": slots.rod_law, "barrier": slots.barrier_law}
+    yielding = sum(int(cells.sum()) for body, cells in built.may_yield.items() if laws[body])
+    assert size.yielding == yielding == 0 or off(size.yielding, yielding) < 1.6
+
+
+def stored_runs():
+    for name, entry in summary()["scenes"].items():
+        for setting in entry["settings"]:
+            if setting["kind"] == "mesh":
+                yield pytest.param(entry["scene"], setting, id=f"{name} {setting['name']}")
+
+
+@pytest.mark.parametrize("data, setting", list(stored_runs()))
+def test_memory_and_time_of_the_stored_runs(data, setting):
+    mesh = setting["meshes"][0]
+    places = FEWER_PLACES if (mesh["across"], mesh["levels"]) == (FINEST.across, FINEST.levels) else PLACES
+    tip_size = f"{setting['tip_size_m'] * 1e3:.9g} mm"
+    changes = {"accuracy.across": mesh["across"], "accuracy.tip_size": tip_size}
+    size = plan(replace_all(read_dict(data), changes)).size
+    steps = setting["element_steps"] / len(places) / (size.rod + size.barrier)
+    assert off(size.steps, steps) < 2.0
+    assert off(size.time, setting["cpu_s"] / len(places)) < 2.0
+    assert off(size.memory, setting["peak_memory_MB"] * 1e6) < 1.33
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"accuracy.tip_size": "0.01 mm"},
+        {"projectile.length": "10 m", "projectile.diameter": "1 m", "projectile.tip_radius": "0.1 m"},
+    ],
+)
+def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(changes, monkeypatch):
+    monkeypatch.setattr(sizes, "machine_memory", lambda: 16e9)
+    scene = replace_all(load("t5b"), changes)
+    with pytest.raises(SceneError, match=r"elements, which take some .* GB of memory") as refused:
+        plan(scene)
+    fits = refused.value.remedy.removeprefix("Give at least ").removesuffix(".")
+    assert plan(replace_all(scene, {"accuracy.tip_size": fits})).size.memory <= 16e9
+    finer = f"{float(fits.removesuffix(' mm')) / 2} mm"
+    with pytest.raises(SceneError, match="GB of memory"):
+        plan(replace_all(scene, {"accuracy.tip_size": finer}))
+    plan(scene, "modal")  # needs no block
+
+
+def test_a_rod_that_never_fits_is_told_so(monkeypatch):
+    monkeypatch.setattr(sizes, "machine_memory", lambda: 1e8)
+    with pytest.raises(SceneError, match="No tip size fits"):
+        plan(load("t5b"))
+
+
+def test_a_longer_time_or_step_changes_the_number_of_steps_alone():
+    size, base = plan(replace_all(load("t5b"), {"accuracy.step": 0.45})).size, plan(load("t5b")).size
+    assert size.steps == pytest.approx(2 * base.steps, rel=1e-3) and size.rod == base.rod
+    assert base.most_steps == pytest.approx(2.5e-3 / base.step, abs=1)
