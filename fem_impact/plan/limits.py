@@ -27,7 +27,7 @@ SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range."""
-    sentences = (_length(scene), _section(scene), _speed(scene), _angle(scene), _spin(scene))
+    sentences = (_length(scene), _section(scene), _speed(scene), _angle(scene), _fall(scene), _spin(scene))
     more = (_steels(scene), _surface(scene, active), _idealised(active))
     return tuple(sentence for sentence in (*sentences, *more) if sentence)
 
@@ -61,6 +61,17 @@ def _speed(scene: Scene) -> str:
 
 def _angle(scene: Scene) -> str:
     return _outside(scene.impact.angle, ANGLES, "angle", "angle")
+
+
+def _fall(scene: Scene) -> str:
+    impact = scene.impact
+    beside = math.degrees(math.atan2(-impact.v_t, -impact.v_n) - impact.angle)
+    if abs(beside) <= FALL:
+        return ""
+    return (
+        f"outside the measured range: the rod moves {abs(beside):.2g} deg beside its axis, which no dropped rod "
+        f"does: v_n and v_t are those of another angle than {math.degrees(impact.angle):.4g} deg"
+    )
 
 
 def _spin(scene: Scene) -> str:
@@ -109,18 +120,6 @@ def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
         f"The contact, about {sqrt(2) * widest * 1e3:.2g} mm wide, may be narrower than an element at the "
         f"tip (accuracy.tip_size = {asked * 1e3:.2g} mm): the mesh then sets E_vib and the peak force. "
         f"Give at most {widest * 1e3:.2g} mm.",
-    )
-
-
-def off_axis(scene: Scene) -> tuple[str, ...]:
-    """Return a sentence when the rod does not move along its axis, as one that is dropped does."""
-    impact = scene.impact
-    beside = math.degrees(math.atan2(-impact.v_t, -impact.v_n) - impact.angle)
-    if abs(beside) <= FALL:
-        return ()
-    return (
-        f"The rod moves {abs(beside):.2g} deg beside its axis, so this is no drop: v_n and v_t are those of "
-        f"another angle than {math.degrees(impact.angle):.4g} deg.",
     )
 
 

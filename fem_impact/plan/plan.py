@@ -9,7 +9,7 @@ from fem_impact.effects.slots import ModelSpec, bodies_of
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.limits import coarse_tip, off_axis, require_approach, require_shallow, validity
+from fem_impact.plan.limits import coarse_tip, require_approach, require_shallow, validity
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
 from fem_impact.scene.types import FIDELITIES, Scene
@@ -50,7 +50,7 @@ class Plan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return sentences on what the reader should distrust."""
-        return (*neglected(self.scene), *coarse_tip(self.bodies), *off_axis(self.scene))
+        return (*neglected(self.scene), *coarse_tip(self.bodies))
 
     @property
     def size(self) -> RunSize:
