@@ -1,14 +1,12 @@
 """Stand-ins for the solver and its siblings, so that the command line is tested by itself."""
 
-import importlib
-import sys
 import types
 from dataclasses import dataclass, field
 
 import outcome_maker
 import pytest
 
-import fem_impact.study
+from fem_impact.options import RunOptions
 from fem_impact.outcome.record import KEYS
 from fem_impact.progress import Progress
 
@@ -32,23 +30,16 @@ class Stand:
     error: BaseException | None = None
 
 
-def _module(monkeypatch, name, **contents):
-    module = types.ModuleType(name)
-    module.__dict__.update(contents)
-    monkeypatch.setitem(sys.modules, name, module)
-    parent, _, last = name.rpartition(".")
-    monkeypatch.setattr(importlib.import_module(parent), last, module, raising=False)
-
-
 @pytest.fixture
 def stand(monkeypatch):
-    """Replace simulate, run_study, render and write_report."""
+    """Replace simulate, run_study, present, render, render_side_by_side and write_report."""
     stand = Stand()
 
     def work(name, result):
-        def called(*args, **kwargs):
-            stand.calls.append((name, args, kwargs))
-            progress = kwargs.get("progress") or next((a for a in args if callable(a)), None)
+        def called(*args):
+            stand.calls.append((name, args))
+            options = [arg.progress for arg in args if isinstance(arg, RunOptions)]
+            progress = next((arg for arg in [*options, *args] if callable(arg)), None)
             if progress:
                 progress(Progress(1e-4, 2.5e-3, 4000, 1e-6, "touching, 12 nodes", 61.0))
             if stand.error:
@@ -58,15 +49,15 @@ def stand(monkeypatch):
         return called
 
     document = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": [], "notes": ["f matters"]}
-    table = types.SimpleNamespace(document=document, text="the table", notes=["no film: no GL"])
+    table = types.SimpleNamespace(document=document, text="the table", runs=("sets/t4",))
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
-    _module(
-        monkeypatch,
-        "fem_impact.run.simulate",
-        simulate=work("simulate", lambda: stand.outcome or an_outcome()),
-    )
-    monkeypatch.setattr(fem_impact.study, "run_study", work("run_study", lambda: table))
-    films = {name: work(name, lambda: film) for name in ("render", "render_side_by_side")}
-    _module(monkeypatch, "fem_impact.render", **films)
-    _module(monkeypatch, "fem_impact.report", write_report=work("report", lambda: "report.html"))
+    for place, result in {
+        "fem_impact.cost.to_target.simulate": lambda: stand.outcome or an_outcome(),
+        "fem_impact.study.catalogue.run_study": lambda: table,
+        "fem_impact.render.film.render": lambda: film,
+        "fem_impact.render.side_by_side.render_side_by_side": lambda: film,
+        "fem_impact.report.write.write_report": lambda: "report.html",
+    }.items():
+        monkeypatch.setattr(place, work(place.rpartition(".")[2], result))
+    monkeypatch.setattr("fem_impact.report.present.present", lambda *_: ["no film: no GL"])
     return stand

@@ -8,7 +8,7 @@ import pytest
 HEAVY = ("numpy", "scipy", "numba", "skfem", "matplotlib", "pyvista", "vtkmodules", "meshio", "h5py", "PIL")
 PROBE = """
 import sys
-from fem_impact.cli import main
+from fem_impact.commands.main import main
 try:
     main(sys.argv[1:])
 except SystemExit:

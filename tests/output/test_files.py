@@ -42,7 +42,7 @@ def test_file_in_the_way_is_named(tmp_path):
 FULL = """
 import resource, signal, sys
 from fem_impact.errors import OutputPathError
-from fem_impact.output import HistoryWriter, write_text
+from fem_impact.tables.growing import HistoryWriter, write_text
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 folder = sys.argv[1]
 write_text(folder + "/note.txt", "old")
@@ -127,7 +127,7 @@ def test_last_line_cut_off_by_a_kill_is_not_counted(tmp_path):
 
 ENDLESS = """
 import itertools, sys
-from fem_impact.output import HistoryWriter
+from fem_impact.tables.growing import HistoryWriter
 history = HistoryWriter(sys.argv[1], ("time_s", "step"), batch=3)
 for step in itertools.count():
     history.append((step * 1e-8, step))
