@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import wrapped
 
 __all__ = ["assess_text", "own_text"]
@@ -57,13 +58,17 @@ def _losses(d: Document) -> Iterator[str]:
     yield from _wrap(
         f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
     )
-    head = f"{'mean':>6}{'95 % of impacts':>18}{'mean, J':>9}"
-    yield f"  {'':<21}{head}  all {b['all_tests']} of the surface"
-    for name, words in WORDS.items():
-        s = d["losses"][name]
-        spread = f"{100 * s['low']:.0f} to {100 * s['high']:.0f}"
-        every = f"{100 * s['all_low']:.0f} to {100 * s['all_high']:.0f}"
-        yield f"  {words:<21}{100 * s['mean']:6.1f}{spread:>18}{s['mean'] * energy:9.3g}  {every}"
+    head = ("", "mean", "95 % of impacts", "mean, J", f"all {b['all_tests']} of the surface")
+    rows = [_loss_row(words, d["losses"][name], energy) for name, words in WORDS.items()]
+    yield Table.of(head, rows).terminal(indent="  ")
+
+
+def _loss_row(words: str, s: Mapping[str, Any], energy: float) -> tuple[Cell, ...]:
+    spread, all_tests = (
+        f"{100 * s[low]:.0f} to {100 * s[high]:.0f}"
+        for low, high in (("low", "high"), ("all_low", "all_high"))
+    )
+    return (words, f"{100 * s['mean']:.1f}", spread, f"{s['mean'] * energy:.3g}", all_tests)
 
 
 def _worst(d: Document) -> Iterator[str]:
@@ -164,14 +169,15 @@ def _coefficients(d: Document) -> Iterator[str]:
         "Coefficients of the mean motion, 95 % intervals (velocity scatter, contact point 0.5 mm, "
         "tracking 2 %)"
     )
-    yield f"  {'':<5}{'value':>8}   {'first order':<20}bootstrap"
-    for name, c in d["coefficients"].items():
-        yield f"  {name:<5}{_number(c['value']):>8}   {_span(c['first_order']):<20}{_span(c['bootstrap'])}"
+    coefficients = d["coefficients"].items()
+    rows = [(n, _number(c["value"]), _span(c["first_order"]), _span(c["bootstrap"])) for n, c in coefficients]
+    yield Table.of(("", "value", "first order", "bootstrap"), rows).terminal(indent="  ")
     yield ""
     yield "Standard uncertainty by source"
-    for name, c in d["coefficients"].items():
-        parts = ", ".join(f"{k} {_number(v)}" for k, v in c["first_order"]["parts"].items())
-        yield f"  {name:<5}{parts}"
+    parts = {name: c["first_order"]["parts"] for name, c in coefficients}
+    sources = tuple(dict.fromkeys(source for part in parts.values() for source in part))
+    by_source = [(name, *(_number(part[s]) for s in sources)) for name, part in parts.items()]
+    yield Table.of(("", *sources), by_source).terminal(indent="  ")
 
 
 def _scatter(d: Document) -> Iterator[str]:

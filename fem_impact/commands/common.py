@@ -7,7 +7,7 @@ import shutil
 import sys
 import tempfile
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -27,7 +27,6 @@ __all__ = [
     "checked_result",
     "chosen_meter",
     "print_json",
-    "print_table",
     "read_changes",
 ]
 
@@ -169,12 +168,3 @@ def _cannot(out: Path, error: Exception) -> str:
 def print_json(document: Any) -> None:
     """Print one JSON document; NaN and infinity are never written."""
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
-
-
-def print_table(rows: list[Mapping[str, Any]], columns: tuple[str, ...]) -> None:
-    """Print rows as a table with aligned columns."""
-    texts = [list(columns), *([str(row[column]) for column in columns] for row in rows)]
-    widths = [max(len(text[i]) for text in texts) for i in range(len(columns))]
-    for text in texts:
-        line = "  ".join(cell.ljust(width) for cell, width in zip(text, widths, strict=True))
-        sys.stdout.write(line.rstrip() + "\n")

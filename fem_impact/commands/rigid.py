@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.commands.common import checked_file, print_json
 from fem_impact.commands.parser import Options
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.files.atomic import write_text
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
@@ -23,12 +24,11 @@ __all__ = ["assess", "audit", "coefficients", "figure"]
 def audit(options: Options) -> int:
     """Recompute the printed columns and print where they disagree."""
     out = checked_file(options.out) if options.out else None
-    from fem_impact.paper.audit import CSV_COLUMNS, audit_document, audit_text, csv_rows
-    from fem_impact.tables.csv import write_table
+    from fem_impact.paper.audit import audit_document, audit_text, records_table
 
     document = audit_document(options.set_id)
     if out:
-        write_table(out, CSV_COLUMNS, csv_rows(document))
+        write_text(out, records_table(document).csv())
     _print(document, audit_text, options)
     return 0
 

@@ -13,7 +13,6 @@ from fem_impact.commands.common import (
     checked_out,
     chosen_meter,
     print_json,
-    print_table,
     read_changes,
 )
 from fem_impact.commands.parser import Options
@@ -27,6 +26,7 @@ from fem_impact.scene.library import shipped, source_of
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
@@ -142,7 +142,7 @@ def scenes(options: Options) -> int:
     if options.json:
         print_json({"scenes": rows})
     else:
-        print_table(rows, ("id", "speed", "title"))
+        sys.stdout.write(Table.of(("id", "speed", "title"), rows, left=range(3)).terminal() + "\n")
     return 0
 
 

@@ -16,6 +16,7 @@ from fem_impact.hard_cases.run import MARKS, Row, page, run_cases, told
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.jobs.executors import cores
 from fem_impact.outcome.record import utc_now
+from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
 from fem_impact.verify.problem import Problem, Verification
@@ -96,13 +97,9 @@ def _parameter(found: Problem, i: int) -> dict[str, object]:
 
 
 def _parameter_text(found: Problem) -> str:
-    rows = [("name", "unit", "default", "range", "meaning")]
-    rows += [
-        (p.name, p.unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.words) for p in found.parameters
-    ]
-    wide = [max(len(row[i]) for row in rows) for i in range(5)]
-    lines = ["  ".join(cell.ljust(w) for cell, w in zip(row, wide, strict=True)).rstrip() for row in rows]
-    return f"{found.name}: {found.words}\n" + "\n".join(lines) + "\n"
+    rows = [(p.name, p.unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.words) for p in found.parameters]
+    table = Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
+    return f"{found.name}: {found.words}\n{table.terminal(200)}\n"
 
 
 def _text(found: Verification) -> str:

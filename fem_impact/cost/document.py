@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
-from functools import partial
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,8 +12,7 @@ from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
 from fem_impact.figures.style import PALETTE, QUIET, figure
 from fem_impact.files.atomic import write_text
-from fem_impact.tables.csv import write_table
-from fem_impact.tables.markdown import table
+from fem_impact.tables.table import Cell, Column, Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,6 +20,8 @@ if TYPE_CHECKING:
 __all__ = ["summary_markdown", "text_table", "work_precision", "write_cost"]
 
 
+WIDE = 400
+"""Letters of a line of cost.txt: its tables are never broken."""
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 SCALARS = ("name", "kind", "fidelity", "tip_size_m")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
@@ -40,17 +39,26 @@ COLUMNS = (
 def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
     """Write cost.json, cost.csv, cost.txt and the plot of the targeted quantities, cost.svg."""
     write_text(out / "cost.json", json.dumps(cost.to_dict(), indent=1, allow_nan=False) + "\n")
-    write_table(out / "cost.csv", COLUMNS, [_row(setting) for setting in cost.settings])
+    write_text(out / "cost.csv", Table.of(COLUMNS, map(_row, cost.settings)).csv())
     write_text(out / "cost.txt", text_table(cost) + "\n")
     work_precision(cost.settings, names, out / "cost.svg")
 
 
-def _row(setting: Judged) -> list[str | float | int | None]:
+def _row(setting: Judged) -> list[Cell]:
     data = setting.to_dict()
     errors = [setting.error[name] for name in NAMES]
     values = [setting.value[name] for name in NAMES]
     own = [held.get(name) for held in (setting.scatter, setting.band) for name in NAMES]
     return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
+
+
+COST_COLUMNS = (
+    Column("setting", left=True),
+    Column("wall_s", "wall s", digits=3),
+    Column("cpu_s", "CPU s", digits=3),
+    Column("element_steps", "el.-steps", digits=2),
+    Column("peak_memory_MB", "MB"),
+)
 
 
 def text_table(cost: CostStudy, names: Sequence[str] = NAMES) -> str:
@@ -59,51 +67,55 @@ def text_table(cost: CostStudy, names: Sequence[str] = NAMES) -> str:
     An asterisk marks the Pareto front of that quantity. What the places of the barrier's grid tell of each
     setting follows, the bands of the pairs of meshes, and what leaving an effect out changes.
     """
-    width = max(len(setting.name) for setting in cost.settings)
-    shown = [q for q in QUANTITIES if q.name in names and q.name in cost.truth]
-    truth = [cost.truth[quantity.name] for quantity in shown]
-    head = f"{'setting':<{width}} {'wall s':>8} {'CPU s':>8} {'el.-steps':>10} {'MB':>6}"
-    above = {
-        head: [quantity.name for quantity in shown],
-        "unit": [quantity.unit for quantity in shown],
-        "limit": [f"{t.value:.4g}" for t in truth],
-        "uncertainty of the limit, %": [f"{100 * t.uncertainty / t.scale:.2g}" for t in truth],
-        "observed order": ["-" if t.order is None else f"{t.order:.2f}" for t in truth],
-    }
-    lines = [f"{words:<{len(head)}}{_cells(texts)}" for words, texts in above.items()]
-    pick = partial(_line, width=width, names=[quantity.name for quantity in shown])
-    lines += [pick(setting) for setting in cost.settings if setting.kind != "effect"]
+    listed = [name for name in NAMES if name in names and name in cost.truth]
+    columns = (*COST_COLUMNS, *map(Column, listed))
+    judged = [_line(one, one.error, listed, one.front) for one in cost.settings if one.kind != "effect"]
+    lines = [Table(columns, (*_limit_rows(cost, listed), *judged)).terminal(WIDE)]
     lines += ["errors in %, the limit's uncertainty included; * on the Pareto front"]
-    meshes = [setting for setting in cost.settings if setting.kind in ("mesh", "pair")]
-    lines += _block("scatter of the grid's places in %, as standard error", meshes, "scatter", pick)
-    pairs = [setting for setting in cost.settings if setting.band]
-    lines += _block("bands of the extrapolations in %, scatter included", pairs, "band", pick)
-    left_out = [setting for setting in cost.settings if setting.kind == "effect"]
-    lines += _block("changes in % by leaving an effect out, on the same mesh", left_out, "error", pick)
-    return "\n".join(line.rstrip() for line in lines)
+    blocks = (
+        (
+            "scatter of the grid's places in %, as standard error",
+            [_line(one, one.scatter, listed) for one in cost.settings if one.kind in ("mesh", "pair")],
+        ),
+        (
+            "bands of the extrapolations in %, scatter included",
+            [_line(one, one.band, listed) for one in cost.settings if one.band],
+        ),
+        (
+            "changes in % by leaving an effect out, on the same mesh",
+            [_line(one, one.error, listed) for one in cost.settings if one.kind == "effect"],
+        ),
+    )
+    for title, rows in blocks:
+        lines += ["", title, Table(columns, tuple(rows)).terminal(WIDE)] if rows else []
+    return "\n".join(lines)
 
 
-def _cells(texts: Iterable[str]) -> str:
-    """Return numbers flush right, with room for an asterisk behind each."""
-    return "".join(f"{text:>11}" if text.endswith("*") else f"{text:>10} " for text in texts)
+def _limit_rows(cost: CostStudy, names: Sequence[str]) -> list[tuple[Cell, ...]]:
+    """Return the rows above the settings: unit, limit, its uncertainty and order of each quantity."""
+    units = {quantity.name: quantity.unit for quantity in QUANTITIES}
+    truth = [cost.truth[name] for name in names]
+    costs = ("",) * (len(COST_COLUMNS) - 1)
+    return [
+        ("unit", *costs, *(units[name] for name in names)),
+        ("limit", *costs, *(t.value for t in truth)),
+        ("uncertainty of the limit, %", *costs, *(f"{100 * t.uncertainty / t.scale:.2g}" for t in truth)),
+        ("observed order", *costs, *(None if t.order is None else f"{t.order:.2f}" for t in truth)),
+    ]
 
 
-def _block(title: str, settings: Sequence[Judged], field: str, line: Callable[[Judged], str]) -> list[str]:
-    """Return a line a setting with the numbers of one field, below a title; nothing without settings."""
-    lines = [line(replace(s, error=dict(getattr(s, field)), front=[])) for s in settings]
-    return ["", title, *lines] if lines else []
-
-
-def _line(setting: Judged, width: int, names: Sequence[str]) -> str:
-    steps = "-" if setting.element_steps is None else f"{setting.element_steps:.2g}"
-    memory = "-" if setting.peak_memory_MB is None else f"{setting.peak_memory_MB:.0f}"
-    head = f"{setting.name:<{width}} {setting.wall_s:>8.3g} {setting.cpu_s:>8.3g} {steps:>10} {memory:>6}"
-    return head + _cells(_cell(setting, name) for name in names)
-
-
-def _cell(setting: Judged, name: str) -> str:
-    error = setting.error[name]
-    return "-" if error is None else f"{100 * error:.3g}{'*' if name in setting.front else ''}"
+def _line(
+    setting: Judged, values: Mapping[str, float | None], names: Sequence[str], front: Sequence[str] = ()
+) -> tuple[Cell, ...]:
+    """Return name and cost of a setting, and some of its values in per cent."""
+    memory = setting.peak_memory_MB
+    costs = (setting.wall_s, setting.cpu_s, setting.element_steps, None if memory is None else round(memory))
+    shares = [(name, values.get(name)) for name in names]
+    shown = [
+        None if share is None else f"{'*' if name in front else ''}{100 * share:.3g}"
+        for name, share in shares
+    ]
+    return (setting.name, *costs, *shown)
 
 
 LOOKS = {
@@ -182,7 +194,7 @@ def summary_markdown(document: dict[str, Any]) -> str:
         f"{machine['triad_GB_per_s']:.3g} GB/s and a CSR product of "
         f"{machine['csr_ns_per_element_step']:.3g} ns an element-step."
     )
-    return f"{_pairs(scenes)}\n\n{table(head, body)}\n\n{note}\n"
+    return f"{_pairs(scenes)}\n\n{Table.of(head, body).markdown()}\n\n{note}\n"
 
 
 def _pairs(scenes: Scenes) -> str:
@@ -199,7 +211,8 @@ def _pairs(scenes: Scenes) -> str:
     words = " and ".join(
         f"{name} in {sum(met for _, met in column)}" for name, column in zip(TARGETED, columns, strict=True)
     )
-    return f"{table(head, body)}\n\nTo {100 * WANTED:g} % by its own band: {words} of {len(ran)} sets."
+    sentence = f"To {100 * WANTED:g} % by its own band: {words} of {len(ran)} sets."
+    return f"{Table.of(head, body).markdown()}\n\n{sentence}"
 
 
 def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tuple[list[str], bool]:

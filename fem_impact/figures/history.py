@@ -1,46 +1,24 @@
-"""Names and colours of the energy accounts over time."""
+"""Contact force and energy accounts of a run over time."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent
+from fem_impact.files.atomic import write_text
 from fem_impact.outcome.groups import ContactInterval
-from fem_impact.tables.csv import Table, write_table
+from fem_impact.outcome.shares import ACCOUNTS
+from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["RUNNING", "AccountArea", "force_figure", "ledger_figure"]
+__all__ = ["force_figure", "ledger_figure"]
 
-
-@dataclass(frozen=True, slots=True)
-class AccountArea:
-    """One column of history.csv, its label and its colour."""
-
-    key: str
-    label: str
-    colour: str
-
-
-RUNNING = (
-    AccountArea("E_kinetic_rod_J", "kinetic rod", PALETTE["blue"]),
-    AccountArea("E_strain_rod_J", "strain rod", PALETTE["sky"]),
-    AccountArea("E_plastic_rod_J", "plastic rod", PALETTE["purple"]),
-    AccountArea("W_friction_J", "friction", PALETTE["green"]),
-    AccountArea("E_plastic_barrier_J", "plastic barrier", PALETTE["vermilion"]),
-    AccountArea("E_strain_barrier_J", "strain barrier", PALETTE["orange"]),
-    AccountArea("E_kinetic_barrier_J", "kinetic barrier", PALETTE["sand"]),
-    AccountArea("W_radiated_J", "radiated", PALETTE["yellow"]),
-    AccountArea("W_damping_J", "damping", PALETTE["night"]),
-    AccountArea("W_closing_J", "contact closing", PALETTE["grey"]),
-)
-"""Accounts of history.csv, bottom to top; gravity and the residual are not areas."""
 
 COLUMNS = ("time_s", "force_n_N", "force_t_N")
 
@@ -66,7 +44,7 @@ def force_figure(
     """
     path = Path(path)
     time, normal, tangential = (history.numbers(name) for name in COLUMNS)
-    write_table(path.with_suffix(".csv"), COLUMNS, zip(time, normal, tangential, strict=True))
+    write_text(path.with_suffix(".csv"), Table.of(COLUMNS, zip(time, normal, tangential, strict=True)).csv())
     with figure(path, shape, 3.6 if shape == "wide" else 4.0) as drawn:
         axes = drawn.add_subplot()
         axes.plot(time * 1e6, normal / 1e3, color=PALETTE["blue"], label="normal (out of the barrier)")
@@ -120,7 +98,7 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
         A column is missing or holds no numbers.
     """
     path, time = Path(path), history.numbers("time_s")
-    shares = {account.key: history.numbers(account.key) / e_0 for account in RUNNING}
+    shares = {account.column: history.numbers(account.column) / e_0 for account in ACCOUNTS}
     gravity = history.numbers("E_gravity_J") / e_0
     worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
     _write_data(path, time, shares, gravity, worst)
@@ -142,8 +120,8 @@ def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
     axes.stackplot(
         time[kept],
         [share[kept] for share in shares.values()],
-        labels=[f"{account.label}  {ends[account.key]}" for account in RUNNING],
-        colors=[account.colour for account in RUNNING],
+        labels=[f"{account.label}  {ends[account.column]}" for account in ACCOUNTS],
+        colors=[PALETTE[account.colour] for account in ACCOUNTS],
         edgecolor="white",
         linewidth=0.4,
     )
@@ -170,4 +148,4 @@ def _write_data(
     names = [key.removesuffix("_J") + "_over_E_0" for key in shares]
     columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
     rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
-    write_table(path.with_suffix(".csv"), columns, rows)
+    write_text(path.with_suffix(".csv"), Table.of(columns, rows).csv())

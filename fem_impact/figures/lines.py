@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure
-from fem_impact.tables.csv import Cell, write_table
+from fem_impact.files.atomic import write_text
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -70,7 +71,8 @@ class Panel:
 def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide", columns: int = 2) -> Path:
     """Draw panels over one legend that names more than one series; the data go beside it as CSV."""
     path = Path(path)
-    write_table(path.with_suffix(".csv"), COLUMNS, [row for panel in panels for row in _rows(panel)])
+    rows = [row for panel in panels for row in _rows(panel)]
+    write_text(path.with_suffix(".csv"), Table.of(COLUMNS, rows).csv())
     across = columns if shape == "wide" else 1
     down = math.ceil(len(panels) / across)
     labels = {series.label for panel in panels for series in panel.series}

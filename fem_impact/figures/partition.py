@@ -10,10 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure, percent
+from fem_impact.files.atomic import write_text
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
-from fem_impact.tables.csv import COMPARISON, write_table
+from fem_impact.tables.csv import COMPARISON
+from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +42,8 @@ def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") 
     listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
     values = [known(outcome.estimate(share.key)[0]) for share in listed]
     names = [share.key.name.removesuffix("_over_E_0") for share in listed]
-    write_table(path.with_suffix(".csv"), ("account", "fraction_of_E_0"), zip(names, values, strict=True))
+    rows = zip(names, values, strict=True)
+    write_text(path.with_suffix(".csv"), Table.of(("account", "fraction_of_E_0"), rows).csv())
     with figure(path, shape, 0.9 + 0.27 * max(len(listed), 1)) as drawn:
         axes = drawn.add_subplot()
         # a bar too thin to be seen is none: one below 0 would have its number on its name
@@ -78,7 +81,8 @@ def study_partition_figure(rows: Sequence[Outcome], path: str | Path, shape: Sha
     path = Path(path)
     listed = shares("figure")
     data = [[row.provenance.scene_id, *(or_none(share.of(row.energy)) for share in listed)] for row in rows]
-    write_table(path.with_suffix(".csv"), ("scene_id", *(share.key.name for share in listed)), data)
+    table = Table.of(("scene_id", *(share.key.name for share in listed)), data)
+    write_text(path.with_suffix(".csv"), table.csv())
     with figure(path, shape, 1.6 + 0.3 * len(rows) + (0.0 if shape == "wide" else 0.6)) as drawn:
         axes = drawn.add_subplot()
         _stack(axes, rows)
@@ -117,9 +121,8 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
     shape : "wide" or "narrow"
     """
     path = Path(path)
-    write_table(
-        path.with_suffix(".csv"), COMPARISON, [{name: row[name] for name in COMPARISON} for row in rows]
-    )
+    table = Table.of(COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
+    write_text(path.with_suffix(".csv"), table.csv())
     quantities, sets = _distinct(rows, "quantity"), _distinct(rows, "set")
     columns = min(4 if shape == "wide" else 2, max(len(quantities), 1))
     lines = math.ceil(max(len(quantities), 1) / columns)

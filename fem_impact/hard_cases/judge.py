@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.solid.run import SolidResult
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import read_csv
 
 __all__ = ["LEDGER", "Balance", "balance"]
 
@@ -50,7 +50,7 @@ class Balance:
 
 def balance(result: SolidResult, history: Path) -> Balance:
     """Return the balances of a finished or stopped run."""
-    table = read_table(history)
+    table = read_csv(history)
     E_0 = result.E_0
     heat = table.numbers("W_friction_J")
     momentum, spin = _momenta(result)

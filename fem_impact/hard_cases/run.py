@@ -16,7 +16,7 @@ from fem_impact.files.lock import directory_lock
 from fem_impact.hard_cases.scenes import CASES, HardCase
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.options import RunOptions
-from fem_impact.tables.markdown import table
+from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
@@ -190,7 +190,7 @@ def page(rows: Sequence[Row], date: str) -> str:
     passed, cpu = sum(row.passed for row in rows), sum(row.cpu_s for row in rows)
     line = f"{date}: {passed} of {len(rows)} as they must be, {cpu / 60:.1f} minutes of CPU."
     notes = [f"- `{row.name}`: {row.reason}" for row in rows if row.reason]
-    return "\n".join([line, "", table(HEAD, [_cells(row) for row in rows]), "", *notes]).rstrip()
+    return "\n".join([line, "", Table.of(HEAD, map(_cells, rows)).markdown(), "", *notes]).rstrip()
 
 
 def told(row: Row) -> str:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import wrapped
 from rigid import Estimate, first_order
 from rigid.experiments import (
@@ -25,9 +26,9 @@ __all__ = [
     "CSV_COLUMNS",
     "audit_document",
     "audit_text",
-    "csv_rows",
     "estimate_entry",
     "finite",
+    "records_table",
     "statistic_entry",
 ]
 
@@ -87,11 +88,9 @@ def audit_document(set_id: str | None = None) -> dict[str, Any]:
     }
 
 
-def csv_rows(document: dict[str, Any]) -> Iterator[list[Any]]:
-    """Yield every audited number in the order of `CSV_COLUMNS`."""
-    for record in document["records"]:
-        cells = [record[name] for name in CSV_COLUMNS]
-        yield [str(cell).lower() if isinstance(cell, bool) else cell for cell in cells]
+def records_table(document: Mapping[str, Any]) -> Table:
+    """Return every audited number in the order of `CSV_COLUMNS`."""
+    return Table.of(CSV_COLUMNS, document["records"])
 
 
 def _checked(set_id: str) -> str:
@@ -221,33 +220,46 @@ def _columns_text(document: Document) -> Iterator[str]:
             yield from wrapped(f"{which}: {words}", "  ")
 
 
+CONSTANT_COLUMNS = (
+    Column("set", left=True),
+    *(Column(name) for name in ("table", "d_c", "d_d", "mass", "k2")),
+    Column("other_d_c", "columns with another d_c", left=True),
+)
+
+
 def _constants_text(document: Document) -> Iterator[str]:
     yield ""
     yield "What the columns were worked out with (mm, kg, mm2)"
-    yield f"  {'set':<16}{'table':>6}{'d_c':>8}{'d_d':>8}{'mass':>9}{'k2':>9}  columns with another d_c"
-    for c in document["constants"]:
-        other = ", ".join(f"{name} {1e3 * d:.1f}" for name, d in c["other_d_c_m"].items())
-        other = other or ("velocities worked back from the coefficients" if c["reconstructed"] else "")
-        numbers = (
-            f"{1e3 * c['d_c_m']:8.1f}{1e3 * c['d_d_m']:8.1f}{c['mass_kg']:9.4f}{1e6 * c['k_squared_m2']:9.1f}"
-        )
-        yield f"  {c['set']:<16}{c['table']:>6}{numbers}  {other}".rstrip()
+    rows = tuple(_constants_row(c) for c in document["constants"])
+    yield Table(CONSTANT_COLUMNS, rows).terminal(indent="  ")
+
+
+def _constants_row(c: Mapping[str, Any]) -> tuple[Cell, ...]:
+    other = ", ".join(f"{name} {1e3 * d:.1f}" for name, d in c["other_d_c_m"].items())
+    other = other or ("velocities worked back from the coefficients" if c["reconstructed"] else "")
+    arms = (f"{1e3 * c[name]:.1f}" for name in ("d_c_m", "d_d_m"))
+    return (c["set"], c["table"], *arms, f"{c['mass_kg']:.4f}", f"{1e6 * c['k_squared_m2']:.1f}", other)
+
+
+APART_COLUMNS = (
+    *(Column(name, left=True) for name in ("set", "column", "row")),
+    Column("printed"),
+    Column("recomputed"),
+    Column("tolerance", "rounding", digits=2),
+)
 
 
 def _apart(document: Document) -> Iterator[str]:
     yield ""
-    yield "Disagreements, by reason (printed | recomputed; rounding allows)"
-    found = document["disagreements"]
-    for why in dict.fromkeys(d["explanation"] for d in found):
+    yield "Disagreements, by reason"
+    apart = document["disagreements"]
+    for why in dict.fromkeys(d["explanation"] for d in apart):
         yield from wrapped(f"- {why or 'no explanation is known'}")
-        yield from (_place(d) for d in found if d["explanation"] == why)
-    if not found:
+        of = [{**d, "row": _row(d["row"])} for d in apart if d["explanation"] == why]
+        rows = tuple(tuple(d[column.name] for column in APART_COLUMNS) for d in of)
+        yield Table(APART_COLUMNS, rows).terminal(indent="    ")
+    if not apart:
         yield "  none"
-
-
-def _place(d: Mapping[str, Any]) -> str:
-    where = f"{d['set']:<16}{d['column']:<7}{_row(d['row']):<20}"
-    return f"    {where}{d['printed']:>9.4g} | {d['recomputed']:<9.4g} ({d['tolerance']:.2g})"
 
 
 def _row(row: str) -> str:
@@ -260,13 +272,16 @@ def _scatter_text(document: Document) -> Iterator[str]:
         "Scatter, mean (SD); e_m of the mean motion with its 95 % interval for a contact point known "
         "to 0.5 mm"
     )
-    yield f"  {'set':<16}{'tests':>5}  {'e':<15}{'mu':<15}{'loss/E_0':<15}e_m of the mean motion"
-    for s in document["scatter"]:
-        kept = s["E_r_over_E_0"]
-        loss = f"{1 - kept['mean']:.3f} ({kept['sd']:.3f})"
-        numbers = f"{_spread(s['e']):<15}{_spread(s['mu']):<15}{loss:<15}{_interval(s['e_m_of_mean'])}"
-        yield f"  {s['set']:<16}{s['e']['tests']:>5}  {numbers}"
+    head = ("set", "tests", "e", "mu", "loss/E_0", "e_m of the mean motion")
+    rows = [_scatter_row(s) for s in document["scatter"]]
+    yield Table.of(head, rows, left=(0, 2, 3, 4, 5)).terminal(indent="  ")
     yield from _correlated(document)
+
+
+def _scatter_row(s: Mapping[str, Any]) -> tuple[Cell, ...]:
+    kept = s["E_r_over_E_0"]
+    loss = f"{1 - kept['mean']:.3f} ({kept['sd']:.3f})"
+    return (s["set"], s["e"]["tests"], _spread(s["e"]), _spread(s["mu"]), loss, _interval(s["e_m_of_mean"]))
 
 
 def _correlated(document: Document) -> Iterator[str]:

@@ -10,7 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.figures.style import INK, figure
-from fem_impact.tables.csv import Cell, write_table
+from fem_impact.files.atomic import write_text
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -65,7 +66,7 @@ def paths(out: Path, number: int) -> tuple[Path, Path]:
 
 def write_data(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Write the numbers of a figure beside it, units in the names."""
-    write_table(path, columns, rows)
+    write_text(path, Table.of(columns, rows).csv())
 
 
 @contextmanager

@@ -34,9 +34,20 @@ __all__ = ["RunSize", "about", "machine_memory", "require_memory", "run_size"]
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
 SMALLEST = {"rod": 0.62, "barrier": 0.65}  # stable step over that in which a wave crosses the finest edge
-UNTIL_APART = 1.43, 0.67  # time of a run over contact time and bending period: a second contact comes after one
-BASE, PER_ELEMENT, FILL = 2.1e8, 5.5e3, 1500.0  # bytes: program, an element, the rod's factor (n^4/3, n elements)
-SLICED, ELASTIC, YIELDING = 84e-9, 84e-9, 365e-9  # s of a step for a cell: in a slice, elastic, that may yield
+UNTIL_APART = (
+    1.43,
+    0.67,
+)  # time of a run over contact time and bending period: a second contact comes after one
+BASE, PER_ELEMENT, FILL = (
+    2.1e8,
+    5.5e3,
+    1500.0,
+)  # bytes: program, an element, the rod's factor (n^4/3, n elements)
+SLICED, ELASTIC, YIELDING = (
+    84e-9,
+    84e-9,
+    365e-9,
+)  # s of a step for a cell: in a slice, elastic, that may yield
 SETUP = 5.6e-4  # s for an element: mesh, assembly, modes
 
 
@@ -204,7 +215,11 @@ def _yielding_rod(scene: Scene, zones: Zones) -> float:
     radii = _radii(zones)
     low, high = np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii
     points, volume = _inside_rod(scene, low, high)
-    points = points + np.clip(-points[:, :1], 0.0, zones.reach) * [1.0, 0.0, 0.0]  # the ellipsoid is drawn out
+    points = points + np.clip(-points[:, :1], 0.0, zones.reach) * [
+        1.0,
+        0.0,
+        0.0,
+    ]  # the ellipsoid is drawn out
     share = float(np.mean(np.sum((points / radii) ** 2, axis=1) < 1)) if len(points) else 0.0
     return share * volume / zones.tip_size**3
 

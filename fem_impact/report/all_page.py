@@ -2,37 +2,26 @@
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Sequence
 from html import escape
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.report.findings import (
-    figure_id,
-    findings_section,
-    miss_sentence,
-    misses_section,
-    read_findings,
-)
+from fem_impact.report.findings import figure_id, findings_section
 from fem_impact.report.html import Markup, bullets, details, join, section, table
 from fem_impact.report.page import data_link, page, sources
 from fem_impact.report.sections import card
-from fem_impact.report.study_data import STUDY_SCHEMA, Study, read_study
+from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.study_page import comparison_part, partition_part
 from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_section, verdicts
+from fem_impact.study.document import LEDGER
+from fem_impact.tables.table import Table, read_csv
 
 __all__ = ["Conclusion", "conclusion_section", "conclusion_text", "conclusions", "write_all"]
-
-
-LEDGER, RECORD = "runs.csv", "outcome.json"
-SETS_COMMAND = "<p>Measured sets, and what follows from them below: <code>fem-impact study sets</code></p>"
 
 
 def write_all(results: Path, out: Path) -> Path:
@@ -43,112 +32,68 @@ def write_all(results: Path, out: Path) -> Path:
     ResultError
         There is no study in the folder, or one is damaged.
     """
-    told = {folder: held for folder in _folders(results) if (held := read_findings(folder)) is not None}
-    sets = _sets(results)
-    if not told and sets is None:
+    studies = [read_study(folder) for folder in _folders(results)]
+    if not studies:
         raise ResultError(f"{results}: holds no study. Run one, such as fem-impact study gamma --quick.")
     figures = make_directory(out / "figures")
-    ledger = _ledger(told, _runs(results / "sets", sets) if sets else [])
-    write_text(out / "ledger.csv", ledger)
-    concluded = conclusions(told, sets)
-    folders = ([results / "sets"] if sets else []) + list(told)
-    write_text(out / "summary.md", _markdown(folders, conclusion_text(concluded)))
+    ledger = _ledger(studies)
+    write_text(out / "ledger.csv", ledger.csv())
+    concluded = conclusions(studies)
+    write_text(out / "summary.md", _markdown(studies, conclusion_text(concluded)))
     body = [
-        _cards(told, sets, ledger),
+        _cards(studies, ledger),
         conclusion_section(concluded),
-        *(_sets_part(sets, figures) if sets else []),
-        *(findings_section(held, folder) for folder, held in told.items()),
+        *(part for study in studies for part in _parts(study, figures)),
         section("Ledger of every run", _ledger_part(ledger)),
-        sources({name for held in told.values() for name in held["sources"]} | _effects(sets)),
+        sources({name for study in studies for name in study.sources}),
     ]
-    lead = f"{len(told) + (sets is not None)} studies of where the energy of a dropped rod goes."
-    text = page("Where the energy of a dropped steel rod goes", "All studies", lead, _footer(sets), body)
+    lead = f"{len(studies)} studies of where the energy of a dropped rod goes."
+    text = page("Where the energy of a dropped steel rod goes", "All studies", lead, _footer(studies), body)
     return write_text(out / "report.html", text)
 
 
 def _folders(results: Path) -> list[Path]:
-    return sorted(place for place in results.iterdir() if place.is_dir()) if results.is_dir() else []
+    """Return the folders that hold a study, that of the measured sets first."""
+    places = results.iterdir() if results.is_dir() else ()
+    found = [place for place in places if (place / "study.json").is_file()]
+    return sorted(found, key=lambda place: (place.name != "sets", place.name))
 
 
-def _sets(results: Path) -> Study | None:
-    path = results / "sets" / "study.json"
-    return read_study(path) if path.is_file() and STUDY_SCHEMA in read_text(path) else None
-
-
-def _effects(sets: Study | None) -> set[str]:
-    return {effect for row in sets.rows for effect in row.provenance.effects} if sets else set()
-
-
-def _sets_part(sets: Study, figures: Path) -> list[Markup]:
-    rows = list(sets.rows)
+def _parts(study: Study, figures: Path) -> list[Markup]:
+    """Return the sections of a study; of one with a comparison also what the paper's conclusions come to."""
+    if not study.rows:
+        return [findings_section(study)]
+    since = study.folder / "study.json"
     return [
-        section("Model beside measurement", Markup(SETS_COMMAND), comparison_part(sets, figures)),
-        section("Where the energy went", partition_part(sets, figures)),
-        misses_section(sets),
-        verdict_section(verdicts(rows), figures),
-        marker_section(rows),
+        findings_section(study),
+        section("Model and measurements", comparison_part(study, since)),
+        section("Where the energy went", partition_part(study, since)),
+        verdict_section(verdicts(study.rows), figures),
+        marker_section(study.rows),
     ]
 
 
-def _cards(told: dict[Path, dict[str, Any]], sets: Study | None, ledger: str) -> Markup:
-    failed = sum(len(held["failures"]) for held in told.values()) + (len(sets.failures) if sets else 0)
-    runs = ledger.count("\n") - 1
-    count = str(len(told) + (sets is not None))
-    cards = [card("studies", count, ""), card("runs", str(runs), f"{failed} failed")]
+def _cards(studies: Sequence[Study], ledger: Table) -> Markup:
+    failed = sum(len(study.failures) for study in studies)
+    cards = [card("studies", str(len(studies)), ""), card("runs", str(len(ledger)), f"{failed} failed")]
     return Markup(f'<div class="cards">{join(cards).text}</div>')
 
 
-def _runs(folder: Path, sets: Study) -> list[Outcome]:
-    """Return the runs of the measured sets; coarser meshes and changed inputs where their files stand."""
-    shown = {row.provenance.scene_id for row in sets.rows}
-    beside = [place for place in _folders(folder) if place.name not in shown]
-    found = [(place.name, Outcome.read(place / RECORD)) for place in beside if (place / RECORD).is_file()]
-    return [*sets.rows, *(_renamed(run, name) for name, run in found)]
-
-
-def _renamed(run: Outcome, name: str) -> Outcome:
-    return replace(run, provenance=replace(run.provenance, scene_id=name))
-
-
-def _ledger(told: Iterable[Path], runs: Iterable[Outcome]) -> str:
+def _ledger(studies: Iterable[Study]) -> Table:
     """Return one table of the runs of all studies."""
-    lines = io.StringIO()
-    writer, head = csv.writer(lines, lineterminator="\n"), None
-    for folder in told:
-        for row in csv.reader(io.StringIO(read_text(folder / LEDGER))):
-            if row and row[0] == "run":
-                head = head or writer.writerow(["study", *row])
-            elif row:
-                writer.writerow([folder.name, *row])
-    names = _columns(lines.getvalue())
-    if head is None:
-        writer.writerow(names)
-    for run in runs:
-        values = run.to_dict()
-        writer.writerow(["sets", run.provenance.scene_id, *(_cell(values[name]) for name in names[2:])])
-    return lines.getvalue()
+    runs = ((study.folder.name, read_csv(study.folder / "runs.csv")) for study in studies)
+    rows = [(name, *cells) for name, table in runs for cells in zip(*map(table.cells, LEDGER), strict=True)]
+    return Table.of(("study", *LEDGER), rows, left=range(len(LEDGER) + 1))
 
 
-def _columns(text: str) -> list[str]:
-    default = "study,run,fidelity,scene_digest,tip_size_m,contacts,e_edge,mu,residual_over_E_0,wall_s"
-    return (text.partition("\n")[0] or default).split(",")
-
-
-def _cell(value: Any) -> Any:
-    """Return a value of a record; of the contacts their number."""
-    return len(value) if isinstance(value, list) else value
-
-
-def _ledger_part(ledger: str) -> Markup:
+def _ledger_part(ledger: Table) -> Markup:
     """Return the finite-element runs as a table, and all runs as a file inside the page."""
-    head, *rows = list(csv.reader(io.StringIO(ledger)))
-    at = head.index("fidelity")
-    solid = [row for row in rows if row[at] == "solid"]
-    words = f"{len(rows)} runs, {len(solid)} of them with finite elements: "
-    link = data_link(ledger.encode(), "ledger.csv", "ledger.csv")
-    shown = [[_short(cell) for cell in row] for row in solid]
-    listed = details("Finite-element runs", table(head, shown, compact=True))
-    return join([Markup(f"<p>{words}{link}</p>"), listed])
+    at = ledger.names.index("fidelity")
+    solid = [tuple(_short(str(cell)) for cell in row) for row in ledger.rows if row[at] == "solid"]
+    words = f"{len(ledger)} runs, {len(solid)} of them with finite elements: "
+    link = data_link(ledger.csv().encode(), "ledger.csv", "ledger.csv")
+    shown = table(Table(ledger.columns, tuple(solid)), compact=True)
+    return join([Markup(f"<p>{words}{link}</p>"), details("Finite-element runs", shown)])
 
 
 def _short(cell: str) -> str:
@@ -158,22 +103,23 @@ def _short(cell: str) -> str:
         return cell[:24]
 
 
-def _markdown(folders: Iterable[Path], concluded: str) -> str:
+def _markdown(studies: Iterable[Study], concluded: str) -> str:
     parts = ["# Where the energy of a dropped steel rod goes", concluded]
-    parts += [_summary(folder) for folder in folders]
+    parts += [_summary(study.folder) for study in studies]
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def _summary(folder: Path) -> str:
-    """Return a study's summary one heading lower, its pictures found from the report's folder."""
+    """Return a study's summary one heading lower, with its pictures' places seen from the report's folder."""
     text = read_text(folder / "summary.md").strip().replace("](figures/", f"](../{folder.name}/figures/")
-    return text.replace("# ", "## ", 1) if text.startswith("# ") else f"## {folder.name}\n\n{text}"
+    return text.replace("# ", "## ", 1)
 
 
-def _footer(sets: Study | None) -> str:
-    if not sets or not sets.rows:
+def _footer(studies: Sequence[Study]) -> str:
+    row = next((row for study in studies for row in study.rows), None)
+    if row is None:
         return "Versions and dates of the runs stand in the ledger."
-    versions = ", ".join(f"{name} {version}" for name, version in sets.rows[0].provenance.versions.items())
+    versions = ", ".join(f"{name} {version}" for name, version in row.provenance.versions.items())
     return f"Computed with {versions}; dates of the runs stand in the ledger."
 
 
@@ -185,26 +131,31 @@ class Conclusion(NamedTuple):
     file: str = ""
 
 
-def conclusions(told: Mapping[Path, Mapping[str, Any]], sets: Study | None) -> list[Conclusion]:
-    """Return what the measured sets come to, then what each study concludes."""
-    found = _of_sets(sets) if sets else []
-    for folder, held in told.items():
-        for entry in held["conclusions"]:
-            file = f"../{folder.name}/figures/{entry['name']}.png"
-            found.append(Conclusion(entry["sentence"], figure_id(held["study"], entry["name"]), file))
-    return found
+def conclusions(studies: Iterable[Study]) -> list[Conclusion]:
+    """Return what each study concludes, that of the measured sets with what the paper's come to."""
+    listed = []
+    for study in studies:
+        listed += _of_paper(study.rows)
+        listed += [_conclusion(study, entry["name"], entry["sentence"]) for entry in study.conclusions]
+    return listed
 
 
-def _of_sets(sets: Study) -> list[Conclusion]:
-    rows: Sequence[Outcome] = [row for row in sets.rows if not isinstance(row.contact.markers.V_n, Unknown)]
-    judged = [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(sets.rows)]
-    more = [marker_sentence(rows), miss_sentence(sets.explanations) if sets.explanations else ""]
-    return judged + [Conclusion(sentence) for sentence in more if sentence]
+def _conclusion(study: Study, name: str, sentence: str) -> Conclusion:
+    if not name:
+        return Conclusion(sentence)
+    file = f"../{study.folder.name}/figures/{name}.png"
+    return Conclusion(sentence, figure_id(study.study, name), file)
 
 
-def conclusion_section(found: Sequence[Conclusion]) -> Markup:
+def _of_paper(rows: Sequence[Outcome]) -> list[Conclusion]:
+    judged = [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(rows)]
+    marked = marker_sentence([row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)])
+    return judged + ([Conclusion(marked)] if marked else [])
+
+
+def conclusion_section(listed: Sequence[Conclusion]) -> Markup:
     """Return the page of conclusions, each linked to its figure."""
-    return section("Conclusions", bullets(_linked(one) for one in found))
+    return section("Conclusions", bullets(_linked(one) for one in listed))
 
 
 def _linked(one: Conclusion) -> Markup:
@@ -212,7 +163,7 @@ def _linked(one: Conclusion) -> Markup:
     return Markup(escape(one.sentence) + link)
 
 
-def conclusion_text(found: Sequence[Conclusion]) -> str:
+def conclusion_text(listed: Sequence[Conclusion]) -> str:
     """Return the same as Markdown, nothing when there is none."""
-    lines = [f"- {one.sentence}" + (f" ([figure]({one.file}))" if one.file else "") for one in found]
+    lines = [f"- {one.sentence}" + (f" ([figure]({one.file}))" if one.file else "") for one in listed]
     return "\n".join(["## Conclusions", "", *lines]) if lines else ""

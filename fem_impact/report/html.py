@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
-from typing import Any
+
+from fem_impact.tables.table import Table, number
 
 __all__ = [
     "Markup",
     "bullets",
-    "cell",
     "details",
     "join",
-    "number",
     "paragraph",
     "place",
     "section",
@@ -64,70 +63,14 @@ def bullets(items: Iterable[str | Markup]) -> Markup:
     return Markup(f"<ul>\n{lines}\n</ul>" if lines else "")
 
 
-def cell(content: str | Markup, kind: str = "") -> Markup:
-    """Return a table cell of a kind: number, inside, outside."""
-    shown = f' class="{escape(kind)}"' if kind else ""
-    return Markup(f"<td{shown}>{_safe(content)}</td>")
+def table(rows: Table, caption: str = "", compact: bool = False) -> Markup:
+    """Return a table, nothing when it has no rows."""
+    return Markup(rows.html(caption, compact))
 
 
-def table(
-    head: Sequence[str],
-    rows: Iterable[Sequence[str | Markup]],
-    caption: str = "",
-    numbers: Iterable[int] = (),
-    compact: bool = False,
-) -> Markup:
-    """Return a table that scrolls sideways where the screen is narrow, nothing when it has no rows.
-
-    Parameters
-    ----------
-    head : sequence of str
-        Column titles.
-    rows : iterable of sequences
-        Cells as text, or made by ``cell``.
-    caption : str
-        What the table shows.
-    numbers : iterable of int
-        Columns set flush right.
-    compact : bool
-        Whether each row is one line.
-    """
-    right = set(numbers)
-    titles = "".join(f"<th{_kind(at in right)}>{escape(text)}</th>" for at, text in enumerate(head))
-    body = "\n".join(_row(row, right) for row in rows)
-    above = f"<caption>{escape(caption)}</caption>" if caption else ""
-    inner = f"{above}<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}\n</tbody>"
-    look = ' class="compact"' if compact else ""
-    return Markup(f'<div class="scroll"><table{look}>{inner}</table></div>' if body else "")
-
-
-def number(value: Any) -> str:
-    """Return a value for the eye: four digits, a true minus sign, a dash for null."""
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, int):
-        return f"{value:,}".replace(",", "\u202f").replace("-", "−")
-    return f"{value:.4g}".replace("-", "−")
-
-
-def with_band(value: Any, width: Any) -> str:
+def with_band(value: float | None, width: float | None) -> str:
     """Return a value with its half-width, where it has one."""
     return number(value) if width is None or value is None else f"{number(value)} ± {width:.2g}"
-
-
-def _row(row: Sequence[str | Markup], right: set[int]) -> str:
-    return "<tr>" + "".join(_cell(item, at in right) for at, item in enumerate(row)) + "</tr>"
-
-
-def _cell(item: str | Markup, right: bool) -> str:
-    made = isinstance(item, Markup) and item.text.startswith("<td")
-    return item.text if isinstance(item, Markup) and made else f"<td{_kind(right)}>{_safe(item)}</td>"
-
-
-def _kind(right: bool) -> str:
-    return ' class="number"' if right else ""
 
 
 def _safe(content: str | Markup) -> str:

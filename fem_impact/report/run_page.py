@@ -12,7 +12,7 @@ from fem_impact.files.atomic import make_directory, read_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
 from fem_impact.physics.flash import ASSUMPTIONS
-from fem_impact.report.html import Markup, bullets, details, join, number, paragraph, section, table
+from fem_impact.report.html import Markup, bullets, details, join, paragraph, section, table
 from fem_impact.report.page import page, picture, sources
 from fem_impact.report.sections import (
     all_keys,
@@ -28,6 +28,7 @@ from fem_impact.report.sections import (
     strangers,
     unknown,
 )
+from fem_impact.tables.table import Cell, Table
 
 __all__ = ["run_page"]
 
@@ -138,13 +139,13 @@ def _arms(outcome: Outcome) -> Markup:
         "impulse": "centre of the impulse",
     }
     rows = [[title, *_arms_row(outcome, name)] for name, title in titles.items()]
-    return table(head, rows, numbers=range(1, 7))
+    return table(Table.of(head, rows))
 
 
-def _arms_row(outcome: Outcome, name: str) -> list[str]:
+def _arms_row(outcome: Outcome, name: str) -> list[Cell]:
     d_c, d_d, *others = _keys("restitution", name)
     arms = [or_none(key.of(outcome)) for key in (d_c, d_d)]
-    lengths = [number(None if arm is None else 1e3 * arm) for arm in arms]
+    lengths = [None if arm is None else 1e3 * arm for arm in arms]
     return [*lengths, *(estimated(outcome, key) for key in others)]
 
 

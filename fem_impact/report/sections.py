@@ -19,7 +19,6 @@ from fem_impact.report.html import (
     bullets,
     details,
     join,
-    number,
     paragraph,
     section,
     table,
@@ -28,7 +27,7 @@ from fem_impact.report.html import (
 from fem_impact.report.page import FILMS, film, picture
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import Cell, Missing, Table, read_csv
 
 __all__ = [
     "all_keys",
@@ -40,6 +39,7 @@ __all__ = [
     "has_film",
     "history_figures",
     "key_table",
+    "known_cell",
     "notices",
     "sentences",
     "strangers",
@@ -66,7 +66,7 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
     if outcome.provenance.fidelity != "solid" or not intervals:
         return []
     try:
-        last = read_table(folder / "history.csv").numbers("time_s")[-1]
+        last = read_csv(folder / "history.csv").numbers("time_s")[-1]
     except (ResultError, IndexError):
         return []  # that it is missing or damaged is told where its curves would stand
     end = intervals[-1].end
@@ -95,7 +95,7 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
         return section("Over time", paragraph("No curves over time: only the finite elements write them."))
     since = None if again else folder / "history.csv"
     try:
-        history = read_table(folder / "history.csv")
+        history = read_csv(folder / "history.csv")
         figures = make_directory(folder / "figures")
         ledger = picture(
             lambda path, shape: ledger_figure(history, outcome.energy.E_0, path, shape),
@@ -134,7 +134,7 @@ def key_table(outcome: Outcome, keys: Iterable[Key], caption: str = "") -> Marku
     """
     shown = [key for key in keys if not isinstance(key.of(outcome), Unknown)]
     rows = [(_meaning(key), estimated(outcome, key), _unit(key)) for key in shown]
-    return table(("quantity", "value", "unit"), rows, caption, numbers=(1,))
+    return table(Table.of(("quantity", "value", "unit"), rows, left=(0, 2)), caption)
 
 
 def card(name: str, value: str, note: str = "") -> Markup:
@@ -155,7 +155,7 @@ def contacts_table(outcome: Outcome) -> Markup:
     head = ("contact", "start, µs", "end, µs", "normal impulse, N s", "tangential, N s", "ratio")
     intervals = or_none(outcome.contact.intervals) or ()
     rows = [_contact(at, contact) for at, contact in enumerate(intervals, start=1)]
-    return table(head, rows, "Contact intervals, impulses on the whole rod.", numbers=range(1, 6))
+    return table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
 
 
 def unknown(rows: Sequence[Outcome]) -> Markup:
@@ -167,7 +167,7 @@ def unknown(rows: Sequence[Outcome]) -> Markup:
     lines = [(_names(names), reason, _where(names, len(rows))) for reason, names in reasons.items()]
     shown = lines if len(rows) > 1 else [line[:2] for line in lines]
     head = ("key", "why it is not known", "runs")[: len(shown[0]) if shown else 2]
-    return section("What is not known", table(head, shown))
+    return section("What is not known", table(Table.of(head, shown, left=range(len(head)))))
 
 
 def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -> list[str]:
@@ -184,20 +184,18 @@ def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -
 def all_keys(outcome: Outcome) -> Markup:
     """Return every plain key of the record, to be unfolded."""
     plain = [key for key in KEYS if key.kind in ("number", "count", "flag", "text")]
-    rows = [
-        (Markup(f"<code>{key.name}</code>"), _value(outcome, key), key.unit, key.meaning) for key in plain
-    ]
-    return details("Every key of the record", table(("key", "value", "unit", "meaning"), rows))
+    rows = [(f"`{key.name}`", known_cell(key.of(outcome)), key.unit, key.meaning) for key in plain]
+    shown = Table.of(("key", "value", "unit", "meaning"), rows, left=range(4))
+    return details("Every key of the record", table(shown))
 
 
-def _value(outcome: Outcome, key: Key) -> str:
-    value = or_none(key.of(outcome))
-    return value if isinstance(value, str) else number(value)
+def known_cell(value: Cell | Unknown) -> Cell:
+    """Return a value of an outcome as a cell, with the reason where it is not known."""
+    return Missing(value.reason) if isinstance(value, Unknown) else value
 
 
-def _meaning(key: Key) -> Markup:
-    meaning = key.meaning.replace(", as a fraction of E_0.", ".")
-    return Markup(f"{escape(meaning)} <code>{key.name}</code>")
+def _meaning(key: Key) -> str:
+    return f"{key.meaning.replace(', as a fraction of E_0.', '.')} `{key.name}`"
 
 
 def _unit(key: Key) -> str:
@@ -206,15 +204,14 @@ def _unit(key: Key) -> str:
     return "" if key.unit == "-" else key.unit.replace("m2", "m²")
 
 
-def _contact(at: int, contact: ContactInterval) -> tuple[str, ...]:
+def _contact(at: int, contact: ContactInterval) -> tuple[Cell, ...]:
     normal, tangential = contact.impulse_n, contact.impulse_t
-    ratio = number(tangential / normal) if normal else "–"
     times = (f"{contact.start * 1e6:.1f}", f"{contact.end * 1e6:.1f}")
-    return (str(at), *times, number(normal), number(tangential), ratio)
+    return (at, *times, normal, tangential, tangential / normal if normal else None)
 
 
-def _names(names: Iterable[str]) -> Markup:
-    return Markup(", ".join(f"<code>{escape(name)}</code>" for name in names))
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
 
 
 def _where(names: Mapping[str, Sequence[str]], count: int) -> str:
@@ -239,23 +236,23 @@ def effects_section(outcome: Outcome) -> Markup:
         "An effect is needed when its number is above its threshold. The changes are about what leaving it "
         "out does. The run time is the share of its own parts; that of friction and rates is estimated."
     )
-    return section("Effects", table(HEAD, rows, caption, numbers=range(3, 8)))
+    return section("Effects", table(Table.of(HEAD, rows, left=range(3)), caption))
 
 
-def _row(choice: EffectChoice) -> list[str]:
+def _row(choice: EffectChoice) -> list[Cell]:
     return [
         choice.name,
         f"{'on' if choice.on else 'off'}{', by the scene' if choice.forced else ''}",
         choice.measure,
-        number(choice.number),
-        number(choice.threshold),
+        choice.number,
+        choice.threshold,
         *_changes(choice),
-        "–" if choice.share is None else percent(choice.share),
+        None if choice.share is None else percent(choice.share),
     ]
 
 
-def _changes(choice: EffectChoice) -> list[str]:
+def _changes(choice: EffectChoice) -> list[Cell]:
     """Return what leaving it out changes; nothing for a barrier beside the one in use."""
     if choice.name in BARRIERS and not choice.on:
-        return ["–", "–"]
+        return [None, None]
     return [f"± {c:.1g}".replace("-", "−") for c in (choice.change_of_e, choice.change_of_vibration)]

@@ -11,95 +11,106 @@ from typing import Any
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text
 from fem_impact.outcome.record import Outcome
+from fem_impact.study.document import SCHEMA
 from fem_impact.tables.csv import COMPARISON
 
-__all__ = ["STUDY_SCHEMA", "Study", "read_study"]
+__all__ = ["Study", "read_study"]
 
 
-STUDY_SCHEMA = "fem-impact/study/1"
-TOLD = {
-    "explanations": ("set", "quantity", "model", "measured_mean", "shares", "could"),
-    "sensitivity": ("set", "quantity", "input", "base", "changed"),
+Record = Mapping[str, Any]
+TEXTS = ("study", "title", "command")
+SENTENCES = ("findings", "assumptions", "sources")
+RECORDS = {
+    "conclusions": ("name", "sentence"),
+    "figures": ("name", "caption"),
+    "sheets": ("name", "caption", "columns", "rows"),
+    "failures": ("scene_id", "error"),
+    "comparison": COMPARISON,
 }
+NUMBERS = ("model", "band", "measured_mean", "measured_sd", "measured_low", "measured_high", "n")
 
 
 @dataclass(frozen=True, slots=True)
 class Study:
-    """A study as its report needs it.
+    """What a study published (`fem_impact.study.document.StudyReport`), as its page needs it.
 
     Parameters
     ----------
-    title : str
-    rows : tuple of Outcome
-        One record a run.
-    comparison : tuple of mappings
-        Rows with the keys of ``fem_impact.output.COMPARISON``.
+    folder : Path
+        Directory of the study, with its figures and CSV tables.
+    study, title, command : str
+    findings, assumptions, sources : tuple of str
+    conclusions, figures, sheets : tuple of mappings
+    runs : int
+        Jobs of the study.
     failures : tuple of mappings
         Runs that gave no record: ``scene_id`` and ``error``.
-    notes : tuple of str
-        Sentences of the study, such as the friction rule.
-    explanations : tuple of mappings
-        What could explain a quantity outside its interval (`fem_impact.study.inputs.explanations`).
-    sensitivity : tuple of mappings
-        What each changed input does: ``set``, ``quantity``, ``input``, ``base``, ``changed``.
+    rows : tuple of Outcome
+        Runs that the page shows one by one.
+    comparison : tuple of mappings
+        Rows with the keys of `fem_impact.tables.csv.COMPARISON`.
     """
 
+    folder: Path
+    study: str
     title: str
+    command: str
+    findings: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    sources: tuple[str, ...]
+    conclusions: tuple[Record, ...]
+    figures: tuple[Record, ...]
+    sheets: tuple[Record, ...]
+    runs: int
+    failures: tuple[Record, ...]
     rows: tuple[Outcome, ...]
-    comparison: tuple[Mapping[str, Any], ...]
-    failures: tuple[Mapping[str, str], ...]
-    notes: tuple[str, ...]
-    explanations: tuple[Mapping[str, Any], ...]
-    sensitivity: tuple[Mapping[str, Any], ...]
+    comparison: tuple[Record, ...]
 
 
-def read_study(path: str | Path) -> Study:
-    """Read study.json: ``schema``, ``rows``, ``comparison``; optional ``title``, ``failures``, ``notes``.
+def read_study(folder: Path) -> Study:
+    """Read ``folder/study.json``.
 
     Raises
     ------
     ResultError
-        The file is missing, damaged or of another schema, or a row is wrong; file and place are named.
+        The file is missing, damaged or of another schema, or a part of it is wrong; file and place are named.
     """
-    held = _object(path)
-    if held.get("schema") != STUDY_SCHEMA:
-        raise ResultError(f'{path}: key "schema" = {held.get("schema")!r} is not {STUDY_SCHEMA!r}.')
-    listed = enumerate(_list(held, "rows", path))
-    rows = [Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in listed]
-    comparison = _list(held, "comparison", path)
-    for at, row in enumerate(comparison):
-        _check(row, at, path)
-    failures = [
-        {"scene_id": str(item.get("scene_id", "?")), "error": str(item.get("error", "no reason given"))}
-        for item in _list(held, "failures", path)
-    ]
-    notes = [str(note) for note in held.get("notes") or []]
-    title = str(held.get("title") or "Model beside measurement")
-    told = {name: _records(held, name, keys, path) for name, keys in TOLD.items()}
-    return Study(title, tuple(rows), tuple(comparison), tuple(failures), tuple(notes), **told)
+    path = folder / "study.json"
+    document = _document(path)
+    parts: dict[str, Any] = {name: _typed(document, name, str, path) for name in TEXTS}
+    parts |= {name: tuple(map(str, _typed(document, name, list, path))) for name in SENTENCES}
+    parts |= {name: _records(document, name, keys, path) for name, keys in RECORDS.items()}
+    _check_names([*parts["figures"], *parts["sheets"]], path)
+    _check_numbers(parts["comparison"], path)
+    rows = tuple(
+        Outcome.from_dict(row, source=f"{path}: rows[{at}]")
+        for at, row in enumerate(_records(document, "rows", (), path))
+    )
+    runs = _typed(document, "runs", int, path)
+    return Study(folder, **parts, rows=rows, runs=runs)
 
 
-def _object(path: str | Path) -> dict[str, Any]:
+def _document(path: Path) -> dict[str, Any]:
     try:
-        held = json.loads(read_text(path))
-    except (json.JSONDecodeError, RecursionError) as error:
+        document = json.loads(read_text(path))
+    except (ValueError, RecursionError) as error:
         raise ResultError(f"{path}: not readable JSON ({error}); it may be cut off.") from error
-    if not isinstance(held, dict):
-        raise ResultError(f"{path}: holds no study.")
-    return held
+    schema = document.get("schema") if isinstance(document, dict) else None
+    if schema != SCHEMA:
+        raise ResultError(f'{path}: key "schema" = {schema!r} is not {SCHEMA!r}; run the study again.')
+    return dict(document)
 
 
-def _list(held: Mapping[str, Any], name: str, path: str | Path) -> list[dict[str, Any]]:
-    items = held.get(name, [])
+def _typed(document: Record, name: str, kind: type, path: Path) -> Any:
+    if not isinstance(document.get(name), kind):
+        raise ResultError(f'{path}: key "{name}" is missing or of the wrong kind.')
+    return document[name]
+
+
+def _records(document: Record, name: str, keys: tuple[str, ...], path: Path) -> tuple[Any, ...]:
+    items = document.get(name)
     if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
         raise ResultError(f'{path}: key "{name}" must be a list of records.')
-    return items
-
-
-def _records(
-    held: Mapping[str, Any], name: str, keys: tuple[str, ...], path: str | Path
-) -> tuple[Mapping[str, Any], ...]:
-    items = _list(held, name, path)
     for at, item in enumerate(items):
         missing = [key for key in keys if key not in item]
         if missing:
@@ -107,11 +118,16 @@ def _records(
     return tuple(items)
 
 
-def _check(row: Mapping[str, Any], at: int, path: str | Path) -> None:
-    missing = [name for name in COMPARISON if name not in row]
-    if missing:
-        raise ResultError(f'{path}: comparison[{at}] lacks the key "{missing[0]}".')
-    for name in ("model", "band", "measured_mean", "measured_sd", "measured_low", "measured_high", "n"):
-        value = row[name]
-        if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
-            raise ResultError(f'{path}: comparison[{at}], key "{name}" = {value!r} is not a number.')
+def _check_names(records: list[Record], path: Path) -> None:
+    """Refuse a name that is no plain file name: it becomes part of a path."""
+    for record in records:
+        if Path(str(record["name"])).name != record["name"]:
+            raise ResultError(f'{path}: key "name" = {record["name"]!r} is no name of a figure or table.')
+
+
+def _check_numbers(rows: tuple[Record, ...], path: Path) -> None:
+    for at, row in enumerate(rows):
+        for name in NUMBERS:
+            value = row[name]
+            if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
+                raise ResultError(f'{path}: comparison[{at}], key "{name}" = {value!r} is not a number.')

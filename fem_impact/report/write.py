@@ -6,8 +6,6 @@ from pathlib import Path
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_text
-from fem_impact.report.findings import findings_section, read_findings
-from fem_impact.report.page import page, sources
 from fem_impact.report.run_page import run_page
 from fem_impact.report.study_page import study_page
 
@@ -37,11 +35,6 @@ def write_report(result_dir: str | Path, again: bool = True) -> Path:
         The folder cannot be written.
     """
     folder = Path(result_dir)
-    told = read_findings(folder)
-    if told is not None:
-        body = [findings_section(told, folder), sources(told["sources"])]
-        text = page(told["title"], "Study", "", f"Made by {told['command']}.", body)
-        return write_text(folder / "report.html", text)
     if (folder / "study.json").is_file():
         return write_text(folder / "report.html", study_page(folder, again))
     if (folder / "outcome.json").is_file():

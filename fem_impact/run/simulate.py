@@ -97,10 +97,12 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
 
 
 def _write(outcome: Outcome, out: Path) -> None:
-    from fem_impact.tables.csv import CONTACTS, write_table
+    from fem_impact.files.atomic import write_text
+    from fem_impact.tables.csv import CONTACTS
+    from fem_impact.tables.table import Table
 
     contacts = outcome.to_dict()["contacts"]
     if contacts is not None:
-        write_table(out / "contacts.csv", CONTACTS, contacts)
+        write_text(out / "contacts.csv", Table.of(CONTACTS, contacts).csv())
     outcome.write(out / "outcome.json")
     (out / CHECKPOINT).unlink(missing_ok=True)

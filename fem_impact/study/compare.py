@@ -32,7 +32,7 @@ MEASURED = (
     ComparedQuantity("E_lt/E_0", KEY_TABLE["E_lt_paper_over_E_0"], "E_lt_over_E_0"),
     ComparedQuantity("E_r/E_0", KEY_TABLE["E_r_over_E_0"], "E_r_over_E_0"),
 )
-UNSEEN = tuple(ComparedQuantity(f"{share.label}/E_0", share.key) for share in shares("comparison"))
+UNSEEN = tuple(ComparedQuantity(share.title, share.key) for share in shares("comparison"))
 
 
 def verdict(model: float, band: float | None, measured: Statistic) -> str:
@@ -99,23 +99,3 @@ def _verdict(
         return verdict(model, band, found)
     vibration = quantity.key.path == ("energy", "vibration")
     return "below floor" if vibration and known(outcome.energy.below_floor) else "not measurable by camera"
-
-
-def text_table(rows: list[Row]) -> str:
-    """Return the rows as aligned text."""
-    head = (
-        f"{'set':<16}{'quantity':<22}{'model':>9} {'± mesh':>8}  {'measured':>9} {'SD':>7}  "
-        f"{'95 % of mean':<18}verdict"
-    )
-    lines = [head, "-" * len(head)]
-    for row in rows:
-        if row["measured_mean"] is None:
-            measured = f"{'-':>9} {'-':>7}  {'-':<18}"
-        else:
-            span = f"{row['measured_low']:.3f} .. {row['measured_high']:.3f}"
-            measured = f"{row['measured_mean']:9.3f} {row['measured_sd']:7.3f}  {span:<18}"
-        band = f"{row['band']:8.4f}" if row["band"] is not None else f"{'-':>8}"
-        model = f"{row['model']:9.4f}" if row["model"] is not None else f"{'-':>9}"
-        name = row["quantity"] + (f", {row['unit']}" if "/s" in row["unit"] else "")
-        lines.append(f"{row['set']:<16}{name:<22}{model} {band}  {measured}{row['verdict']}")
-    return "\n".join(lines)

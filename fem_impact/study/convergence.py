@@ -14,9 +14,10 @@ from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import Key, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.shares import shares
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.study.document import Paper, Picture, Request, Sheet, StudyResult, publish
-from fem_impact.tables.csv import Cell
+from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -34,11 +35,8 @@ QUANTITIES = {
     "mu": KEY_TABLE["mu"],
     "Omega, rad/s": KEY_TABLE["Omega_rad_per_s"],
     "E_r/E_0": KEY_TABLE["E_r_over_E_0"],
-    "vibration/E_0": KEY_TABLE["E_vib_over_E_0"],
-    "friction/E_0": KEY_TABLE["W_friction_over_E_0"],
+    **{share.title: share.key for share in shares("comparison") if "study" in share.shown},
     "friction and skin/E_0": KEY_TABLE["W_skin_over_E_0"],
-    "plastic rod/E_0": KEY_TABLE["E_plastic_rod_over_E_0"],
-    "plastic barrier/E_0": KEY_TABLE["E_plastic_barrier_over_E_0"],
 }
 
 
@@ -69,7 +67,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         runs = [[results[job.name] for job in mesh] for mesh in jobs_of(name, request.quick)]
         done = [[run for run in mesh if isinstance(run, Outcome)] for mesh in runs]
         rows += convergence_rows(name, [mesh for mesh in done if mesh])
-    paper = Paper(
+    report = StudyReport(
         "convergence",
         "What vanishing elements would give",
         [*(_sentence(row) for row in rows if row["quantity"] in TOLD), *_pairs(rows)],
@@ -79,7 +77,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         ("convergence",),
         [("convergence", _sentence(row)) for row in rows if row["quantity"] == "e"],
     )
-    return publish(paper, request, results)
+    return publish(report, request, results)
 
 
 def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row]:
@@ -167,8 +165,7 @@ def _sheet(rows: list[Row]) -> Sheet:
         "convergence",
         "Values by the element at the tip, means over places of the barrier's grid; order – is none; "
         "places apart: their largest difference on the finest mesh",
-        columns,
-        [_line(r, sizes) for r in rows],
+        Table.of(columns, [_line(r, sizes) for r in rows]),
     )
 
 

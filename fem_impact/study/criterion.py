@@ -10,7 +10,7 @@ import numpy as np
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.study.criterion_measure import Rods, linear_rods, rods_of
-from fem_impact.study.criterion_tell import paper
+from fem_impact.study.criterion_tell import study_report
 from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, TIP, Drop, length_of
 
@@ -77,4 +77,4 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     quick = request.quick
     found: dict[str, Rods] = {f.name: rods_of(drops(f, quick), results) for f in FAMILIES}
     found["linear spring"] = linear_rods(drops(FAMILIES[1], quick))
-    return publish(paper(found, blind_drops(quick), results), request, results)
+    return publish(study_report(found, blind_drops(quick), results), request, results)

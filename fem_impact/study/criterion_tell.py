@@ -21,14 +21,14 @@ from fem_impact.study.criterion_measure import (
     gamma_at,
     spread_of,
 )
-from fem_impact.study.document import Paper, Picture, Sheet
+from fem_impact.study.document import Picture, Sheet, StudyReport
 from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, Drop
 from fem_impact.study.static_give import give_picture, give_sheet, give_words, gives_of
-from fem_impact.tables.csv import Cell
+from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
 
-__all__ = ["paper"]
+__all__ = ["study_report"]
 
 
 KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
@@ -49,7 +49,7 @@ ASSUMPTIONS = (
 )
 
 
-def paper(found: Found, blind: Sequence[Drop], results: Results) -> Paper:
+def study_report(found: Found, blind: Sequence[Drop], results: Results) -> StudyReport:
     """Return the study from the rods of each family and the drops over friction."""
     gives = gives_of(found[YIELDING])
     told = {
@@ -59,7 +59,7 @@ def paper(found: Found, blind: Sequence[Drop], results: Results) -> Paper:
         "master": [*_group(found), *_known(found)],
         "blind-direction": _blind_words(blind, results),
     }
-    return Paper(
+    return StudyReport(
         "criterion",
         "When a rod may be called rigid",
         [sentence for sentences in told.values() for sentence in sentences],
@@ -243,7 +243,7 @@ def _levels(found: Found) -> Sheet:
                 rows.append([name, words, level, *onset, exponent(rods, level, measure)])
     head = ("contact", "measure", "level", "gamma_thinnest", "gamma_19_mm", "gamma_thickest", "exponent")
     words = "Slenderness at which error or spread of e over the angles passes a level, and the exponent"
-    return Sheet("levels", words, head, rows)
+    return Sheet("levels", words, Table.of(head, rows))
 
 
 def _rods(found: Found) -> Sheet:
@@ -263,7 +263,7 @@ def _rods(found: Found) -> Sheet:
         "error_of_e",
         "spread_of_e",
     )
-    return Sheet("rods", "Rods of 19 mm", head, rows)
+    return Sheet("rods", "Rods of 19 mm", Table.of(head, rows))
 
 
 def _curves(found: Found) -> Sheet:
@@ -274,4 +274,4 @@ def _curves(found: Found) -> Sheet:
         for a, e, stiff, group in zip(r.angles, r.e, r.e_rigid, r.groups, strict=True)
     ]
     head = ("contact", "gamma", "diameter_m", "angle_deg", "e", "e_rigid", "T1_over_tau")
-    return Sheet("curves", "Every rod and angle", head, rows, shown=False)
+    return Sheet("curves", "Every rod and angle", Table.of(head, rows), shown=False)

@@ -14,19 +14,19 @@ from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.tables.csv import Cell, write_table
-from fem_impact.tables.markdown import table
+from fem_impact.outcome.shares import shares
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
 __all__ = [
-    "FINDINGS",
     "LEDGER",
-    "Paper",
+    "SCHEMA",
     "Picture",
     "Request",
     "Sheet",
+    "StudyReport",
     "StudyResult",
     "failures_of",
     "publish",
@@ -80,12 +80,13 @@ def failures_of(results: Results) -> list[dict[str, str]]:
     return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
 
 
-FINDINGS = "fem-impact/findings/1"
+SCHEMA = "fem-impact/study/2"
 LEDGER = (
     *("run", "fidelity", "scene_digest", "tip_size_m", "contacts", "e_edge", "mu", "Omega_rad_per_s"),
-    *("E_r_over_E_0", "E_vib_over_E_0", "W_friction_over_E_0", "E_plastic_rod_over_E_0"),
-    *("E_plastic_barrier_over_E_0", "residual_over_E_0", "wall_s", "created_utc"),
+    *(share.key.name for share in shares("study")),
+    *("residual_over_E_0", "wall_s", "created_utc"),
 )
+"""Columns of runs.csv: one row a run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,8 +95,7 @@ class Sheet:
 
     name: str
     caption: str
-    columns: tuple[str, ...]
-    rows: Sequence[Sequence[Cell]]
+    table: Table
     shown: bool = True
 
 
@@ -110,11 +110,27 @@ class Picture:
 
 
 @dataclass(frozen=True, slots=True)
-class Paper:
-    """A study as it is told: its name, title, findings in sentences, pictures, sheets and sources.
+class StudyReport:
+    """The result of a study.
 
-    ``sources`` name entries of the report's list of papers; ``assumptions`` state ranges and limits;
-    ``conclusions`` are the findings for the report's first page, by the picture that shows them.
+    Parameters
+    ----------
+    study, title : str
+        Name of the study and of its page.
+    findings : sequence of str
+        Sentences.
+    pictures, sheets : sequences
+        Figures and tables.
+    assumptions : sequence of str
+        Ranges and limits.
+    sources : sequence of str
+        Entries of the report's list of papers.
+    conclusions : sequence of (str, str)
+        Findings for the page over all studies, each after the name of its picture, empty for none.
+    outcomes : sequence of Outcome
+        Runs that the page shows one by one, with energies, curves and costs.
+    comparison : sequence of mappings
+        Rows of model beside measurement (`fem_impact.study.compare`).
     """
 
     study: str
@@ -125,43 +141,48 @@ class Paper:
     assumptions: Sequence[str] = ()
     sources: Sequence[str] = ()
     conclusions: Sequence[tuple[str, str]] = ()
+    outcomes: Sequence[Outcome] = ()
+    comparison: Sequence[Mapping[str, Any]] = ()
 
 
-def publish(paper: Paper, request: Request, results: Results) -> StudyResult:
+def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
     """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, phone width) with its data."""
     ledger = [_ledger_row(name, run) for name, run in results.items() if isinstance(run, Outcome)]
-    document = _document(paper, request, results)
-    for picture in paper.pictures:
+    document = _document(report, request, results)
+    for picture in report.pictures:
         _draw(picture, make_directory(request.out / "figures"))
-    for sheet in paper.sheets:
-        write_table(request.out / f"{sheet.name}.csv", sheet.columns, sheet.rows)
-    write_table(request.out / "runs.csv", LEDGER, ledger)
-    text = _markdown(paper, document)
+    for sheet in report.sheets:
+        write_text(request.out / f"{sheet.name}.csv", sheet.table.csv())
+    write_text(request.out / "runs.csv", Table.of(LEDGER, ledger).csv())
+    text = _markdown(report, document)
     write_text(request.out / "summary.md", text)
     write_text(request.out / "study.json", json.dumps(document, indent=1, allow_nan=False))
     return StudyResult(document, text)
 
 
-def _document(paper: Paper, request: Request, results: Results) -> dict[str, Any]:
+def _document(report: StudyReport, request: Request, results: Results) -> dict[str, Any]:
     return {
-        "schema": FINDINGS,
-        "study": paper.study,
-        "title": paper.title,
-        "command": request.command(paper.study),
-        "findings": list(paper.findings),
-        "conclusions": [{"name": name, "sentence": sentence} for name, sentence in paper.conclusions],
-        "assumptions": list(paper.assumptions),
-        "sources": list(paper.sources),
-        "figures": [{"name": p.name, "caption": p.caption} for p in paper.pictures],
-        "sheets": [_sheet(sheet) for sheet in paper.sheets],
+        "schema": SCHEMA,
+        "study": report.study,
+        "title": report.title,
+        "command": request.command(report.study),
+        "findings": list(report.findings),
+        "conclusions": [{"name": name, "sentence": sentence} for name, sentence in report.conclusions],
+        "assumptions": list(report.assumptions),
+        "sources": list(report.sources),
+        "figures": [{"name": p.name, "caption": p.caption} for p in report.pictures],
+        "sheets": [_sheet(sheet) for sheet in report.sheets],
         "runs": len(results),
         "failures": failures_of(results),
+        "rows": [outcome.to_dict() for outcome in report.outcomes],
+        "comparison": [dict(row) for row in report.comparison],
     }
 
 
 def _sheet(sheet: Sheet) -> dict[str, Any]:
-    rows = [list(row) for row in sheet.rows] if sheet.shown else []
-    return {"name": sheet.name, "caption": sheet.caption, "columns": list(sheet.columns), "rows": rows}
+    rows = [list(row) for row in sheet.table.rows] if sheet.shown else []
+    titles = [column.title for column in sheet.table.columns]
+    return {"name": sheet.name, "caption": sheet.caption, "columns": titles, "rows": rows}
 
 
 def _ledger_row(name: str, run: Outcome) -> list[Cell]:
@@ -180,26 +201,17 @@ def _draw(picture: Picture, place: Path) -> None:
     narrow.with_suffix(".csv").unlink()  # the same numbers stand beside the wide one
 
 
-def _markdown(paper: Paper, document: Mapping[str, Any]) -> str:
+def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:
     ran = f"`{document['command']}`: {document['runs']} runs, {len(document['failures'])} failed."
-    parts = [f"# {paper.title}", ran, _bullets(paper.findings)]
-    parts += [f"![{p.caption}](figures/{p.name}.png)\n\n{p.caption}" for p in paper.pictures]
-    for sheet in paper.sheets:
-        parts += [f"{sheet.caption} (`{sheet.name}.csv`)", *([_shown(sheet)] if sheet.shown else [])]
-    parts += ["What it rests on:", _bullets(paper.assumptions)] if paper.assumptions else []
+    parts = [f"# {report.title}", ran, _bullets(report.findings)]
+    parts += [f"![{p.caption}](figures/{p.name}.png)\n\n{p.caption}" for p in report.pictures]
+    for sheet in report.sheets:
+        parts += [f"{sheet.caption} (`{sheet.name}.csv`)"]
+        parts += [sheet.table.markdown()] if sheet.shown else []
+    parts += ["What it rests on:", _bullets(report.assumptions)] if report.assumptions else []
     parts += [f"failed: {f['scene_id']}: {f['error']}" for f in document["failures"]]
-    return "\n\n".join(parts) + "\n"
+    return "\n\n".join(part for part in parts if part) + "\n"
 
 
 def _bullets(sentences: Sequence[str]) -> str:
     return "\n".join(f"- {sentence}" for sentence in sentences)
-
-
-def _shown(sheet: Sheet) -> str:
-    return table(list(sheet.columns), [[_text(cell) for cell in row] for row in sheet.rows])
-
-
-def _text(cell: Cell) -> str:
-    if cell is None:
-        return "–"
-    return f"{cell:.4g}" if isinstance(cell, float) else str(cell)

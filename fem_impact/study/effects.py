@@ -22,8 +22,8 @@ from fem_impact.plan.limits import widest_tip_size
 from fem_impact.plan.plan import plan as plan_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.study.document import Paper, Request, Sheet, StudyResult, publish
-from fem_impact.tables.csv import Cell
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -34,6 +34,11 @@ __all__ = ["DESIGNED", "conclude", "cost_row", "expected_row", "plan", "row"]
 
 TIP = 0.8e-3  # m; coarse: both runs of a pair share it
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
+COST_COLUMNS = (
+    *("run", "CPU, of auto", "a step, of auto"),
+    *("change of e", "e expected", "change of E_vib/E_0", "E_vib/E_0 expected"),
+)
+BESIDE_COLUMNS = ("scene", "e", "e expected", "E_vib/E_0", "E_vib/E_0 expected", "found over expected")
 COSTED = ("t5b", "t3-machined", "t6-17")
 BASE = "t5b"
 
@@ -104,7 +109,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         for name, (_, whole) in pairs.items()
         if isinstance(whole, Outcome)
     ]
-    return publish(_paper(rows, costs, beside), request, results)
+    return publish(_study_report(rows, costs, beside), request, results)
 
 
 def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:
@@ -190,7 +195,7 @@ def _within(factor: float, beside: list[list[Cell]]) -> int:
     return sum(1 / factor <= ratio <= factor for ratio in ratios)
 
 
-def _paper(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Cell]]) -> Paper:
+def _study_report(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Cell]]) -> StudyReport:
     beyond = [str(line[0]) for line in rows if line[-1] == "beyond"]
     cheaper = [line for line in rows if isinstance(line[6], float) and line[6] < 1]
     columns = (
@@ -198,7 +203,7 @@ def _paper(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Ce
         *("CPU, of all on", "verdict"),
     )
     limits = f"{WITHIN_E:.0%} of e and {WITHIN_VIB:.0%} of E_vib or {LEAST_VIB:g} of E_0"
-    return Paper(
+    return StudyReport(
         study="effects",
         title="Effects chosen by the scene, beside everything on",
         findings=[
@@ -209,22 +214,17 @@ def _paper(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Ce
             f"{_within(3, beside)} of {len(beside)} scenes.",
         ],
         sheets=[
-            Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", columns, rows),
+            Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", Table.of(columns, rows)),
             Sheet(
                 "costs",
                 "One effect changed: time and time a step over those of auto; changes of e and E_vib, and "
                 "about how large `check` expects them.",
-                (
-                    *("run", "CPU, of auto", "a step, of auto"),
-                    *("change of e", "e expected", "change of E_vib/E_0", "E_vib/E_0 expected"),
-                ),
-                costs,
+                Table.of(COST_COLUMNS, costs),
             ),
             Sheet(
                 "expected",
                 "Everything on beside the quick strike that `check` tells changes from.",
-                ("scene", "e", "e expected", "E_vib/E_0", "E_vib/E_0 expected", "found over expected"),
-                beside,
+                Table.of(BESIDE_COLUMNS, beside),
             ),
         ],
         assumptions=[

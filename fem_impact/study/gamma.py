@@ -12,7 +12,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.gamma_tell import Maps, first_only, paper
+from fem_impact.study.gamma_tell import Maps, first_only, study_report
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
 
 if TYPE_CHECKING:
@@ -94,4 +94,4 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     """Draw the maps, state the difference from finite elements, resolve what second contacts give back."""
     quick = request.quick
     maps = Maps(line(quick), grid(quick), anchors(quick), results)
-    return publish(paper(maps, QUICK_TIP if quick else ANCHOR_TIP), request, results)
+    return publish(study_report(maps, QUICK_TIP if quick else ANCHOR_TIP), request, results)

@@ -11,12 +11,12 @@ from fem_impact.figures.lines import Mark, Panel, Series
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import Num, known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.study.document import Paper, Picture, Sheet
+from fem_impact.study.document import Picture, Sheet, StudyReport
 from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, STATES, Drop
-from fem_impact.tables.csv import Cell
+from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT, slenderness
 
-__all__ = ["Maps", "first_only", "paper"]
+__all__ = ["Maps", "first_only", "study_report"]
 
 
 X = "gamma, m^-0.3815"
@@ -82,13 +82,13 @@ def first_only(name: str) -> str:
     return f"first-{name}"
 
 
-def paper(maps: Maps, tip: float) -> Paper:
+def study_report(maps: Maps, tip: float) -> StudyReport:
     """Return the study."""
     pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *_other_pictures(maps)]
     sheets = [_anchor_sheet(maps), _rod_sheet(maps), _worst_sheet(maps), _map_sheet(maps)]
     peaks, back, away = _peaks(maps), _given_back(maps), _differences(maps)
     anchored = f"Anchors: finite elements of {tip * 1e3:g} mm at the tip, one mesh, so without a mesh band."
-    return Paper(
+    return StudyReport(
         "gamma",
         "Vibration against slenderness",
         [*peaks, *back, *away],
@@ -253,30 +253,30 @@ def _anchor_sheet(maps: Maps) -> Sheet:
         rows.append([drop.gamma, KINDS[drop.yields], drop.friction, drop.angle, *pairs, *counts])
     pairs_head = [f"{w}_{p}" for w in COMPARED for p in ("modal", "solid")]
     head = ("gamma", "contact", "f", "angle_deg", *pairs_head, "contacts_modal", "contacts_solid")
-    return Sheet("anchors", "Modes beside finite elements", head, rows)
+    return Sheet("anchors", "Modes beside finite elements", Table.of(head, rows))
 
 
 def _rod_sheet(maps: Maps) -> Sheet:
     """Return the paper's rods, elastic and yielding, from the anchors' modal twins."""
     rods = [d for d in maps.anchors if d.length in PAPER_RODS.values() and d.angle == 45.0]
-    return Sheet("rods", "The paper's rods (modes)", *_rows(maps, rods))
+    return Sheet("rods", "The paper's rods (modes)", _points(maps, rods))
 
 
 def _worst_sheet(maps: Maps) -> Sheet:
-    return Sheet("worst", "The angle that vibrates most", *_rows(maps, maps.worst()), shown=False)
+    return Sheet("worst", "The angle that vibrates most", _points(maps, maps.worst()), shown=False)
 
 
 def _map_sheet(maps: Maps) -> Sheet:
     return Sheet(
-        "map", "Every point of the maps (modes)", *_rows(maps, [*maps.line, *maps.grid]), shown=False
+        "map", "Every point of the maps (modes)", _points(maps, [*maps.line, *maps.grid]), shown=False
     )
 
 
-def _rows(maps: Maps, drops: Iterable[Drop]) -> tuple[tuple[str, ...], list[list[Cell]]]:
+def _points(maps: Maps, drops: Iterable[Drop]) -> Table:
     listed = (VIBRATION, RESTITUTION, MU, CONTACTS, FRICTION, PLASTIC)
     head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact")
     rows = [_row(d, [maps.value(d, measure) for measure in listed]) for d in drops]
-    return (*head, *(measure.name for measure in listed)), rows
+    return Table.of((*head, *(measure.name for measure in listed)), rows)
 
 
 def _row(d: Drop, values: list[float | None]) -> list[Cell]:

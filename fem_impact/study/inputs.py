@@ -12,9 +12,9 @@ import numpy as np
 
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.outcome.keys import Num, known
-from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import replace_all
-from fem_impact.study.compare import Row
+from fem_impact.study.compare import MEASURED, UNSEEN, Row
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
@@ -148,16 +148,9 @@ def changes(scene: Scene, values: np.ndarray) -> dict[str, Any]:
     }
 
 
-SHOWN = {
-    "e": KEY_TABLE["e_paper"],
-    "mu": KEY_TABLE["mu"],
-    "Omega": KEY_TABLE["Omega_rad_per_s"],
-    "E_ln/E_0": KEY_TABLE["E_ln_paper_over_E_0"],
-    "E_lt/E_0": KEY_TABLE["E_lt_paper_over_E_0"],
-    "E_r/E_0": KEY_TABLE["E_r_over_E_0"],
-    "vibration/E_0": KEY_TABLE["E_vib_over_E_0"],
-    "friction/E_0": KEY_TABLE["W_friction_over_E_0"],
-}
+CHANGED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0", "vibration/E_0", "friction/E_0")
+SHOWN = {q.name: q.key for q in (*MEASURED, *UNSEEN) if q.name in CHANGED}
+"""Keys of what the changed inputs are judged by."""
 STRONGER = 1.5  # hardness and tensile test of the two steels bound the yield stress within this factor
 WIDER = 1.5
 

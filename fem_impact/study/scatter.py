@@ -18,15 +18,16 @@ from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.study.document import Paper, Picture, Request, Sheet, StudyResult, publish
+from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.inputs import UNCERTAIN_INPUTS, UncertainInput, changes, sample_values
+from fem_impact.tables.table import Table
 from rigid import coefficients
 from rigid.experiments import correlation, measured_set
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "paper", "plan"]
+__all__ = ["conclude", "plan", "study_report"]
 
 
 MEASURED = ("e", "mu", "Omega")
@@ -35,11 +36,11 @@ UNITS = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
 Told = dict[str, Any]
 
 
-def paper(told: Sequence[Told], inputs: Sequence[UncertainInput], fidelity: str) -> Paper:
+def study_report(told: Sequence[Told], inputs: Sequence[UncertainInput], fidelity: str) -> StudyReport:
     """Return the study for what every set says (see `fem_impact.study.scatter`)."""
     names = [i.name for i in inputs]
     sentences = [(f"cloud-{t['set']}", sentence) for t in told for sentence in _sentences(t, names)]
-    return Paper(
+    return StudyReport(
         "scatter",
         f"Scatter of the measured sets and what causes it ({fidelity})",
         [sentence for _, sentence in sentences],
@@ -116,8 +117,7 @@ def _spread_sheet(told: Sequence[Told]) -> Sheet:
     return Sheet(
         "spread",
         "Mean and standard deviation: inputs that vary from test to test, all inputs, measured",
-        head,
-        rows,
+        Table.of(head, rows),
     )
 
 
@@ -134,8 +134,7 @@ def _correlation_sheet(told: Sequence[Told]) -> Sheet:
     return Sheet(
         "correlations",
         "Correlation within a set, with Fisher's 95 % interval of the measured one",
-        head,
-        rows,
+        Table.of(head, rows),
     )
 
 
@@ -148,7 +147,9 @@ def _index_sheet(told: Sequence[Told], names: Sequence[str]) -> Sheet:
                 keys = ("first", "first_half", "total", "total_half")
                 rows.append([t["set"], output, name, *(float(found[key][i, k]) for key in keys)])
     head = ("set", "quantity", "input", "first_order", "first_half_95", "total", "total_half_95")
-    return Sheet("sobol", "Sobol indices with the half-widths of their bootstrap intervals", head, rows)
+    return Sheet(
+        "sobol", "Sobol indices with the half-widths of their bootstrap intervals", Table.of(head, rows)
+    )
 
 
 def _sample_sheet(told: Sequence[Told]) -> Sheet:
@@ -156,7 +157,7 @@ def _sample_sheet(told: Sequence[Told]) -> Sheet:
         [t["set"], kind, *map(float, row)] for t in told for kind in ("tests", "every") for row in t[kind]
     ]
     head = ("set", "inputs", "e", "mu", "Omega_rad_per_s", "E_vib_over_E_0")
-    return Sheet("sample", "Every sampled run", head, rows, shown=False)
+    return Sheet("sample", "Every sampled run", Table.of(head, rows), shown=False)
 
 
 SEED = 20260101
@@ -177,7 +178,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     """Compare spread and correlations with the measured ones, and rank the inputs."""
     told = [_tell(name, request, results) for name in _sets(request)]
     told = [one for one in told if min(len(one["every"]), len(one["tests"])) >= FEWEST]
-    return publish(paper(told, UNCERTAIN_INPUTS, _fidelity(request)), request, results)
+    return publish(study_report(told, UNCERTAIN_INPUTS, _fidelity(request)), request, results)
 
 
 def _sets(request: Request) -> tuple[str, ...]:

@@ -2,34 +2,31 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fem_impact.cost.limits import mesh_limits
-from fem_impact.files.atomic import write_text
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
-from fem_impact.outcome.keys import Key, Unknown, known, or_none
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.shares import shares
+from fem_impact.outcome.shares import EnergyShare, shares
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.study.compare import Row, compare, text_table
-from fem_impact.study.document import Request, StudyResult, failures_of
+from fem_impact.study.compare import Row, compare
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.inputs import INPUT_CHANGES, WORDS, explanations, sensitivity_jobs, sensitivity_rows
-from fem_impact.tables.csv import COMPARISON, write_table
-from fem_impact.tables.markdown import table
+from fem_impact.tables.csv import COMPARISON
+from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "jobs_of", "plan"]
+__all__ = ["conclude", "jobs_of", "miss_sentence", "plan", "sets_report"]
 
 
-SCHEMA = "fem-impact/study/1"
 QUICK_TIP = 0.6e-3  # m
 QUICK_FRAMES = 60  # half the usual
 QUICK_SETS = ("t3-machined", "t4", "t5b")
@@ -62,17 +59,16 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Compare the sets with the measurements; write study.json, tables, films and pages."""
+    """Compare the sets with the measurements; write the study, and present the runs of the finer mesh."""
     out, outcomes, changed = request.out, [], []
     for name in chosen(request):
-        found = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
-        if isinstance(found["fine"], Outcome):
-            outcomes.append(with_limits(found["fine"], found["coarse"], out / name))
+        runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
+        if isinstance(runs["fine"], Outcome):
+            outcomes.append(with_limits(runs["fine"], runs["coarse"], out / name))
         if not request.quick:
-            changed += sensitivity_rows(found["coarse"], {i.name: found[i.name] for i in INPUT_CHANGES})
-    document, text = write_study(outcomes, failures_of(results), changed, out)
-    folders = [out / outcome.provenance.scene_id for outcome in outcomes]
-    return StudyResult(document, text, tuple(folders))
+            changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
+    published = publish(sets_report(outcomes, changed), request, results)
+    return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 
 
 def with_limits(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
@@ -92,50 +88,67 @@ def _without_limits(fine: Outcome, reason: str) -> Outcome:
     return replace(fine, validity=replace(fine.validity, mesh_limit=missing, mesh_band=missing))
 
 
-def write_study(
-    outcomes: list[Outcome], failures: list[dict[str, str]], changed: list[Row], out: Path
-) -> tuple[dict[str, Any], str]:
-    """Write study.json, comparison.csv and summary.md; return the document and its text table."""
-    comparison: list[Row] = [row for outcome in outcomes for row in compare(outcome)]
-    explained = explanations(comparison, changed)
-    document = {
-        "schema": SCHEMA,
-        "rows": [outcome.to_dict() for outcome in outcomes],
-        "comparison": comparison,
-        "sensitivity": changed,
-        "explanations": explained,
-        "failures": failures,
-        "notes": [],
-    }
-    write_text(out / "study.json", json.dumps(document, indent=1, allow_nan=False))
-    write_table(out / "comparison.csv", COMPARISON, comparison)
-    write_text(out / "summary.md", summary(outcomes, comparison, changed, explained))
-    failed = (f"failed: {f['scene_id']}: {f['error']}" for f in failures)
-    return document, "\n".join([text_table(comparison), *failed])
-
-
 COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
+SENSITIVITY = ("set", "quantity", "input", "base", "changed")
 
 
-def summary(
-    outcomes: Sequence[Outcome], comparison: list[Row], changed: list[Row], explained: list[Row]
-) -> str:
-    """Return the tables, with those of the changed inputs if they were computed."""
-    tables = [_beside(comparison), _shares(outcomes), *_limits(outcomes)]
-    if changed:
-        words = "\n".join(f"- `{name}`: {meaning}" for name, meaning in WORDS.items())
-        tables += [_changes(changed), _explanations(explained), words]
-    return "\n\n".join(tables) + "\n"
+def sets_report(outcomes: Sequence[Outcome], changed: Sequence[Row]) -> StudyReport:
+    """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
+    comparison = [row for outcome in outcomes for row in compare(outcome)]
+    explained = explanations(comparison, changed)
+    sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
+    return StudyReport(
+        "sets",
+        "Model beside measurement",
+        sentences,
+        sheets=[
+            Sheet("comparison", "Every compared quantity", Table.of(COMPARISON, comparison), shown=False),
+            Sheet("beside", BESIDE, _beside(comparison)),
+            Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
+            *_limits(outcomes),
+            *(_input_sheets(changed, explained) if changed else ()),
+        ],
+        assumptions=[f"{name}: {meaning}." for name, meaning in WORDS.items()] if changed else (),
+        sources=sorted({effect for outcome in outcomes for effect in outcome.provenance.effects}),
+        conclusions=[("", sentence) for sentence in sentences],
+        outcomes=outcomes,
+        comparison=comparison,
+    )
 
 
-def _beside(comparison: list[Row]) -> str:
+def inside_sentence(comparison: Sequence[Row]) -> str:
+    """Say how many measured quantities the model meets."""
+    measured = [row for row in comparison if row["measured_mean"] is not None]
+    inside = sum(row["verdict"] == "inside" for row in measured)
+    return f"{inside} of {len(measured)} computed quantities lie inside the 95 % interval of the measurement."
+
+
+def miss_sentence(explained: Sequence[Row]) -> str:
+    """Say how many misses each input could explain, and how many none could."""
+    counts = {name: sum(name in row["could"] for row in explained) for name in WORDS}
+    ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    listed = ", ".join(f"{name} {counts[name]}" for name in ranked) or "none"
+    lost = sum(not row["could"] for row in explained)
+    return (
+        f"{len(explained)} computed quantities lie outside the 95 % interval of the measured mean. An "
+        f"uncertain input, changed alone, could explain: {listed}. None of them explains {lost}."
+    )
+
+
+BESIDE = (
+    "Model, with the band of its two meshes, / measured mean with standard deviation; bold: inside the 95 % "
+    "interval of the mean, ?: undecided by the mesh"
+)
+
+
+def _beside(comparison: Sequence[Row]) -> Table:
+    """Return a row a set with the quantities that a camera sees."""
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = list(dict.fromkeys(row["set"] for row in comparison))
-    return table(["set", *COMPARED], [[name, *(cells[name, q] for q in COMPARED)] for name in names])
+    return Table.of(("set", *COMPARED), [(name, *(cells[name, q] for q in COMPARED)) for name in names])
 
 
 def _cell(row: Row) -> str:
-    """Return model +- band / measured mean +- SD, and a mark: bold inside, ? undecided, plain else."""
     digits = 1 if row["quantity"] == "Omega" else 3
     band = f" ± {row['band']:.{digits}f}" if row["band"] is not None else ""
     model = f"{row['model']:.{digits}f}{band}"
@@ -145,72 +158,85 @@ def _cell(row: Row) -> str:
     return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"
 
 
-def _shares(outcomes: Sequence[Outcome]) -> str:
+def _shares(outcomes: Sequence[Outcome]) -> Table:
+    """Return a row a set with its shares of E_0, of two meshes their limits with bands."""
     listed = shares("report")
-    head = ["set", *(f"{share.label}, %" for share in listed), "residual", "steps", "CPU s"]
-    body = [
-        [
+    rows = [
+        (
             o.provenance.scene_id,
-            *(_percent(o, share.key) for share in listed),
+            *(_percent(o, share) for share in listed),
             f"{o.energy.residual:.0e}",
-            f"{known(o.cost.steps)}",
+            known(o.cost.steps),
             f"{o.cost.cpu:.0f}",
-        ]
+        )
         for o in outcomes
     ]
-    return table(head, body)
+    return Table.of(("set", *(f"{s.label}, %" for s in listed), "residual", "steps", "CPU s"), rows)
 
 
-def _limits(outcomes: Sequence[Outcome]) -> list[str]:
+def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
+    if share.key.path[-1] == "vibration" and or_none(outcome.energy.below_floor):
+        return "below floor"
+    estimate, band = outcome.estimate(share.key)
+    value = or_none(estimate)
+    if value is None:
+        return None
+    digits = 2 if abs(100 * value) < 10 else 1
+    return f"{100 * value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+
+
+def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     """Return a row a set with two meshes: limits of e and E_vib, how uncertain, what the finer took."""
-    head = ["set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s"]
-    body = []
-    for o in (o for o in outcomes if or_none(o.validity.mesh_band)):
-        limits, bands = known(o.validity.mesh_limit), known(o.validity.mesh_band)
-        (e, e_band), (vib, vib_band) = ((limits[k], bands[k]) for k in ("e_edge", "E_vib_over_E_0"))
-        of = [f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band))]
-        cells = [f"{e:.3f} ± {e_band:.3f}", of[0], f"{100 * vib:.3f} ± {100 * vib_band:.3f}", of[1]]
-        body.append([o.provenance.scene_id, *cells, f"{o.cost.cpu:.0f}"])
-    return [table(head, body)] if body else []
+    rows = [_limit_row(o) for o in outcomes if or_none(o.validity.mesh_band)]
+    head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
+    caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"
+    return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
 
 
-def _percent(outcome: Outcome, key: Key) -> str:
-    value, band = outcome.estimate(key)
-    share = or_none(value)
-    if share is None:
-        return "–"
-    digits = 2 if abs(100 * share) < 10 else 1
-    return f"{100 * share:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+def _limit_row(o: Outcome) -> tuple[str, ...]:
+    limits, bands = known(o.validity.mesh_limit), known(o.validity.mesh_band)
+    (e, e_band), (vib, vib_band) = ((limits[k], bands[k]) for k in ("e_edge", "E_vib_over_E_0"))
+    of_e, of_vib = (f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band)))
+    share = f"{100 * vib:.3f} ± {100 * vib_band:.3f}"
+    return (o.provenance.scene_id, f"{e:.3f} ± {e_band:.3f}", of_e, share, of_vib, f"{o.cost.cpu:.0f}")
 
 
-def _changes(changed: list[Row]) -> str:
-    """Return a row a set and quantity: its value on the coarser mesh and what each input changes."""
-    found: dict[tuple[str, str], dict[str, Row]] = {}
-    for row in changed:
-        found.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
-    body = [
-        [*key, f"{next(iter(of.values()))['base']:.3g}", *(_change(of.get(name)) for name in WORDS)]
-        for key, of in found.items()
+def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Sheet]:
+    return [
+        Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
+        Sheet("changes", "Changes by each input alone, on the coarser mesh", _changes(changed)),
+        Sheet(
+            "explanations",
+            "What could explain a quantity outside its interval; in brackets the share of the miss that an "
+            "input makes up: 100 % brings the model to the measured mean, below 0 takes it further away",
+            _explanations(explained),
+        ),
     ]
-    return table(["set", "quantity", "coarser mesh", *WORDS], body)
+
+
+def _changes(changed: Sequence[Row]) -> Table:
+    """Return a row a set and quantity: its value on the coarser mesh and what each input changes."""
+    by_quantity: dict[tuple[str, str], dict[str, Row]] = {}
+    for row in changed:
+        by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
+    rows = [
+        (*key, f"{next(iter(of.values()))['base']:.3g}", *(_change(of.get(name)) for name in WORDS))
+        for key, of in by_quantity.items()
+    ]
+    return Table.of(("set", "quantity", "coarser mesh", *WORDS), rows)
 
 
 def _change(row: Row | None) -> str:
     return "" if row is None else f"{row['changed'] - row['base']:+.2g}"
 
 
-def _explanations(explained: list[Row]) -> str:
+def _explanations(explained: Sequence[Row]) -> Table:
     """Return a row a quantity that lies outside: what alone could bring it in, and what cannot."""
-    head = ["set", "quantity", "model", "measured", "could explain it", "cannot"]
-    body = [
-        [
-            row["set"],
-            row["quantity"],
-            f"{row['model']:.3g}",
-            f"{row['measured_mean']:.3g}",
-            ", ".join(row["could"]) or "none of these",
-            ", ".join(f"{name} ({s:+.0%})" for name, s in row["shares"].items() if name not in row["could"]),
-        ]
-        for row in explained
-    ]
-    return table(head, body)
+    rows = []
+    for row in explained:
+        told = {name: f"{name} ({share:+.0%})" for name, share in row["shares"].items()}
+        could = ", ".join(told[name] for name in row["could"]) or "none of these"
+        cannot = ", ".join(text for name, text in told.items() if name not in row["could"])
+        numbers = (f"{row[key]:.3g}" for key in ("model", "measured_mean"))
+        rows.append((row["set"], row["quantity"], *numbers, could, cannot))
+    return Table.of(("set", "quantity", "model", "measured", "could explain it", "cannot"), rows)

@@ -18,7 +18,7 @@ from fem_impact.plan.plan import plan
 from fem_impact.study.criterion_measure import Rod, Rods
 from fem_impact.study.document import Picture, Sheet
 from fem_impact.study.rods import BODY, PAPER_RODS, Drop
-from fem_impact.tables.csv import Cell
+from fem_impact.tables.table import Cell, Table
 
 __all__ = ["Gives", "give_picture", "give_sheet", "give_words", "gives_of", "static_restitution"]
 
@@ -93,7 +93,7 @@ def give_sheet(gives: Gives) -> Sheet:
     ]
     head = ("gamma", "angle_deg", "e_rigid", "e_static_give", "e_vibrating")
     words = "Yielding tip, frictionless, 19 mm: e of a rigid rod, with static give, with vibration"
-    return Sheet("static_give", words, head, rows, shown=False)
+    return Sheet("static_give", words, Table.of(head, rows), shown=False)
 
 
 def static_restitution(drop: Drop) -> float:

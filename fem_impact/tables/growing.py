@@ -10,7 +10,7 @@ from typing import Self
 
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import write_text
-from fem_impact.tables.csv import HISTORY, Cell, format_row
+from fem_impact.tables.csv import HISTORY, Plain, csv_line, row_of
 
 __all__ = ["HistoryWriter"]
 
@@ -50,12 +50,12 @@ class HistoryWriter:
         self._batch, self._seconds = batch, seconds
         self._waiting: list[str] = []
         if not go_on:
-            write_text(self.path, format_row(self.columns, self.columns))
+            write_text(self.path, csv_line(self.columns))
         self._due = time.monotonic() + seconds
 
-    def append(self, row: Sequence[Cell] | Mapping[str, Cell]) -> None:
+    def append(self, row: Sequence[Plain] | Mapping[str, Plain]) -> None:
         """Take one row, in the order of the columns or by name. Raises ValueError if it does not fit."""
-        self._waiting.append(format_row(row, self.columns))
+        self._waiting.append(csv_line(row_of(row, self.columns)))
         if len(self._waiting) >= self._batch or time.monotonic() >= self._due:
             self.flush()
 
@@ -76,9 +76,9 @@ class HistoryWriter:
     def size(self, known: int) -> None:
         """Drop what was written after a checkpoint. Raises ValueError when the file is shorter."""
         self._waiting = []
-        found = self.path.stat().st_size if self.path.is_file() else 0
-        if found < known:
-            raise ValueError(f"{self.path.name} holds {found} bytes of the {int(known)} written before.")
+        size = self.path.stat().st_size if self.path.is_file() else 0
+        if size < known:
+            raise ValueError(f"{self.path.name} holds {size} bytes of the {int(known)} written before.")
         _cut_back(self.path, int(known))
 
     def __enter__(self) -> Self:

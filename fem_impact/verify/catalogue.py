@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from importlib import import_module
 
 from fem_impact.errors import UsageError, did_you_mean
-from fem_impact.tables.markdown import table
+from fem_impact.tables.table import Table
 from fem_impact.verify.problem import Check, Problem, Verification
 
 __all__ = ["HEAD", "MARKS", "PROBLEMS", "page", "problem", "put_page", "verify"]
@@ -99,7 +99,7 @@ def page(done: Sequence[Verification], date: str) -> str:
         f"{date}, all parameters at their defaults: {sum(check.passed for check in checks)} of {len(checks)} "
         f"checks passed, {len(every) - len(checks)} more are only shown, {wall / 60:.1f} minutes."
     )
-    return f"{line}\n\n{table(HEAD, [_row(found) for found in done])}"
+    return f"{line}\n\n{Table.of(HEAD, map(_row, done)).markdown()}"
 
 
 def put_page(text: str, new: str, marks: tuple[str, str] = MARKS) -> str:

@@ -20,13 +20,14 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.files.atomic import write_text
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build
 from fem_impact.solid.march import Observer, advance, evaluate
 from fem_impact.solid.model import Model
-from fem_impact.tables.csv import write_table
+from fem_impact.tables.table import Table
 
 SCENE, UNTIL = "t5b", 10e-6  # s: in contact, both bodies yield
 STEPS, ROUNDS = 20, 15
@@ -119,7 +120,7 @@ def main(folder: Path = FOLDER) -> None:
     """Time, write, draw."""
     rows = measured()
     draw(rows, folder / "effect-cost.svg")
-    write_table(folder / "effect-cost.csv", COLUMNS, rows)
+    write_text(folder / "effect-cost.csv", Table.of(COLUMNS, rows).csv())
 
 
 if __name__ == "__main__":

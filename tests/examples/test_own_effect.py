@@ -22,7 +22,7 @@ from fem_impact.solid.build import build
 from fem_impact.solid.elastic import Weight
 from fem_impact.solid.march import march
 from fem_impact.solid.observers import Watch
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import read_csv
 
 MOON = 1.62  # m/s2
 
@@ -157,7 +157,7 @@ def test_a_run_with_an_own_item_comes_to_its_end(monkeypatch, tmp_path):
     monkeypatch.setattr(run, "build", lambda planned: with_drag(build(planned), 50.0))
     outcome = simulate(coarse_scene(), options=RunOptions(tmp_path))
     assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-4
-    history = read_table(tmp_path / "history.csv")
+    history = read_csv(tmp_path / "history.csv")
     held = history.numbers("E_kinetic_rod_J")
     assert 0.005 * held[0] < history.numbers("E_air_J")[-1] < 0.05 * held[0]
     assert outcome.energy.vibration > 0  # what comes after the march was computed too

@@ -34,7 +34,7 @@ from fem_impact.scene.shipped import load
 from fem_impact.scene.write import to_dict, to_toml
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.state import State
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import read_csv
 
 FEW = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 MANY = settings(max_examples=1500, deadline=None, suppress_health_check=list(HealthCheck))
@@ -127,7 +127,7 @@ def test_spoiled_tables(how):
         answered("camera tables", {3, 5}, "coefficients", "mine.csv", *ROD, "--json")
         assert files() == {"inside/mine.csv"}
         try:
-            table = read_table("mine.csv")
+            table = read_csv("mine.csv")
             for column in table.columns:
                 table.numbers(column)
         except ResultError as error:

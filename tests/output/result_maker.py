@@ -9,7 +9,8 @@ import outcome_maker
 from fem_impact.files.atomic import write_text
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.outcome.record import Outcome
-from fem_impact.tables.csv import COMPARISON, CONTACTS, HISTORY, write_table
+from fem_impact.tables.csv import COMPARISON, CONTACTS, HISTORY
+from fem_impact.tables.table import Table
 
 LENGTH, RADIUS, ALPHA, SPEED = 0.08, 9.5e-3, np.radians(45.0), 2.1
 MASS, E_0 = 0.1766, 0.1766 * SPEED**2 / 2
@@ -201,8 +202,10 @@ def write_result(folder, frames=0, across=6, along=36, **changes):
     """Write outcome.json, history.csv, contacts.csv and, with frames, fields.vtkhdf; return the folder."""
     folder = Path(folder)
     table = history()
-    write_table(folder / "history.csv", HISTORY, zip(*(table[name] for name in HISTORY), strict=True))
-    write_table(folder / "contacts.csv", CONTACTS, contacts())
+    write_text(
+        folder / "history.csv", Table.of(HISTORY, zip(*(table[name] for name in HISTORY), strict=True)).csv()
+    )
+    write_text(folder / "contacts.csv", Table.of(CONTACTS, contacts()).csv())
     Outcome.from_dict(values(**changes)).write(folder / "outcome.json")
     if frames:
         write_fields(folder / "fields.vtkhdf", frames, across, along)
@@ -247,9 +250,20 @@ def study_rows(sets=SETS):
     return rows
 
 
+STUDY = {
+    "schema": "fem-impact/study/2",
+    "study": "sets",
+    "title": "Model beside measurement",
+    "command": "fem-impact study sets",
+    "runs": 2,
+    **{name: [] for name in ("findings", "assumptions", "sources", "conclusions")},
+    **{name: [] for name in ("figures", "sheets", "failures")},
+}
+
+
 def write_study(folder, sets=SETS):
     """Write study.json and comparison.csv; return the folder."""
-    study = {"schema": "fem-impact/study/1", "rows": study_rows(sets), "comparison": comparison(sets)}
+    study = STUDY | {"rows": study_rows(sets), "comparison": comparison(sets)}
     write_text(Path(folder) / "study.json", json.dumps(study))
-    write_table(Path(folder) / "comparison.csv", COMPARISON, study["comparison"])
+    write_text(Path(folder) / "comparison.csv", Table.of(COMPARISON, study["comparison"]).csv())
     return Path(folder)

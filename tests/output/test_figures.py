@@ -10,41 +10,42 @@ from outcome_maker import altered
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.figures import style
-from fem_impact.figures.history import RUNNING, force_figure, ledger_figure
+from fem_impact.figures.history import force_figure, ledger_figure
 from fem_impact.figures.partition import comparison_figure, partition_figure, study_partition_figure
 from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.shares import shares
-from fem_impact.tables.csv import HISTORY, read_table
+from fem_impact.outcome.shares import ACCOUNTS, shares
+from fem_impact.tables.csv import HISTORY
+from fem_impact.tables.table import read_csv
 
 
 @pytest.fixture(scope="module")
 def history(result):
-    return read_table(result / "history.csv")
+    return read_csv(result / "history.csv")
 
 
 def test_ledger_data_are_the_history_over_e_0(history, tmp_path):
     ledger_figure(history, 2.0, tmp_path / "ledger.svg")
-    data = read_table(tmp_path / "ledger.csv")
+    data = read_csv(tmp_path / "ledger.csv")
     assert np.allclose(data.numbers("W_friction_over_E_0"), history.numbers("W_friction_J") / 2.0)
     assert data.numbers("time_s").tolist() == history.numbers("time_s").tolist()
 
 
 def test_ledger_areas_add_up_to_what_the_history_holds(history, tmp_path):
     ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg")
-    data = read_table(tmp_path / "ledger.csv")
-    total = sum(data.numbers(account.key.removesuffix("_J") + "_over_E_0") for account in RUNNING)
+    data = read_csv(tmp_path / "ledger.csv")
+    total = sum(data.numbers(account.column.removesuffix("_J") + "_over_E_0") for account in ACCOUNTS)
     assert np.allclose(total, 1.0, atol=3e-6)
 
 
 def test_every_energy_column_is_drawn_or_named():
     energies = {name for name in HISTORY if name.startswith(("E_", "W_"))}
-    assert energies == {account.key for account in RUNNING} | {"E_gravity_J"}
+    assert energies == {account.column for account in ACCOUNTS} | {"E_gravity_J"}
 
 
 def test_accounts_differ_in_colour():
-    for accounts in (RUNNING, shares("figure")):
+    for accounts in (ACCOUNTS, shares("figure")):
         assert len({account.colour for account in accounts}) == len(accounts)
 
 
@@ -59,7 +60,7 @@ def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, rec
     for path in paths:
         root = ElementTree.parse(path).getroot()
         assert len(list(root.iter("{http://www.w3.org/2000/svg}path"))) > 10
-        assert len(read_table(path.with_suffix(".csv"))) > 5
+        assert len(read_csv(path.with_suffix(".csv"))) > 5
 
 
 def test_figures_of_a_study(tmp_path):
@@ -69,9 +70,9 @@ def test_figures_of_a_study(tmp_path):
     study_partition_figure(rows, tmp_path / "partition.png")
     comparison_figure(compared, tmp_path / "comparison.png", "narrow")
     assert (tmp_path / "comparison.png").stat().st_size > 20_000
-    shares = read_table(tmp_path / "partition.csv")
+    shares = read_csv(tmp_path / "partition.csv")
     assert shares.texts("scene_id") == list(result_maker.SETS)
-    assert len(read_table(tmp_path / "comparison.csv")) == len(compared)
+    assert len(read_csv(tmp_path / "comparison.csv")) == len(compared)
 
 
 @pytest.mark.parametrize("shape", ["wide", "narrow"])
@@ -106,7 +107,7 @@ def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, shape, sc
 
 def test_unknown_share_is_left_out(tmp_path, record):
     partition_figure(altered(Outcome.from_dict(record), E_vib_over_E_0=None), tmp_path / "partition.svg")
-    accounts = read_table(tmp_path / "partition.csv").texts("account")
+    accounts = read_csv(tmp_path / "partition.csv").texts("account")
     assert "E_vib" not in accounts
     assert len(accounts) == len(shares("figure")) - 2  # nor damping, which is off
 
@@ -119,7 +120,7 @@ def test_same_data_give_the_same_bytes(history, tmp_path):
 def test_missing_column_is_named(tmp_path):
     (tmp_path / "history.csv").write_text("time_s\n0.0\n")
     with pytest.raises(ResultError, match=r"E_kinetic_rod_J.* is missing"):
-        ledger_figure(read_table(tmp_path / "history.csv"), 1.0, tmp_path / "ledger.svg")
+        ledger_figure(read_csv(tmp_path / "history.csv"), 1.0, tmp_path / "ledger.svg")
 
 
 def test_place_that_cannot_be_written(history, tmp_path):

@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import atomic_path, make_directory, write_text
-from fem_impact.tables.csv import HISTORY, read_table, write_table
+from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.growing import HistoryWriter
+from fem_impact.tables.table import Table, read_csv
 
 
 def test_failing_block_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -66,28 +67,28 @@ def test_write_that_runs_out_of_room_leaves_nothing_half_written(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["note.txt", "table.csv"]
     kept = (tmp_path / "table.csv").read_text()
     assert kept.endswith("\n")
-    assert len(read_table(tmp_path / "table.csv")) % 10 == 0 < len(read_table(tmp_path / "table.csv"))
+    assert len(read_csv(tmp_path / "table.csv")) % 10 == 0 < len(read_csv(tmp_path / "table.csv"))
 
 
 @given(st.lists(st.tuples(st.floats(allow_nan=False), st.text(st.characters(codec="ascii"), max_size=8))))
 def test_table_reads_back_exactly(tmp_path_factory, rows):
     path = tmp_path_factory.mktemp("table") / "t.csv"
-    write_table(path, ("time_s", "name"), rows)
-    table = read_table(path)
+    write_text(path, Table.of(("time_s", "name"), rows).csv())
+    table = read_csv(path)
     assert table.numbers("time_s").tolist() == [row[0] for row in rows]
     assert table.texts("name") == [row[1].replace("\r", " ").replace("\n", " ") for row in rows]
 
 
 def test_unknown_cell_reads_as_nan_and_mappings_are_ordered(tmp_path):
-    write_table(tmp_path / "t.csv", ("a_m", "b_s"), [{"b_s": np.float64(2.5), "a_m": None}])
+    write_text(tmp_path / "t.csv", Table.of(("a_m", "b_s"), [{"b_s": np.float64(2.5), "a_m": None}]).csv())
     assert (tmp_path / "t.csv").read_text() == "a_m,b_s\n,2.5\n"
-    assert np.isnan(read_table(tmp_path / "t.csv").numbers("a_m")).all()
+    assert np.isnan(read_csv(tmp_path / "t.csv").numbers("a_m")).all()
 
 
 @pytest.mark.parametrize("row", [(1.0,), (1.0, 2.0, 3.0), {"a_m": 1.0}, {"a_m": 1.0, "c": 2.0}])
 def test_row_that_does_not_fit_is_refused(tmp_path, row):
     with pytest.raises(ValueError, match="a row"):
-        write_table(tmp_path / "t.csv", ("a_m", "b_s"), [row])
+        write_text(tmp_path / "t.csv", Table.of(("a_m", "b_s"), [row]).csv())
     assert os.listdir(tmp_path) == []
 
 
@@ -103,26 +104,26 @@ def test_row_that_does_not_fit_is_refused(tmp_path, row):
 def test_damaged_table_is_refused(tmp_path, text, message):
     (tmp_path / "t.csv").write_text(text)
     with pytest.raises(ResultError, match=message):
-        read_table(tmp_path / "t.csv").numbers("a")
+        read_csv(tmp_path / "t.csv").numbers("a")
     with pytest.raises(ResultError):
-        read_table(tmp_path / "t.csv").numbers("z")
+        read_csv(tmp_path / "t.csv").numbers("z")
 
 
 def test_history_comes_in_batches_and_by_time(tmp_path):
     history = HistoryWriter(tmp_path / "history.csv", batch=5, seconds=1000.0)
     for step in range(7):
         history.append(np.full(len(HISTORY), float(step)))
-    assert len(read_table(history.path)) == 5
+    assert len(read_csv(history.path)) == 5
     history.flush()
-    assert read_table(history.path).numbers("residual_J").tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert read_csv(history.path).numbers("residual_J").tolist() == [0, 1, 2, 3, 4, 5, 6]
     prompt = HistoryWriter(tmp_path / "prompt.csv", batch=1000, seconds=0.0)
     prompt.append(dict.fromkeys(HISTORY, 1.0))
-    assert len(read_table(prompt.path)) == 1
+    assert len(read_csv(prompt.path)) == 1
 
 
 def test_last_line_cut_off_by_a_kill_is_not_counted(tmp_path):
     (tmp_path / "history.csv").write_text("time_s,force_n_N\n0.0,1.0\n0.1,2.")
-    assert read_table(tmp_path / "history.csv").numbers("time_s").tolist() == [0.0]
+    assert read_csv(tmp_path / "history.csv").numbers("time_s").tolist() == [0.0]
 
 
 ENDLESS = """
@@ -142,6 +143,6 @@ def test_killed_run_leaves_a_readable_history(tmp_path):
         time.sleep(0.01)
     child.send_signal(signal.SIGKILL)
     child.wait()
-    steps = read_table(path).numbers("step")
+    steps = read_csv(path).numbers("step")
     assert steps.tolist() == list(range(len(steps)))
     assert len(steps) > 50

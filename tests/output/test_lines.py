@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.figures import style
 from fem_impact.figures.lines import Mark, Panel, Series, lines_figure
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import read_csv
 
 MARKS = (Mark(28.7, "0.12 m"), Mark(26.45, "limit of Eq 29"), Mark(57.3, "0.24 m"))
 
@@ -63,6 +63,6 @@ def test_names_stand_at_the_ticks_and_in_the_data(drawn, tmp_path):
         if one.get_visible()
     ]
     assert [label.get_text() for label in axes.get_xticklabels()] == ["f", "angle"]
-    data = read_table(tmp_path / "lines.csv")
+    data = read_csv(tmp_path / "lines.csv")
     assert data.texts("x") == ["f", "angle", "f", "angle"]
     assert data.numbers("y").tolist() == [1.0, 2.0, 3.0, 4.0]

@@ -9,13 +9,14 @@ import result_maker
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
-from fem_impact.report.html import bullets, cell, number, paragraph, section, table, with_band
+from fem_impact.report.html import bullets, paragraph, section, table, with_band
 from fem_impact.report.sections import effects_section
 from fem_impact.report.study_data import read_study
 from fem_impact.report.study_page import draw_study
 from fem_impact.report.write import write_report
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import digest, to_toml
+from fem_impact.tables.table import Marked, Table, number
 
 VOID = {"meta", "link", "img", "source", "br"}
 
@@ -210,11 +211,11 @@ def test_a_study_drawn_beforehand_is_only_drawn_again_if_asked(study):
     assert all(file.stat().st_mtime_ns > before for file, before in zip(own, drawn, strict=True))
 
 
-def test_study_report_names_failures_and_notes(study):
+def test_study_report_names_failures_and_assumptions(study):
     edit(
         study,
         failures=[{"scene_id": "t2", "error": "the ledger did not close"}],
-        notes=["Friction rule: 0.57."],
+        assumptions=["Friction rule: 0.57."],
     )
     words = read(write_report(study))[1]
     assert "t2 the ledger did not close" in words
@@ -229,7 +230,7 @@ def test_texts_of_a_study_are_escaped(study):
         row | {"quantity": evil, "set": evil, "verdict": evil} for row in result_maker.comparison(("t4",))
     ]
     failures = [{"scene_id": evil, "error": evil}]
-    edit(study, title=evil, rows=rows, comparison=compared, failures=failures, notes=[evil])
+    edit(study, title=evil, rows=rows, comparison=compared, failures=failures, findings=[evil])
     reader, words = read(write_report(study))
     assert "script" not in reader.tags
     assert words.count(evil) >= 8
@@ -237,7 +238,7 @@ def test_texts_of_a_study_are_escaped(study):
 
 def test_study_without_runs_or_comparison_still_reports(study):
     edit(study, rows=[], comparison=[], failures=[{"scene_id": "t2", "error": "stopped"}])
-    assert "No run gave a record." in read(write_report(study))[1]
+    assert "t2 stopped" in read(write_report(study))[1]
 
 
 @pytest.mark.parametrize(
@@ -256,7 +257,7 @@ def test_study_without_runs_or_comparison_still_reports(study):
 def test_wrong_study_is_refused(study, change, message):
     edit(study, **change)
     with pytest.raises(ResultError, match=message):
-        read_study(study / "study.json")
+        read_study(study)
 
 
 def test_comparison_with_a_text_for_a_number_is_refused(study):
@@ -264,7 +265,7 @@ def test_comparison_with_a_text_for_a_number_is_refused(study):
     rows[0]["model"] = "0.5"
     edit(study, comparison=rows)
     with pytest.raises(ResultError, match=r'comparison\[0\], key "model" = \'0\.5\''):
-        read_study(study / "study.json")
+        read_study(study)
 
 
 def test_truncated_study_is_refused(study):
@@ -284,8 +285,8 @@ def test_numbers_for_the_eye(value, text):
 
 def test_pieces_escape_and_vanish_when_empty():
     assert paragraph("a < b").text == "<p>a &lt; b</p>"
-    assert bullets([]).text == table(("a",), []).text == section("Title").text == ""
-    assert '<td class="inside">&amp;</td>' in table(("a",), [[cell("&", "inside")]]).text
+    assert bullets([]).text == table(Table.of(("a",), [])).text == section("Title").text == ""
+    assert '<td class="inside">&amp;</td>' in table(Table.of(("a",), [[Marked("&", "inside")]])).text
     assert with_band(0.5, None) == "0.5"
 
 

@@ -15,7 +15,7 @@ from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import to_toml
-from fem_impact.tables.csv import read_table
+from fem_impact.tables.table import read_csv
 
 SCENE = replace_all(
     load("t5b"),
@@ -64,7 +64,7 @@ def numbers(outcome):
 
 def check_readable(out):
     """Whatever lies there can be read; return the number of files that were there."""
-    readers = {"history.csv": read_table, "fields.vtkhdf": read_fields, "outcome.json": Outcome.read}
+    readers = {"history.csv": read_csv, "fields.vtkhdf": read_fields, "outcome.json": Outcome.read}
     found = [read(out / name) for name, read in readers.items() if (out / name).exists()]
     if (out / "fields.vtkhdf").exists():
         fields = read_fields(out / "fields.vtkhdf")

@@ -11,7 +11,8 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 from fem_impact.solid.rodview import centre_gradients, mises
-from fem_impact.tables.csv import HISTORY, read_table
+from fem_impact.tables.csv import HISTORY
+from fem_impact.tables.table import read_csv
 
 ACCOUNTS = [name for name in HISTORY if name.startswith(("E_", "W_", "residual"))]
 
@@ -62,7 +63,7 @@ def test_the_outcome_reads_back(run):
 
 def test_accounts_add_up_to_E_0_in_every_row(run):
     out, outcome, _ = run
-    table = read_table(out / "history.csv")
+    table = read_csv(out / "history.csv")
     total = sum(table.numbers(name) for name in ACCOUNTS)
     assert len(total) > 50
     assert total == pytest.approx(outcome.energy.E_0, rel=1e-12)
@@ -73,7 +74,7 @@ def test_accounts_add_up_to_E_0_in_every_row(run):
 
 def test_the_last_row_is_the_outcome(run):
     out, outcome, _ = run
-    table = read_table(out / "history.csv")
+    table = read_csv(out / "history.csv")
     for column, key in (("W_friction_J", "W_friction"), ("E_plastic_barrier_J", "E_plastic_barrier")):
         share = table.numbers(column)[-1] / outcome.energy.E_0
         assert share == pytest.approx(outcome.to_dict()[f"{key}_over_E_0"], rel=0.02), column
@@ -81,10 +82,10 @@ def test_the_last_row_is_the_outcome(run):
 
 def test_force_and_contacts_carry_the_same_impulse(run):
     out, outcome, _ = run
-    table = read_table(out / "history.csv")
+    table = read_csv(out / "history.csv")
     t = table.numbers("time_s")
     (contact,) = outcome.contact.intervals
-    assert read_table(out / "contacts.csv").numbers("impulse_n_Ns") == pytest.approx([contact.impulse_n])
+    assert read_csv(out / "contacts.csv").numbers("impulse_n_Ns") == pytest.approx([contact.impulse_n])
     for axis in "nt":
         impulse = (table.numbers(f"force_{axis}_N")[1:] * np.diff(t)).sum()
         assert impulse == pytest.approx(getattr(contact, f"impulse_{axis}"), rel=0.02)

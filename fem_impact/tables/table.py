@@ -1,0 +1,268 @@
+"""One table, written for a terminal, as Markdown, HTML and CSV, and read back from CSV."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+import textwrap
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Self
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import read_text
+from fem_impact.tables.csv import Plain, csv_line, row_of
+
+__all__ = ["DASH", "Cell", "Column", "Marked", "Missing", "Table", "number", "read_csv"]
+
+
+DASH = "–"
+GAP = "  "
+NARROWEST = 12
+"""Letters that a column of texts keeps at least when a table is fitted to a terminal."""
+STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A cell without a value, and why: shown as a dash, on a page with the reason behind it."""
+
+    reason: str
+
+
+@dataclass(frozen=True, slots=True)
+class Marked:
+    """A text, and the class that it has in the style sheet of a page, such as ``inside``."""
+
+    text: str
+    style: str
+
+
+Cell = Plain | Missing | Marked
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column.
+
+    Parameters
+    ----------
+    name : str
+        In the header of a CSV file; ends in the unit.
+    label, unit : str
+        What a reader sees above it; the name where there is no label.
+    digits : int
+        Significant digits of the floats that a reader sees; CSV holds all of them.
+    left : bool
+        Whether cells stand flush left, as texts do.
+    """
+
+    name: str
+    label: str = ""
+    unit: str = ""
+    digits: int = 4
+    left: bool = False
+
+    @property
+    def title(self) -> str:
+        """Label and unit."""
+        return (self.label or self.name) + (f", {self.unit}" if self.unit else "")
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """Columns, and rows of cells.
+
+    Texts may hold ``**strong**`` and `` `code` `` as in Markdown: tags on a page, plain in a terminal.
+
+    Parameters
+    ----------
+    columns : tuple of Column
+    rows : tuple of tuple of Cell
+        None and `Missing` are unknown. A table from a file holds texts; an empty one is unknown.
+    source : str
+        The file, for complaints.
+
+    Raises
+    ------
+    ValueError
+        A row does not fit the columns.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    source: str = ""
+
+    def __post_init__(self) -> None:
+        for row in self.rows:
+            if len(row) != len(self.columns):
+                raise ValueError(f"a row holds {len(row)} cells, the table {len(self.columns)} columns.")
+
+    @classmethod
+    def of(
+        cls,
+        names: Sequence[str],
+        rows: Iterable[Sequence[Cell] | Mapping[str, Cell]],
+        left: Iterable[int] = (0,),
+    ) -> Self:
+        """Return a table from names and rows, given in order or by name; ``left`` columns hold texts."""
+        texts = {*left}
+        columns = tuple(Column(name, left=at in texts) for at, name in enumerate(names))
+        return cls(columns, tuple(tuple(row_of(row, names)) for row in rows))
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the columns."""
+        return tuple(column.name for column in self.columns)
+
+    def cells(self, name: str) -> list[Cell]:
+        """Return a column. Raises ResultError when there is none of that name."""
+        if name not in self.names:
+            raise ResultError(f'{self.source}: column "{name}" is missing.')
+        at = self.names.index(name)
+        return [row[at] for row in self.rows]
+
+    def texts(self, name: str) -> list[str]:
+        """Return a column as texts, empty where nothing is known. Raises ResultError."""
+        return ["" if cell is None or isinstance(cell, Missing) else str(cell) for cell in self.cells(name)]
+
+    def numbers(self, name: str) -> np.ndarray:
+        """Return a column as ``(n_rows,) float64``, nan where nothing is known. Raises ResultError."""
+        return np.array([self._number(name, i, text) for i, text in enumerate(self.texts(name))])
+
+    def _number(self, column: str, row: int, text: str) -> float:
+        try:
+            return float(text) if text else float("nan")
+        except ValueError as error:
+            place = f"{self.source}: row {row + 1}, column {column}"
+            raise ResultError(f'{place} = "{text[:40]}" is not a number.') from error
+
+    def csv(self) -> str:
+        """Return header and rows as CSV; floats read back exactly, an empty cell is unknown."""
+        lines = [csv_line(self.names), *(csv_line([_plain(cell) for cell in row]) for row in self.rows)]
+        return "".join(lines)
+
+    def markdown(self) -> str:
+        """Return a Markdown table."""
+        rules = ["---" if column.left else "---:" for column in self.columns]
+        body = [[text.replace("|", "\\|").replace("\n", " ") for text in row] for row in self._shown()]
+        lines = [[column.title for column in self.columns], rules, *body]
+        return "\n".join(f"| {' | '.join(line)} |" for line in lines)
+
+    def html(self, caption: str = "", compact: bool = False) -> str:
+        """Return a table that scrolls sideways on a narrow screen, nothing when it has no rows.
+
+        ``compact`` keeps each row on one line.
+        """
+        if not self.rows:
+            return ""
+        titles = "".join(f"<th{_style(column)}>{escape(column.title)}</th>" for column in self.columns)
+        lines = [
+            "".join(_html(cell, column) for cell, column in zip(row, self.columns, strict=True))
+            for row in self.rows
+        ]
+        body = "\n".join(f"<tr>{line}</tr>" for line in lines)
+        above = f"<caption>{escape(caption)}</caption>" if caption else ""
+        look = ' class="compact"' if compact else ""
+        inner = f"{above}<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}\n</tbody>"
+        return f'<div class="scroll"><table{look}>{inner}</table></div>'
+
+    def terminal(self, width: int = 120, indent: str = "") -> str:
+        """Return aligned lines; the widest column of texts is broken where ``width`` letters are too few."""
+        rows = [[STRONG.sub(r"\1", CODE.sub(r"\1", text)) for text in row] for row in self._shown()]
+        rows.insert(0, [column.title for column in self.columns])
+        widths = self._widths(rows, width - len(indent))
+        lines = [line for row in rows for line in self._lines(row, widths)]
+        return "\n".join((indent + line).rstrip() for line in lines)
+
+    def _shown(self) -> list[list[str]]:
+        return [
+            [_text(cell, column.digits) for cell, column in zip(row, self.columns, strict=True)]
+            for row in self.rows
+        ]
+
+    def _widths(self, rows: Sequence[Sequence[str]], width: int) -> list[int]:
+        """Return letters of each column, the widest one of texts cut down to what fits."""
+        widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+        over = sum(widths) + len(GAP) * (len(widths) - 1) - width
+        texts = [at for at, column in enumerate(self.columns) if column.left]
+        if over > 0 and texts:
+            widest = max(texts, key=lambda at: widths[at])
+            widths[widest] = max(widths[widest] - over, min(NARROWEST, widths[widest]))
+        return widths
+
+    def _lines(self, row: Sequence[str], widths: Sequence[int]) -> list[str]:
+        """Return a row in as many lines as its longest cell needs."""
+        parts = [textwrap.wrap(text, width) or [""] for text, width in zip(row, widths, strict=True)]
+        return [
+            GAP.join(
+                f"{part[at] if at < len(part) else '':{'<' if column.left else '>'}{width}}"
+                for part, column, width in zip(parts, self.columns, widths, strict=True)
+            )
+            for at in range(max(map(len, parts)))
+        ]
+
+
+def number(value: float | int | bool | None, digits: int = 4) -> str:
+    """Return a number for a page: a true minus sign, thousands apart, a dash for None."""
+    if isinstance(value, int) and not isinstance(value, bool):
+        return f"{value:,}".replace(",", "\u202f").replace("-", "−")
+    return _text(value, digits).replace("-", "−")
+
+
+def read_csv(path: str | Path) -> Table:
+    """Read a table of texts; a last line that a killed run left unfinished is not counted.
+
+    Raises
+    ------
+    ResultError
+        The file is missing or empty, or a row has too few or too many cells.
+    """
+    text = read_text(path)
+    try:
+        lines = list(csv.reader(io.StringIO(text[: text.rfind("\n") + 1]), strict=True))
+    except csv.Error as error:
+        raise ResultError(f"{path}: not a readable CSV table ({error}).") from error
+    if not lines:
+        raise ResultError(f"{path}: holds no header line.")
+    head, *rows = lines
+    for at, row in enumerate(rows, start=1):
+        if len(row) != len(head):
+            raise ResultError(f"{path}: row {at} has {len(row)} cells, the header {len(head)}.")
+    return Table(tuple(map(Column, head)), tuple(map(tuple, rows)), str(path))
+
+
+def _plain(cell: Cell) -> Plain:
+    if isinstance(cell, Missing):
+        return None
+    return cell.text if isinstance(cell, Marked) else cell
+
+
+def _text(cell: Cell, digits: int) -> str:
+    plain = _plain(cell)
+    if plain is None:
+        return DASH
+    if isinstance(plain, bool):
+        return "yes" if plain else "no"
+    return f"{plain:.{digits}g}" if isinstance(plain, float) else str(plain)
+
+
+def _html(cell: Cell, column: Column) -> str:
+    plain = _plain(cell)
+    text = escape(plain) if isinstance(plain, str) else number(plain, column.digits)
+    why = f' title="{escape(cell.reason)}"' if isinstance(cell, Missing) else ""
+    shown = CODE.sub(r"<code>\1</code>", STRONG.sub(r"<strong>\1</strong>", text))
+    return f"<td{_style(column, cell.style if isinstance(cell, Marked) else '')}{why}>{shown}</td>"
+
+
+def _style(column: Column, more: str = "") -> str:
+    classes = " ".join(name for name in ("" if column.left else "number", more) if name)
+    return f' class="{escape(classes)}"' if classes else ""
