@@ -16,13 +16,17 @@ __all__ = [
     "StatementError",
     "UsageError",
     "did_you_mean",
+    "printable",
 ]
 
 
 class FemImpactError(ValueError):
-    """Anything a user can cause and mend; the message names the cause and the remedy."""
+    """Anything a user can cause and mend; the message names the cause and the remedy, in printable text."""
 
     exit_code: ClassVar[int] = 1
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(printable(message))
 
 
 class StatementError(FemImpactError):
@@ -113,13 +117,22 @@ EXIT_CODES: dict[int, str] = {
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
-    """Return a remedy that proposes the nearest known name, ``otherwise`` where none is near."""
+    """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near."""
     from difflib import get_close_matches
 
-    near = get_close_matches(name, list(known), 1)
-    return f"Did you mean {near[0]}?" if near else otherwise
+    by_lower = {candidate.lower(): candidate for candidate in known}
+    near = get_close_matches(name.lower(), by_lower, 1)
+    return f"Did you mean {by_lower[near[0]]}?" if near else otherwise
+
+
+def printable(text: str) -> str:
+    """Return text for a terminal: control and direction characters are escaped, line breaks are not."""
+    shown = (char if char.isprintable() or char == "\n" else ascii(char)[1:-1] for char in text)
+    return "".join(shown)
 
 
 def _short(value: Any, limit: int = 60) -> str:
     text = f'"{value}"' if isinstance(value, str) else repr(value)
+    if isinstance(value, float) and len(text) > 8:
+        text = f"{value:.4g}"
     return text if len(text) <= limit else text[: limit - 3] + "..."

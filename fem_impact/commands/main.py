@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 
 from fem_impact.commands.parser import Options, build_parser, read_line
-from fem_impact.errors import FemImpactError, OutputPathError, RunError
+from fem_impact.errors import FemImpactError, OutputPathError, RunError, printable
 
 __all__ = ["main"]
 
@@ -64,7 +64,7 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
 
 def _complain(message: str, code: int) -> int:
     kind = "interrupted" if code == 130 else "error"
-    sys.stderr.write(f"fem-impact: {kind}: {message}\n")
+    sys.stderr.write(f"fem-impact: {kind}: {printable(message)}\n")
     return code
 
 

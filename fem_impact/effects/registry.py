@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from difflib import get_close_matches
 
 from fem_impact.effects import (
     barrier,
@@ -18,7 +17,7 @@ from fem_impact.effects import (
     vibration,
 )
 from fem_impact.effects.slots import Effect
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 
 __all__ = ["AUTO", "BARRIERS", "EFFECTS", "NAMES", "check_effects", "grounded"]
 
@@ -77,8 +76,7 @@ def _check_known(name: str, auto: bool) -> None:
     known = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
     if name in known:
         return
-    near = get_close_matches(name, known, 1)
-    hint = f'Did you mean "{near[0]}"?' if near else _REMEDY
+    hint = did_you_mean(name, known, _REMEDY)
     if not auto and name.removeprefix("-") in NAMES:
         hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
     if name.removeprefix("-") in BARRIERS:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time as clock
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -19,7 +20,7 @@ __all__ = ["FieldFile", "read_fields"]
 
 
 T = TypeVar("T")
-_WAITS = (0.02, 0.1, 0.5, 0.0)
+_WAITS = (0.02, 0.1, 0.5, 0.0)  # s before each further try while a writer has the file open
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +59,9 @@ class FieldFile:
 
     def _rows(self, kind: str, name: str, frame: int, names: tuple[str, ...]) -> np.ndarray:
         if name not in names:
-            held = ", ".join(names) or "none"
-            raise ResultError(f'{self.path}: holds no {kind} "{name}"; it holds {held}.')
+            raise ResultError(
+                f'{self.path}: holds no {kind} "{name}"; it holds {", ".join(names) or "none"}.'
+            )
         if not 0 <= frame < len(self.times):
             raise ResultError(f"{self.path}: frame {frame} is asked for, it holds {len(self.times)}.")
         count = len(self.points if kind == "PointData" else self.cells)
@@ -82,18 +84,28 @@ def _describe(path: Path, root: h5py.Group) -> FieldFile:
     moving = {name for name, rows in root["CellData"].items() if rows.maxshape[0] is None}
     return FieldFile(
         path,
-        root["Steps"]["Values"][:steps],
-        root["Points"][:],
-        root["Connectivity"][:].reshape(-1, 8),
-        {name: root["CellData"][name][:] for name in root["CellData"] if name not in moving},
+        _rows(root["Steps"]["Values"], 0, steps),
+        _rows(root["Points"]),
+        _rows(root["Connectivity"]).reshape(-1, 8),
+        {name: _rows(root["CellData"][name]) for name in root["CellData"] if name not in moving},
         tuple(root["PointData"]),
         tuple(sorted(moving)),
     )
 
 
+def _rows(dataset: h5py.Dataset, start: int = 0, stop: int | None = None) -> np.ndarray:
+    """Return rows of a dataset. Raises ValueError where it states more bytes than the whole file has."""
+    first, last, _ = slice(start, stop).indices(dataset.shape[0])
+    stated = (last - first) * math.prod(dataset.shape[1:]) * dataset.dtype.itemsize
+    if stated > dataset.file.id.get_filesize():
+        raise ValueError(f"{dataset.name} states {stated} bytes, more than the file has")
+    rows: np.ndarray = dataset[first:last]
+    return rows
+
+
 def _slice(root: h5py.Group, kind: str, name: str, frame: int, count: int) -> np.ndarray:
     start = int(root["Steps"][f"{kind}Offsets"][name][frame])
-    rows: np.ndarray = root[kind][name][start : start + count]
+    rows = _rows(root[kind][name], start, start + count)
     if len(rows) != count:
         raise ValueError(f"{kind} {name} of frame {frame} is cut off")
     return rows
@@ -110,6 +122,6 @@ def _opened(path: Path, read: Callable[[h5py.Group], T]) -> T:
                 return read(file["VTKHDF"])
         except BlockingIOError:
             clock.sleep(wait)  # a writer is at work on it
-        except (OSError, KeyError, ValueError, RuntimeError, AttributeError, TypeError) as error:
+        except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError) as error:
             raise ResultError(f"{path}: not a readable field file ({error}).") from error
     raise ResultError(f"{path}: another program keeps this file locked; try again when it is done.")

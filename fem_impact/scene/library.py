@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tomllib
-from difflib import get_close_matches
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -39,10 +38,7 @@ def material(name: str) -> Material:
     """Return one shipped material, or refuse the name with a suggestion."""
     known = materials()
     if name not in known:
-        near = get_close_matches(name, list(known), 1)
-        remedy = (
-            f'Did you mean "{near[0]}"?' if near else f"Known: {', '.join(known)}; or give a table of values."
-        )
+        remedy = did_you_mean(name, known, f"Known: {', '.join(known)}; or give a table of values.")
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
     return known[name]
 

@@ -6,10 +6,9 @@ import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from difflib import get_close_matches
 from typing import Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import SceneError, did_you_mean
 
 __all__ = [
     "DIMENSIONS",
@@ -207,10 +206,8 @@ def _plain(symbol: str) -> str:
 
 
 def _unknown_unit(symbol: str, dim: Dimension) -> str:
-    near = [u.symbol for u in dim.units if u.symbol.lower() == symbol.lower()]
-    near = near or get_close_matches(symbol, [u.symbol for u in dim.units], 1, 0.4)
-    hint = f" Did you mean {near[0]}?" if near else ""
-    return f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}).{hint}"
+    hint = did_you_mean(symbol, [unit.symbol for unit in dim.units], "")
+    return f"{symbol[:20]!r} is not a unit of {dim.name} ({dim.symbols}). {hint}".rstrip()
 
 
 def _why_not(text: str, dim: Dimension) -> str:
