@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.plan.plan import plan
 from fem_impact.scene.library import materials
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -15,8 +16,8 @@ from fem_impact.scene.write import to_dict, to_toml
 
 NAN, INF = float("nan"), float("inf")
 MISTAKES = [
-    ("impact.v_n", "2.1 m/s", ["impact.v_n = 2.1 m/s", "below 0 m/s", "out of the barrier"]),
-    ("impact.v_n", "0 m/s", ["below 0 m/s"]),
+    ("impact.v_n", "2.1 m/s", ["impact.v_n = 2.1 m/s", "at most -0.000001 m/s", "out of the barrier"]),
+    ("impact.v_n", "0 m/s", ["has v_n below 0"]),
     ("impact.v_t", "1 m/s", ["impact.v_t", "at most 0 m/s"]),
     ("impact.angle", "90 deg", ["impact.angle = 90 deg", "below 90 deg"]),
     ("impact.angle", "95 deg", ["impact.angle = 95 deg", "below 90 deg"]),
@@ -56,22 +57,8 @@ MISTAKES = [
     ("accuracy.element", "reduced", ["accuracy.element", '"full" or "bbar"']),
     ("accuracy.element", ["full"], ["accuracy.element", "is not a choice"]),
     ("save.frames", 10**30, ["save.frames", "at most 100000"]),
-    ("effects", ["auto", "auto"], ["twice"]),
-    ("effects", ["auto", "gravity", "-gravity"], ["twice"]),
-    ("effects", ["auto", "-gravty"], ["-gravty", "Did you mean -gravity?"]),
-    ("effects", ["auto", "-barrier-rigid"], ["always a barrier"]),
-    ("effects", ["auto", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
-    ("effects", ["auto", "radiation", "barrier-rigid"], ["means nothing without", "barrier-elastic"]),
-    ("effects", ["vibration", "barrier-rigid", "rate-hardening"], ["means nothing", "rod-plasticity"]),
-    ("effects", ["vibration", "barrier-rigid", "-gravity"], ["-gravity", "is not an effect"]),
-    ("effects", ["-friction"], ["-friction", 'write ["auto", "-friction"]']),
-    ("effects", ["gravity"], ["names 0 barriers", "gravity"]),
     ("effects", "vibration", ["list of names"]),
-    ("effects", ["vibration", "frictoin", "barrier-rigid"], ["frictoin", "Did you mean friction?"]),
-    ("effects", ["vibration", "vibration", "barrier-rigid"], ["twice"]),
-    ("effects", ["vibration"], ["0 barriers", "barrier-elastic"]),
-    ("effects", ["vibration", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
-    ("effects", [["vibration"]], ["is not an effect"]),
+    ("effects", [["vibration"]], ["list of names"]),
     ("measured", "t7", ["measured", '"t2"']),
     ("id", "../../etc", ["id", "directory"]),
     ("id", "", ["id"]),
@@ -90,6 +77,31 @@ def test_a_mistake_is_named_with_key_value_and_remedy(key, value, words):
     for word in words:
         assert word in message
     assert caught.value.exit_code == 3
+
+
+EFFECTS = [
+    (["auto", "auto"], ["twice"]),
+    (["auto", "gravity", "-gravity"], ["twice"]),
+    (["auto", "-gravty"], ["-gravty", "Did you mean -gravity?"]),
+    (["auto", "-barrier-rigid"], ["always a barrier"]),
+    (["auto", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
+    (["auto", "radiation", "barrier-rigid"], ["means nothing without", "barrier-elastic"]),
+    (["vibration", "barrier-rigid", "rate-hardening"], ["means nothing", "rod-plasticity"]),
+    (["vibration", "barrier-rigid", "-gravity"], ["-gravity", "is not an effect"]),
+    (["-friction"], ["-friction", 'write ["auto", "-friction"]']),
+    (["gravity"], ["names 0 barriers", "gravity"]),
+    (["vibration", "frictoin", "barrier-rigid"], ["frictoin", "Did you mean friction?"]),
+    (["vibration", "vibration", "barrier-rigid"], ["twice"]),
+    (["vibration"], ["0 barriers", "barrier-elastic"]),
+    (["vibration", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
+]
+
+
+@pytest.mark.parametrize(("names", "words"), EFFECTS)
+def test_effects_that_cannot_be_are_named_by_the_plan(names, words):
+    with pytest.raises(SceneError) as caught:
+        plan(replace(load("t5b"), "effects", names), "rigid")
+    assert all(word in str(caught.value) for word in words) and caught.value.key == "effects"
 
 
 def write(tmp_path, text, encoding="utf-8"):

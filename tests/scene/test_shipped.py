@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from fem_impact.errors import UsageError
-from fem_impact.plan.limits import validity
+from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import materials, shipped, source_of, surfaces
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save
+from fem_impact.scene.write import to_dict
 from rigid.experiments import measured_set, set_ids
 
 
@@ -46,7 +47,7 @@ def test_a_measured_scene_repeats_the_published_set(name):
 
 @pytest.mark.parametrize("name", MEASURED_SETS)
 def test_a_measured_scene_lies_inside_the_measured_range(name):
-    assert validity(load(name)) == ()
+    assert plan(load(name)).validity == ()
 
 
 def test_one_friction_interval_serves_every_rod_speed_and_angle():
@@ -76,13 +77,13 @@ def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
     for default in DEFAULTS:
         section, key = default.key.split(".")
         assert getattr(made[section], key) == getattr(getattr(elastic, section), key), default
-        assert elastic.to_dict()[section][key] == default.value
+        assert to_dict(elastic)[section][key] == default.value
         assert len(default.source) > 20, default
 
 
 def test_a_scene_that_leaves_the_measured_range_says_where():
     changed = replace(replace(load("t5b"), "impact.angle", "80 deg"), "impact.omega", "5 rad/s")
-    sentences = " ".join(validity(changed))
+    sentences = " ".join(plan(changed, "rigid").validity)
     assert "angle 80 deg, measured 17 deg to 60 deg" in sentences
     assert "turn" in sentences
 
