@@ -52,8 +52,8 @@ class Outcome:
 
     Examples
     --------
-    >>> from fem_impact.scene.shipped import load
     >>> from fem_impact.run.simulate import simulate
+    >>> from fem_impact.scene.shipped import load
     >>> outcome = simulate(load("t5b"), "rigid")
     >>> round(outcome.restitution.edge.e, 2)
     0.31

@@ -43,7 +43,8 @@ def test_file_in_the_way_is_named(tmp_path):
 FULL = """
 import resource, signal, sys
 from fem_impact.errors import OutputPathError
-from fem_impact.tables.growing import HistoryWriter, write_text
+from fem_impact.files.atomic import write_text
+from fem_impact.tables.growing import HistoryWriter
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 folder = sys.argv[1]
 write_text(folder + "/note.txt", "old")
