@@ -67,7 +67,8 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
             outcomes.append(with_limits(runs["fine"], runs["coarse"], out / name))
         if not request.quick:
             changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
-    published = publish(sets_report(outcomes, changed), request, results)
+    comparison = [row for outcome in outcomes for row in compare(outcome)]
+    published = publish(sets_report(outcomes, comparison, changed), request, results)
     return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 
 
@@ -92,9 +93,10 @@ COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")
 
 
-def sets_report(outcomes: Sequence[Outcome], changed: Sequence[Row]) -> StudyReport:
+def sets_report(
+    outcomes: Sequence[Outcome], comparison: Sequence[Row], changed: Sequence[Row]
+) -> StudyReport:
     """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
-    comparison = [row for outcome in outcomes for row in compare(outcome)]
     explained = explanations(comparison, changed)
     sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
     return StudyReport(

@@ -15,6 +15,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.report.all_page import write_all
 from fem_impact.report.study_data import read_study
 from fem_impact.report.write import write_report
+from fem_impact.study.compare import compare
 from fem_impact.study.document import Picture, Request, Sheet, StudyReport, publish
 from fem_impact.study.sets import sets_report
 from fem_impact.tables.table import Table
@@ -62,7 +63,7 @@ def test_the_papers_conclusions_are_judged(results):
     row = Outcome.from_dict(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
     changed = {"set": "t5b", "quantity": "e", "input": "yield", "base": 0.3, "changed": 0.42}
     coarse = {"t5b": row, "t5b-coarse-yield": altered(row, e_edge=0.123)}
-    publish(sets_report([row], [changed]), Request(results / "sets"), coarse)
+    publish(sets_report([row], compare(row), [changed]), Request(results / "sets"), coarse)
     page = write_all(results, results / "report").read_text()
     for words in ("while vibration took 3 to 3 %", "measured or computed, in t5b", "Does not stand: E_lt"):
         assert words in page

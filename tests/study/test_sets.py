@@ -10,10 +10,13 @@ from fem_impact.cost.limits import LOWEST
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
 from fem_impact.progress import NullMeter
+from fem_impact.report.study_data import read_study
+from fem_impact.report.study_page import study_page
 from fem_impact.study.catalogue import run_study
-from fem_impact.study.document import Request
+from fem_impact.study.document import SCHEMA, Request
 from fem_impact.study.inputs import INPUT_CHANGES
 from fem_impact.study.sets import COARSER, QUICK_SETS, conclude, jobs_of, plan
+from fem_impact.tables.table import read_csv
 
 
 def computed(jobs, broken=()):
@@ -77,8 +80,26 @@ def test_a_first_look_is_one_set_a_rod(tmp_path):
 
 def test_changed_inputs_are_run_unless_quick(tmp_path):
     found = study(tmp_path, "t5b", quick=False)
-    assert {row["input"] for row in found.document["sensitivity"]} >= {i.name for i in INPUT_CHANGES}
-    assert study(tmp_path, "t5b").document["sensitivity"] == []
+    assert [sheet["name"] for sheet in found.document["sheets"]][-3:] == [
+        "sensitivity",
+        "changes",
+        "explanations",
+    ]
+    assert {*read_csv(tmp_path / "sensitivity.csv").texts("input")} >= {i.name for i in INPUT_CHANGES}
+    quick = study(tmp_path / "quick", "t5b").document["sheets"]
+    assert "sensitivity" not in {sheet["name"] for sheet in quick}
+
+
+def test_the_study_publishes_as_every_other(tmp_path):
+    found = study(tmp_path, "t5b")
+    read = read_study(tmp_path)
+    assert found.document["schema"] == SCHEMA
+    assert read.command == "fem-impact study sets t5b --quick"
+    assert [row.provenance.scene_id for row in read.rows] == ["t5b"]
+    assert (tmp_path / "summary.md").read_text() == found.text
+    assert read_csv(tmp_path / "runs.csv").texts("run") == ["t5b", "t5b-coarse"]
+    page = study_page(tmp_path)
+    assert "Where the energy went" in page and "beside.csv" in page
 
 
 def test_the_coarser_twin(tmp_path):

@@ -11,11 +11,12 @@ from fem_impact.plan.choose import active
 from fem_impact.progress import NullMeter
 from fem_impact.report.present import pictures, present
 from fem_impact.study.inputs import explanations, sensitivity_rows
-from fem_impact.study.sets import jobs_of, summary
+from fem_impact.study.sets import jobs_of, sets_report
+from fem_impact.tables.csv import COMPARISON as COLUMNS
 
 
 def row(quantity, verdict, model=0.3, band=0.01):
-    return {
+    return dict.fromkeys(COLUMNS) | {
         "set": "t5b",
         "quantity": quantity,
         "model": model,
@@ -44,10 +45,14 @@ OUTCOME = outcome(
 )
 
 
+def tables(outcomes, comparison=COMPARISON, changed=()):
+    """The tables of the study by name."""
+    return {sheet.name: sheet.table for sheet in sets_report(outcomes, comparison, changed).sheets}
+
+
 def test_marks_tell_inside_undecided_and_outside_apart():
-    beside = summary([OUTCOME], COMPARISON, [], []).splitlines()[2]
-    cells = [cell.strip() for cell in beside.strip("|").split("|")]
-    assert cells == [
+    (cells,) = tables([OUTCOME])["beside"].rows
+    assert cells == (
         "t5b",
         "**0.300 ± 0.010** / 0.327 ± 0.078",
         "0.300 ± 0.010 / 0.327 ± 0.078 ?",
@@ -55,24 +60,24 @@ def test_marks_tell_inside_undecided_and_outside_apart():
         "0.300 ± 0.010 / 0.327 ± 0.078",
         "**0.300** / 0.327 ± 0.078",
         "**0.300 ± 0.010** / 0.327 ± 0.078",
-    ]
+    )
 
 
 def test_limits_say_how_uncertain_they_are():
     limits = {"e_edge": 0.32, "E_vib_over_E_0": 0.002}
     limited = altered(OUTCOME, mesh_limit=limits, mesh_band={"e_edge": 0.016, "E_vib_over_E_0": 0.0005})
-    cells = summary([limited], COMPARISON, [], []).splitlines()[10].strip("|").split("|")
-    assert [cell.strip() for cell in cells] == ["t5b", "0.320 ± 0.016", "5", "0.200 ± 0.050", "25", "7"]
-    assert "limit" not in summary([OUTCOME], COMPARISON, [], [])
+    (cells,) = tables([limited])["limits"].rows
+    assert cells == ("t5b", "0.320 ± 0.016", "5", "0.200 ± 0.050", "25", "7")
+    assert "limits" not in tables([OUTCOME])
 
 
 def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
     limits, bands = {"E_vib_over_E_0": 0.00354, "e_edge": 0.3}, {"E_vib_over_E_0": 0.0012, "e_edge": 0.1}
     limited = altered(OUTCOME, mesh_limit=limits, mesh_band=bands, W_damping_over_E_0=None)
-    cells = summary([limited], COMPARISON, [], []).splitlines()[6].strip("|").split("|")
+    (cells,) = tables([limited])["shares"].rows
     shown = ["0.35 ± 0.12" if share.label == "vibration" else "12.3" for share in shares("report")]
-    shown[[share.label for share in shares("report")].index("damping")] = "–"
-    assert [cell.strip() for cell in cells] == ["t5b", *shown, "-2e-05", "9100", "7"]
+    shown[[share.label for share in shares("report")].index("damping")] = None
+    assert cells == ("t5b", *shown, "-2e-05", 9100, "7")
 
 
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
@@ -110,9 +115,10 @@ def test_an_input_explains_a_miss_only_if_it_reaches_the_interval():
     assert found["could"] == ["yield"]
     assert found["shares"]["block"] == pytest.approx(0.10 / 0.173)
     assert found["shares"]["friction-low"] < 0
-    told = summary([OUTCOME], COMPARISON, changes, [found])
-    assert "| t5b | e | 0.5 | 0.327 | yield | block (+58%), friction-low (-58%) |" in told
-    assert "| t5b | e | 0.3 | +0.1 |" in told
+    told = tables([OUTCOME], [miss], changes)
+    explained = ("t5b", "e", "0.5", "0.327", "yield (+104%)", "block (+58%), friction-low (-58%)")
+    assert told["explanations"].rows == (explained,)
+    assert told["changes"].rows[0][:4] == ("t5b", "e", "0.3", "+0.1")
 
 
 def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
