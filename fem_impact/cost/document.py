@@ -1,4 +1,4 @@
-"""The cost of a scene as a table, as CSV and as JSON."""
+"""The cost of scenes in files and tables: JSON, CSV, text, the plot of error against time, Markdown."""
 
 from __future__ import annotations
 
@@ -34,6 +34,19 @@ COLUMNS = (
     *(f"band_{name}" for name in NAMES),
     "front",
 )
+LOOKS = {
+    "rigid": ("rigid", "s", "purple"),
+    "modal": ("modal", "D", "orange"),
+    "mesh": ("one mesh", "o", "blue"),
+    "pair": ("two meshes, extrapolated", "^", "green"),
+    "numerics": ("other elements or step", "x", "vermilion"),
+}
+"""Label, marker and colour of each kind of setting."""
+WANTED = 0.02
+"""Band over the scale, at most, of a pair that counts as accurate enough in the table of scenes."""
+
+Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]
+"""Limits of the quantities, and settings, by scene."""
 
 
 def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
@@ -48,7 +61,7 @@ def _row(setting: Judged) -> list[Cell]:
     data = setting.to_dict()
     errors = [setting.error[name] for name in NAMES]
     values = [setting.value[name] for name in NAMES]
-    own = [held.get(name) for held in (setting.scatter, setting.band) for name in NAMES]
+    own = [shares.get(name) for shares in (setting.scatter, setting.band) for name in NAMES]
     return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
 
 
@@ -118,16 +131,6 @@ def _line(
     return (setting.name, *costs, *shown)
 
 
-LOOKS = {
-    "rigid": ("rigid", "s", "purple"),
-    "modal": ("modal", "D", "orange"),
-    "mesh": ("one mesh", "o", "blue"),
-    "pair": ("two meshes, extrapolated", "^", "green"),
-    "numerics": ("other elements or step", "x", "vermilion"),
-}
-"""Words, marker and colour of each kind of setting."""
-
-
 def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path) -> None:
     """Draw relative error against CPU time, both logarithmic, of some quantities."""
     rows = (len(names) + 1) // 2
@@ -143,9 +146,9 @@ def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path)
 def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
     best = front(settings, [name])
     axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
-    for kind, (words, marker, colour) in LOOKS.items():
+    for kind, (label, marker, colour) in LOOKS.items():
         of = [one for one in settings if one.kind == kind]
-        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=words, markersize=5)
+        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=label, markersize=5)
     axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
     axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
     _plain(axes)
@@ -166,10 +169,6 @@ def _plain(axes: Axes) -> None:
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
     return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
-
-
-WANTED = 0.02
-Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]  # limits of the quantities, and settings
 
 
 def summary_markdown(document: dict[str, Any]) -> str:
@@ -203,15 +202,15 @@ def _pairs(scenes: Scenes) -> str:
         scene: (q, settings) for scene, (q, settings) in scenes.items() if any(one.band for one in settings)
     }
     columns = [[_best(name, *of) for of in ran.values()] for name in TARGETED]
-    head = ["set", *(words for name in TARGETED for words in (name, "% (scatter)", "meshes, mm", "off", "s"))]
+    head = ["set", *(title for name in TARGETED for title in (name, "% (scatter)", "meshes, mm", "off", "s"))]
     body = [
-        [scene, *(cell for told, _ in row for cell in told)]
+        [scene, *(cell for cells, _ in row for cell in cells)]
         for scene, *row in zip(ran, *columns, strict=True)
     ]
-    words = " and ".join(
+    counts = " and ".join(
         f"{name} in {sum(met for _, met in column)}" for name, column in zip(TARGETED, columns, strict=True)
     )
-    sentence = f"To {100 * WANTED:g} % by its own band: {words} of {len(ran)} sets."
+    sentence = f"To {100 * WANTED:g} % by its own band: {counts} of {len(ran)} sets."
     return f"{Table.of(head, body).markdown()}\n\n{sentence}"
 
 
@@ -222,12 +221,12 @@ def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tupl
     limit, scale = quantities[name], quantities[name]["scale"]
     both = pair.band[name] * scale + limit["uncertainty"]
     off = abs((pair.value[name] or 0.0) - limit["limit"]) / both if both else 0.0
-    found = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * scale:.4f}"
+    value = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * scale:.4f}"
     met = pair.band[name] <= WANTED
     band = f"**{_percent(pair.band[name])}**" if met else _percent(pair.band[name])
     sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
     scatter = f"({_percent(pair.scatter[name])})"
-    return [found, f"{band} {scatter}", sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"], met
+    return [value, f"{band} {scatter}", sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"], met
 
 
 def _columns(groups: list[list[Judged]]) -> list[str]:
@@ -242,18 +241,18 @@ def _limits(quantities: dict[str, Any]) -> list[str]:
 
 
 def _markdown_cell(settings: list[Judged], name: str) -> str:
-    found = [one for one in settings if one.name == name]
-    if not found:
+    setting = next((one for one in settings if one.name == name), None)
+    if setting is None:
         return ""
-    words = " / ".join(_off(found[0], quantity) for quantity in TARGETED)
-    return f"{words}, {found[0].cpu_s:.2g} s"
+    errors = " / ".join(_off(setting, quantity) for quantity in TARGETED)
+    return f"{errors}, {setting.cpu_s:.2g} s"
 
 
 def _off(setting: Judged, quantity: str) -> str:
     """Return the error, and the scatter that is known."""
     error, scatter = setting.error[quantity], setting.scatter.get(quantity)
-    words = "-" if error is None else _percent(error)
-    return words if scatter is None else f"{words} ± {_percent(scatter)}"
+    shown = "-" if error is None else _percent(error)
+    return shown if scatter is None else f"{shown} ± {_percent(scatter)}"
 
 
 def _percent(error: float) -> str:

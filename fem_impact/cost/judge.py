@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import Any
 
 from fem_impact.cost.limits import Placed, Truth, mean, standard_error, truths, values_of
-from fem_impact.cost.quantities import QUANTITIES, TargetQuantity
+from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import Setting
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
@@ -27,6 +27,9 @@ __all__ = [
     "wall_seconds",
     "worst",
 ]
+
+
+Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,8 +83,12 @@ def judge(
     the effect.
     """
     if whole is not None:
-        truth = {q.name: _on_mesh(q, whole, truth[q.name]) for q in QUANTITIES if q.name in truth}
-    every = [run for placed in runs for run in placed]
+        truth = {
+            q.name: replace(truth[q.name], value=fmean(values_of(q, whole)), uncertainty=0.0)
+            for q in QUANTITIES
+            if q.name in truth
+        }
+    flat = [run for placed in runs for run in placed]
     own = truths(runs) if len(runs) == 2 else {}
     value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
@@ -92,16 +99,16 @@ def judge(
         kind=setting.kind,
         fidelity=setting.fidelity,
         meshes=[asdict(mesh) for mesh in setting.meshes],
-        tip_size_m=or_none(every[0].cost.tip_size),
+        tip_size_m=or_none(flat[0].cost.tip_size),
         value=value,
         error={name: _error(number, truth.get(name), own.get(name)) for name, number in value.items()},
         scatter={name: number / truth[name].scale for name, number in scatter.items()},
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
-        wall_s=sum(wall_seconds(run) for run in every),
-        cpu_s=sum(cpu_seconds(run) for run in every),
-        two_cores_s=max(sum(cpu_seconds(run) for run in lane) for lane in (every[0::2], every[1::2])),
-        element_steps=_total(or_none(run.cost.element_steps) for run in every),
-        peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in every), default=0.0) or None,
+        wall_s=sum(wall_seconds(run) for run in flat),
+        cpu_s=sum(cpu_seconds(run) for run in flat),
+        two_cores_s=max(sum(cpu_seconds(run) for run in lane) for lane in (flat[0::2], flat[1::2])),
+        element_steps=_total(or_none(run.cost.element_steps) for run in flat),
+        peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in flat), default=0.0) or None,
     )
 
 
@@ -113,10 +120,6 @@ def wall_seconds(run: Outcome) -> float:
 def cpu_seconds(run: Outcome) -> float:
     """Return the processor time of a run with that of its set-up, s."""
     return run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)
-
-
-def _on_mesh(quantity: TargetQuantity, whole: Placed, truth: Truth) -> Truth:
-    return replace(truth, value=fmean(values_of(quantity, whole)), uncertainty=0.0)
 
 
 def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
@@ -143,14 +146,14 @@ def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
 
     A setting that leaves an effect out takes no part: its error is not one against the limit.
     """
-    found: list[Judged] = []
+    optimal: list[Judged] = []
     best = inf
     whole = [one for one in judged if one.kind != "effect"]
     for one in sorted(whole, key=lambda j: (j.cpu_s, worst(j, names))):
         if worst(one, names) < best:
             best = worst(one, names)
-            found.append(one)
-    return found
+            optimal.append(one)
+    return optimal
 
 
 def cheapest(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
@@ -172,28 +175,25 @@ def advice(
     of = " and ".join(names)
     lines = []
     if target is not None:
-        found = cheapest(settings, names, target)
+        quickest = cheapest(settings, names, target)
         best = front(settings, names)[-1]
         lines.append(
-            f"Cheapest within {100 * target:.3g} % of {of}: {_words(found, names)}."
-            if found
-            else f"No setting brings {of} within {100 * target:.3g} %; best: {_words(best, names)}."
+            f"Cheapest within {100 * target:.3g} % of {of}: {_sentence_of(quickest, names)}."
+            if quickest
+            else f"No setting brings {of} within {100 * target:.3g} %; best: {_sentence_of(best, names)}."
         )
     if budget is not None:
         within = best_within(settings, names, budget)
         lines.append(
-            f"Best within {budget:.3g} s: {_words(within, names)}."
+            f"Best within {budget:.3g} s: {_sentence_of(within, names)}."
             if within
             else f"No setting takes only {budget:.3g} s."
         )
     return lines
 
 
-def _words(setting: Judged, names: Sequence[str]) -> str:
+def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
     return f"{setting.name}, error {100 * worst(setting, names):.2g} % in {setting.cpu_s:.3g} s"
-
-
-Quantities = Mapping[str, Mapping[str, float]]  # with the scale of each
 
 
 def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
@@ -222,14 +222,14 @@ def pair_sentence(
     pair = best_pair(settings, names, target)
     if pair is None:
         return "No two meshes gave a result."
-    found = "; ".join(f"{name} {verdict(pair, quantities, name, target)}" for name in names)
+    verdicts = "; ".join(f"{name} {verdict(pair, quantities, name, target)}" for name in names)
     took = f"{pair.two_cores_s:.3g} s on two cores"
-    return f"Two meshes against {100 * target:.3g} %, {pair.name}: {found}; {took}."
+    return f"Two meshes against {100 * target:.3g} %, {pair.name}: {verdicts}; {took}."
 
 
 def verdict(pair: Judged, quantities: Quantities, name: str, target: float) -> str:
     """Return value, band, how much of it is scatter, and whether the band meets the target."""
     value, band, scale = pair.value[name] or 0.0, pair.band[name], quantities[name]["scale"]
-    words = "reached" if band <= target else "not reached"
+    reached = "reached" if band <= target else "not reached"
     scatter = f"{pair.scatter[name] * scale:.4f} of it scatter"
-    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {words}: {100 * band:.2g} %"
+    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {reached}: {100 * band:.2g} %"

@@ -1,11 +1,9 @@
-"""Limits for vanishing elements from the means of several runs on each mesh, with their uncertainty.
+"""Limits for vanishing element size from the means of several runs on each mesh, with their uncertainty.
 
-Two meshes, one rule. Richardson's extrapolation asks for the order of convergence, and two meshes tell none:
-first order, which contact and yielding often show, is a guess that puts the limit far away where a smooth
-quantity converges faster, and gives no band but the whole of that distance. What is known is the range of
-orders that such meshes show, so the band holds what every order from `LOWEST` up would give, from the finer
-mesh itself (infinite order) to the farthest limit, and the limit is its middle. How often such bands hold the
-limit of all meshes was counted, see `LOWEST`. Three meshes or more are fitted: `fem_impact.cost.limits`.
+Two meshes do not determine the order of convergence that Richardson's extrapolation needs. `pair_limit`
+therefore states the band of the limits of all orders from `LOWEST` up (from the mean on the finer mesh, the
+limit of infinite order, to the limit of order `LOWEST`), and its middle as the limit. Three meshes or more
+are fitted by least squares (`limit`).
 """
 
 from __future__ import annotations
@@ -39,21 +37,23 @@ __all__ = [
 ]
 
 
-# order of convergence: bands from here up held 91 of 100 limits of all meshes, taken as exact, and all within
-# those limits' own bands (twelve sets, nine quantities)
+# Lowest order of convergence in the band of two meshes. Over twelve sets and nine quantities, 91 % of
+# such bands contain the limit of all meshes, and all of them do within the band of that limit.
 LOWEST = 0.75
 # Standard error of a mean over evenly spaced places, over that of places taken at random. Even places cancel
 # the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two places
 # lay .49, .45 and .60 of the latter from those of four on 0.59, 0.40 and 0.30 mm (medians .25 to .31), means
 # of four .27 from those of eight on 0.59 mm (median .13).
 EVEN = {2: 0.6, 4: 0.35}
+LOWEST_FITTED, HIGHEST_FITTED = 0.5, 2.0  # orders of an accepted fit; the method is of second order
+SURE, UNSURE = 1.25, 3.0  # safety factors of an accepted fit and of one with fixed orders
 
 Placed = Sequence[Outcome]  # the runs on one mesh, the grid of the barrier at other places
 
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """What the meshes say of one quantity.
+    """The limit of one quantity and its uncertainty.
 
     Attributes
     ----------
@@ -68,6 +68,33 @@ class Truth:
     uncertainty: float
     scale: float
     scatter: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A fit over three meshes or more.
+
+    Attributes
+    ----------
+    value : the fit at element size 0
+    band : half-width about the finest mesh's value that should hold the limit in 95 of 100 cases
+    order : fitted order, None where it lies outside the accepted range and fixed orders are used
+    scatter : standard deviation of the values about the fit
+    """
+
+    value: float
+    order: float | None
+    band: float
+    scatter: float
+
+
+@dataclass(frozen=True, slots=True)
+class _Fit:
+    """Least squares: the ``terms`` in powers of the element size on each mesh, value at size 0, scatter."""
+
+    terms: Array
+    value: float
+    scatter: float
 
 
 def mean(quantity: TargetQuantity, runs: Placed) -> float | None:
@@ -117,14 +144,14 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
 def mesh_limits(fine: Placed, coarse: Placed) -> tuple[dict[str, float], dict[str, float]]:
     """Return limit and half-width of two meshes, by key, of every number that all their runs know."""
     fine_values, coarse_values = _banded(fine), _banded(coarse)
-    found = {
+    limits = {
         name: _limit_of(_sizes((fine, coarse)), (fine_values[name], coarse_values[name]))
         for name in fine_values
         if name in coarse_values
     }
     return (
-        {name: value for name, (value, _, _, _) in found.items()},
-        {name: left_open + scatter for name, (_, _, left_open, scatter) in found.items()},
+        {name: value for name, (value, _, _, _) in limits.items()},
+        {name: left_open + scatter for name, (_, _, left_open, scatter) in limits.items()},
     )
 
 
@@ -136,7 +163,7 @@ def mesh_means(runs: Placed) -> dict[str, float]:
 def _banded(runs: Placed) -> dict[str, list[float]]:
     """Return the values of the banded keys that all runs know."""
     values = {key.name: [key.of(run) for run in runs] for key in KEYS if key.banded}
-    return {name: held for name, held in values.items() if not any(isinstance(v, Unknown) for v in held)}
+    return {name: row for name, row in values.items() if not any(isinstance(v, Unknown) for v in row)}
 
 
 def _sizes(meshes: Sequence[Placed]) -> list[float]:
@@ -155,8 +182,8 @@ def _limit_of(
     sizes: list[float], values: Sequence[Sequence[float]]
 ) -> tuple[float, float | None, float, float]:
     """Return limit, order, what the means leave open, and the limit's standard error."""
-    means = [fmean(held) for held in values]
-    scatter = _carried(sizes, means, [standard_error(held) for held in values])
+    means = [fmean(on_mesh) for on_mesh in values]
+    scatter = _carried(sizes, means, [standard_error(on_mesh) for on_mesh in values])
     return *_limit(sizes, means), scatter
 
 
@@ -166,9 +193,8 @@ def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None
     if len(sizes) == 2:
         value, half = pair_limit(last, first, max(sizes) / min(sizes))
         return value, None, half
-    found = limit(sizes, values)
-    away = abs(found.value - last)
-    return found.value, found.order, found.band - away
+    fitted = limit(sizes, values)
+    return fitted.value, fitted.order, fitted.band - abs(fitted.value - last)
 
 
 def _carried(sizes: list[float], values: list[float], errors: list[float]) -> float:
@@ -180,38 +206,6 @@ def _carried(sizes: list[float], values: list[float], errors: list[float]) -> fl
     signs = product((-1.0, 1.0), repeat=len(values)) if any(errors) else ()
     moved = [[v + s * e for v, s, e in zip(values, by, errors, strict=True)] for by in signs]
     return sqrt(fmean((_limit(sizes, other)[0] - value) ** 2 for other in moved)) if moved else 0.0
-
-
-LOWEST_FITTED, HIGHEST_FITTED = (
-    0.5,
-    2.0,
-)  # orders that a fit is believed; the method and its elements are second order
-SURE, UNSURE = 1.25, 3.0  # safety factors of a believed and of a disbelieved fit
-
-
-@dataclass(frozen=True, slots=True)
-class Limit:
-    """What the meshes say of one quantity.
-
-    Attributes
-    ----------
-    value : the fit at element size 0
-    band : half-width about the finest mesh's value that should hold the limit in 95 of 100 cases
-    order : fitted order, None where it is not believed and fixed orders are used
-    scatter : standard deviation of the values about the fit
-    """
-
-    value: float
-    order: float | None
-    band: float
-    scatter: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Fit:
-    terms: Array  # contribution of the element size on every mesh
-    value: float
-    scatter: float
 
 
 def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
@@ -236,8 +230,8 @@ def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
 
     Examples
     --------
-    >>> found = limit([4.0, 2.0, 1.0], [1.16, 1.04, 1.01])
-    >>> round(found.value, 6), round(found.order, 3), round(found.band, 6)
+    >>> fitted = limit([4.0, 2.0, 1.0], [1.16, 1.04, 1.01])
+    >>> round(fitted.value, 6), round(fitted.order, 3), round(fitted.band, 6)
     (1.0, 2.0, 0.0125)
     """
     h, q = np.asarray(sizes, float), np.asarray(values, float)
@@ -250,16 +244,16 @@ def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
 
 
 def _best(h: Array, q: Array) -> tuple[float | None, _Fit]:
-    """Return the order and fit to use; the order is None where only fixed orders are believed."""
-    p = float(minimize_scalar(lambda p: _misfit(h, q, (p,)), bounds=(0.1, 4.0), method="bounded").x)
+    """Return the order and fit to use; the order is None where only fixed orders are accepted."""
+
+    def scatter(p: float) -> float:
+        return _least_squares(h, q, (p,), len(h) - 1).scatter
+
+    p = float(minimize_scalar(scatter, bounds=(0.1, 4.0), method="bounded").x)
     if LOWEST_FITTED <= p <= HIGHEST_FITTED + 0.1:
         return p, _least_squares(h, q, (p,), 3)
     fits = (_least_squares(h, q, (fixed,), 2) for fixed in (1.0, 2.0))
     return None, min(fits, key=lambda fit: fit.scatter)
-
-
-def _misfit(h: Array, q: Array, powers: tuple[float, ...]) -> float:
-    return _least_squares(h, q, powers, len(h) - 1).scatter
 
 
 def _least_squares(h: Array, q: Array, powers: tuple[float, ...], unknowns: int) -> _Fit:
@@ -267,15 +261,16 @@ def _least_squares(h: Array, q: Array, powers: tuple[float, ...], unknowns: int)
     weights = (1 / h) / (1 / h).mean()
     columns = np.stack([np.ones_like(h), *(h**p for p in powers)], axis=1)
     root = np.sqrt(weights)
-    found = np.linalg.lstsq(columns * root[:, None], q * root, rcond=None)[0]
-    terms = columns[:, 1:] @ found[1:]
-    rest = np.sqrt(weights @ (q - found[0] - terms) ** 2 / max(len(h) - unknowns, 1))
-    return _Fit(terms, float(found[0]), float(rest) if len(h) > unknowns else 0.0)
+    coefficients = np.linalg.lstsq(columns * root[:, None], q * root, rcond=None)[0]
+    terms = columns[:, 1:] @ coefficients[1:]
+    rest = np.sqrt(weights @ (q - coefficients[0] - terms) ** 2 / max(len(h) - unknowns, 1))
+    return _Fit(terms, float(coefficients[0]), float(rest) if len(h) > unknowns else 0.0)
 
 
-def _band(believed: bool, fit: _Fit, q: Array, at: int) -> float:
+def _band(accepted: bool, fit: _Fit, q: Array, at: int) -> float:
+    """Return the half-width about the value on mesh ``at``."""
     spread = (q.max() - q.min()) / (len(q) - 1)
     error, off = abs(fit.terms[at]), abs(q[at] - fit.value - fit.terms[at])
     if fit.scatter < spread:
-        return float((SURE if believed else UNSURE) * error + fit.scatter + off)
+        return float((SURE if accepted else UNSURE) * error + fit.scatter + off)
     return float(3 * fit.scatter / spread * (error + fit.scatter + off)) if spread else 0.0

@@ -132,8 +132,8 @@ def judge_stored(
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:
     """Return every run of a ladder once: pairs stand on those of their meshes."""
-    every = (job for setting in settings for jobs in setting.runs for job in jobs)
-    return list({job.name: job for job in every}.values())
+    jobs = (job for setting in settings for on_mesh in setting.runs for job in on_mesh)
+    return list({job.name: job for job in jobs}.values())
 
 
 def _compile(scene: Scene, executor: Executor) -> None:
@@ -175,9 +175,9 @@ def _failure(result: Outcome | Failure) -> str | None:
 
 def _runs(setting: Setting, results: Results) -> list[Placed]:
     """Return the outcomes that a setting stands on, none if one is missing."""
-    found = [[results.get(job.name) for job in jobs] for jobs in setting.runs]
     good: list[Placed] = [
-        [r for r in runs if isinstance(r, Outcome) and _failure(r) is None] for runs in found
+        [run for job in jobs if isinstance(run := results.get(job.name), Outcome) and _failure(run) is None]
+        for jobs in setting.runs
     ]
     return good if [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs] else []
 
@@ -186,4 +186,6 @@ def _marked(judged: list[Judged]) -> list[Judged]:
     """Sort by time and name the quantities on whose Pareto front each setting lies."""
     fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
     ordered = sorted(judged, key=lambda one: one.cpu_s)
-    return [replace(o, front=[name for name, held in fronts.items() if o.name in held]) for o in ordered]
+    return [
+        replace(o, front=[name for name, members in fronts.items() if o.name in members]) for o in ordered
+    ]

@@ -76,11 +76,11 @@ class Setting:
 def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     """Return the settings from cheap to dear; ``family`` from coarse to fine."""
     scene = replace_all(scene, {"save.frames": 0})
-    found = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
-    found += [_solid(scene, mesh) for mesh in family]
-    found += [_pair(scene, fine, coarse) for fine, coarse in _pairs(scene, family)]
-    found += [_solid(scene, mesh, "numerics", words) for words, mesh in NUMERICS.items()]
-    return found + _without(scene)
+    settings = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
+    settings += [_solid(scene, mesh) for mesh in family]
+    settings += [_pair(scene, fine, coarse) for fine, coarse in _pairs(scene, family)]
+    settings += [_solid(scene, mesh, "numerics", label) for label, mesh in NUMERICS.items()]
+    return settings + _without(scene)
 
 
 def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
@@ -110,12 +110,12 @@ def _jobs(scene: Scene, mesh: Mesh, name: str) -> tuple[Job, ...]:
     )
 
 
-def _name(scene: Scene, mesh: Mesh, words: str = "") -> str:
-    return f"solid {mesh.tip_size(scene.projectile.diameter) * 1e3:.3g} mm {words}".strip()
+def _name(scene: Scene, mesh: Mesh, label: str = "") -> str:
+    return f"solid {mesh.tip_size(scene.projectile.diameter) * 1e3:.3g} mm {label}".strip()
 
 
-def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", words: str = "") -> Setting:
-    name = _name(scene, mesh, words)
+def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Setting:
+    name = _name(scene, mesh, label)
     return Setting(name, kind, "solid", (_jobs(scene, mesh, name),), (mesh,))
 
 
@@ -140,6 +140,6 @@ def _without(scene: Scene) -> list[Setting]:
         softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in active(scene)]
         fewer["with an elastic barrier"] = grounded(softer)
     return [
-        _solid(replace_all(scene, {"effects": names}), PLAIN, "effect", words)
-        for words, names in fewer.items()
+        _solid(replace_all(scene, {"effects": names}), PLAIN, "effect", label)
+        for label, names in fewer.items()
     ]

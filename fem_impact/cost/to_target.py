@@ -1,4 +1,7 @@
-"""Costs that were measured before and ship with the package: how near a scene is to one, and the choice."""
+"""Simulate to a stated error: the cheapest setting by the measured costs of the nearest scene, and its runs.
+
+The costs were measured with `fem_impact.cost.measure` and ship with the package (`fem_impact.plan.measured`).
+"""
 
 from __future__ import annotations
 
@@ -55,6 +58,11 @@ NEARNESS = {
     "friction f": 0.05,
     **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
+
+
+ALONE = Unknown("one mesh alone cannot estimate its own error")
+
+Run = Callable[[], Outcome]
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +127,7 @@ def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
 
 def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     """Return the largest difference over what is allowed, and its name; infinite for another model."""
-    for name, mine, its in (
+    for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", active(scene), active(other)),
         ("element", scene.accuracy.element, other.accuracy.element),
@@ -127,7 +135,7 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
         ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
         ("max_time", min(scene.accuracy.max_time, other.accuracy.max_time), other.accuracy.max_time),
     ):
-        if mine != its:
+        if mine != others:
             return inf, name
     a, b = _features(scene), _features(other)
     gaps = {name: 0.0 if a[name] == b[name] else abs(a[name] - b[name]) / NEARNESS[name] for name in NEARNESS}
@@ -137,11 +145,11 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
 
 def nearest(scene: Scene) -> tuple[str, float, str]:
     """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
-    found = [
-        (*_distance(scene, read_dict(held["scene"], "cost summary")), name)
-        for name, held in summary()["scenes"].items()
+    distances = [
+        (*_distance(scene, read_dict(cost["scene"], "cost summary")), name)
+        for name, cost in summary()["scenes"].items()
     ]
-    distance, differs, name = min(found)
+    distance, differs, name = min(distances)
     return name, distance, differs
 
 
@@ -161,15 +169,15 @@ def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) 
     name, distance, differs = nearest(scene)
     if distance > 1:
         raise _too_far(scene, name, distance, differs)
-    held = [Judged(**setting) for setting in summary()["scenes"][name]["settings"]]
-    settings = [one for one in held if fidelity in (None, one.fidelity)]
-    found = cheapest(settings, TARGETED, target)
-    if found is None:
+    measured = [Judged(**setting) for setting in summary()["scenes"][name]["settings"]]
+    settings = [one for one in measured if fidelity in (None, one.fidelity)]
+    best = cheapest(settings, TARGETED, target)
+    if best is None:
         raise _not_met(scene, name, settings)
     machine = summary()["machine"]["csr_ns_per_element_step"]
-    seconds = found.cpu_s if workers == 1 else found.two_cores_s
+    seconds = best.cpu_s if workers == 1 else best.two_cores_s
     pace = yardsticks()["csr_ns_per_element_step"] / machine
-    return ChosenSetting(target, found, name, worst(found, TARGETED), seconds * pace)
+    return ChosenSetting(target, best, name, worst(best, TARGETED), seconds * pace)
 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
@@ -206,11 +214,6 @@ def _written(scene: Scene) -> str:
     return f"{100 * (scene.accuracy.target or 0):.3g} %"
 
 
-Run = Callable[[], Outcome]
-
-ALONE = Unknown("one mesh alone cannot estimate its own error")
-
-
 def simulate(
     scene: Scene, fidelity: str | None = None, options: RunOptions = RunOptions(), workers: int = 1
 ) -> Outcome:
@@ -235,7 +238,8 @@ def simulate(
 def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int) -> Outcome:
     """Return the outcome of a chosen setting, all its runs done."""
     if not chosen.meshes:
-        alone = run.simulate(_plain(scene), chosen.setting.fidelity, options)
+        plain = replace(scene, accuracy=replace(scene.accuracy, target=None))  # a reduced model has no mesh
+        alone = run.simulate(plain, chosen.setting.fidelity, options)
         return _kept(_stated(alone, chosen, wall_seconds(alone)), options.out)
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
     work = _work([one for scenes in jobs for one in scenes], options)
@@ -275,11 +279,6 @@ def _kept(outcome: Outcome, out: Path | None) -> Outcome:
     return outcome
 
 
-def _plain(scene: Scene) -> Scene:
-    """Return the scene without its target; a reduced model meshes nothing."""
-    return replace(scene, accuracy=replace(scene.accuracy, target=None))
-
-
 def _stated(outcome: Outcome, chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
     """Return the outcome with what was asked, expected and achieved."""
     limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
@@ -291,13 +290,14 @@ def _stated(outcome: Outcome, chosen: ChosenSetting, wall_s: float, meshes: Sequ
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
         achieved_wall=wall_s,
-        achieved_error=_left_open(meshes) if len(meshes) == 2 else ALONE,
+        achieved_error=_achieved_error(meshes) if len(meshes) == 2 else ALONE,
         mesh_limit=limits or means,
         mesh_band=bands or ALONE,
     )
     return replace(outcome, validity=stated)
 
 
-def _left_open(meshes: Sequence[Placed]) -> float:
-    found = truths(meshes)
-    return max(found[name].uncertainty / found[name].scale for name in TARGETED)
+def _achieved_error(meshes: Sequence[Placed]) -> float:
+    """Return the largest uncertainty over its scale among the targeted quantities."""
+    limits = truths(meshes)
+    return max(limits[name].uncertainty / limits[name].scale for name in TARGETED)
