@@ -175,7 +175,7 @@ def _body_start(scene: Scene, zones: Zones, low: Array, high: Array) -> float:
     alpha, foot = scene.impact.angle, float(lowest_point(scene)[2])
     top = foot + high[2] * cos(alpha) + max(-low[0], high[0]) * sin(alpha)
     above = float(reach(1.4 * zones.base, 1, zones.levels)) if zones.levels else 0.0
-    return max(top + above + 1.5 * zones.base, scene.projectile.diameter / 3)
+    return float(max(top + above + 1.5 * zones.base, scene.projectile.diameter / 3))
 
 
 def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
@@ -188,7 +188,8 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
     rho_0, _, z_0 = lowest_point(scene)
     rho, z = np.hypot(x + rho_0, b), z + z_0
-    surface = np.interp(rho, *body.meridian().T, right=np.inf)
+    radii, heights = body.meridian().T
+    surface = np.interp(rho, radii, heights, right=np.inf)
     inside = points[(z >= surface) & (z <= body.length)]
     return inside, float(np.prod(high - low)) * len(inside) / len(points)
 

@@ -14,7 +14,7 @@ from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.report.html import Markup, join, paragraph, place, section, table
 from fem_impact.report.page import download, picture
-from fem_impact.tables.table import Table
+from fem_impact.tables.table import Cell, Table
 from rigid.experiments import measured_set
 
 __all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
@@ -150,7 +150,9 @@ def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
 def marker_section(rows: Sequence[Outcome]) -> Markup:
     """Return the camera's two markers, replayed on the computed flight, beside the exact momentum sums."""
     seen = [row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)]
-    shown = [(row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in seen]
+    shown: list[tuple[Cell, ...]] = [
+        (row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in seen
+    ]
     head = ("set", *(words for name, unit in MARKED.items() for words in (f"{name}, {unit}", "by markers")))
     listed = table(Table.of(head, shown), compact=True)
     return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)

@@ -42,7 +42,11 @@ OLD = "v_n and v_t are those of the old angle"
 def test_a_new_angle_with_the_old_fall_is_told_with_the_fall_at_the_new_one(cli, command):
     rigid = () if command == "check" else ("--fidelity", "rigid")
     _, out, err = cli(command, "t5b", "--set", "impact.angle=30 deg", *rigid)
-    assert OLD in err and "impact.v_n='-1.828 m/s'" in err and "which no dropped rod does" in " ".join(out.split())
+    assert (
+        OLD in err
+        and "impact.v_n='-1.828 m/s'" in err
+        and "which no dropped rod does" in " ".join(out.split())
+    )
     fall = ("--set", "impact.v_n=-1.828 m/s", "--set", "impact.v_t=-1.055 m/s")
     _, out, err = cli(command, "t5b", "--set", "impact.angle=30 deg", *fall, *rigid)
     assert OLD not in err and "which no dropped rod does" not in " ".join(out.split())

@@ -11,7 +11,6 @@ import solid_scenes as scenes
 
 import rigid
 from fem_impact.errors import RunError
-from fem_impact.fem.body import START_GAP
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
 from fem_impact.outcome.keys import Unknown
@@ -20,6 +19,7 @@ from fem_impact.run.markers import WINDOW, lever_of, replay
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.solid.build import START_GAP
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve
 from fem_impact.solid.separation import Separation, flight_heights, flown
