@@ -69,8 +69,8 @@ def _fall(scene: Scene) -> str:
     if abs(beside) <= FALL:
         return ""
     return (
-        f"outside the measured range: the rod moves {abs(beside):.2g} deg beside its axis, which no dropped rod "
-        f"does: v_n and v_t are those of another angle than {math.degrees(impact.angle):.4g} deg"
+        f"outside the measured range: the rod moves {abs(beside):.2g} deg beside its axis, which no dropped "
+        f"rod does: v_n and v_t are those of another angle than {math.degrees(impact.angle):.4g} deg"
     )
 
 
@@ -142,7 +142,8 @@ def require_approach(scene: Scene) -> None:
     speed = approach(scene)
     if speed < SLOWEST:
         raise SceneError(
-            f"lifts the contact point off the barrier at {max(-speed, 0.0):.3g} m/s: another part would strike.",
+            f"lifts the contact point off the barrier at {max(-speed, 0.0):.3g} m/s: "
+            "another part would strike.",
             key="impact.omega",
             value=f"{scene.impact.omega:g} rad/s",
             remedy=f"Keep it under {abs(scene.impact.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",

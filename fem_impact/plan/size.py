@@ -2,8 +2,8 @@
 
 The elements follow from the volumes of body and fine zone at each level of splitting, as the mesher splits
 them (`meshes.refine`). What an element costs was fitted to the 51 sizes of runs of the 13 measured sets that
-ship with the package (``plan/data/summary.json``; ``tests/plan/test_size.py`` repeats the comparison): elements
-within a quarter, memory within a third, steps and time within a factor of two.
+ship with the package (``plan/data/summary.json``; ``tests/plan/test_size.py`` repeats the comparison):
+elements within a quarter, memory within a third, steps and time within a factor of two.
 """
 
 from __future__ import annotations
@@ -116,8 +116,8 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
     if size.memory <= there:
         return
     raise SceneError(
-        f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} GB "
-        f"of memory; this machine has {about(there / 1e9)} GB.",
+        f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
+        f"GB of memory; this machine has {about(there / 1e9)} GB.",
         key="accuracy.tip_size",
         value=format_quantity(bodies.scene.accuracy.tip_size, "length"),
         remedy=_finest_that_fits(slots, bodies, zones, there),
@@ -179,7 +179,7 @@ def _body_start(scene: Scene, zones: Zones, low: Array, high: Array) -> float:
 
 
 def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
-    """Return points (k, 3) of a box (t, b, n), m, that lie in the half rod b >= 0, and the volume there, m3."""
+    """Return points (k, 3) of a box (t, b, n), m, that lie in the half rod b >= 0, and their volume, m3."""
     low = np.array([low[0], 0.0, low[2]])
     ends = (np.arange(SAMPLES) + 0.5) / SAMPLES
     grid = np.stack(np.meshgrid(*[a + (z - a) * ends for a, z in zip(low, high, strict=True)]), axis=-1)
@@ -199,7 +199,7 @@ def _block_elements(scene: Scene, zones: Zones) -> float:
     (t, b, n), margin = zones.half, scene.accuracy.block_margin
     depth = n + thin_skin_rise(zones.skin_rows) * zones.tip_size
     low, high = np.array([-t - zones.along, 0.0, -depth]), np.array([t, b, 0.0])
-    bottom, top = low - [margin, 0.0, margin], high + [margin, margin, 0.0]
+    bottom, top = low - np.array([margin, 0.0, margin]), high + np.array([margin, margin, 0.0])
     count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
     for edge, lowest, highest in _split_boxes(zones, low, high):
         sides = np.minimum(highest, top) - np.maximum(lowest, bottom)
@@ -208,7 +208,7 @@ def _block_elements(scene: Scene, zones: Zones) -> float:
 
 
 def _radii(zones: Zones) -> Array:
-    """Return the radii (3,), m, of the ellipsoid whose cells may yield: those that touch it stand out by half."""
+    """Return the radii (3,), m, of the ellipsoid whose cells may yield: those that touch it stand out half."""
     return 1.1 * np.array(zones.half) + zones.tip_size / 2
 
 
