@@ -70,10 +70,10 @@ def _e(run: Outcome) -> float:
 def _shown(run: Outcome) -> dict[str, float]:
     return {
         "e": _e(run),
-        "mu": run.restitution.mu,
+        "mu": known(run.restitution.mu),
         "Omega_rad_per_s": run.motion.Omega,
-        "E_r_over_E_0": run.energy.rigid,
-        "W_friction_over_E_0": run.energy.friction,
+        "E_r_over_E_0": known(run.energy.rigid),
+        "W_friction_over_E_0": known(run.energy.friction),
     }
 
 

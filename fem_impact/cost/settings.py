@@ -87,6 +87,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
     """Return the scene on a mesh, the grid of the barrier at a place."""
     size = mesh.tip_size(scene.projectile.diameter)
     changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm", "grid_shift": place}
+    changes |= {"unresolved": "report"}  # what its mesh does to a number is what a setting is judged by
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
     return replace_all(scene, {f"accuracy.{key}": value for key, value in changes.items()})

@@ -149,7 +149,7 @@ class ArmCoefficients:
 class Restitution:
     """Impulse ratio, and the coefficients with three sets of contact arms."""
 
-    mu: float = key("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17).", True)
+    mu: Num = key("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17).", True)
     mu_c: float = key(
         "mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 11)."
     )
@@ -165,7 +165,7 @@ class Energy:
     """Where the energy at first contact is after the last separation: E_0 in J, the rest as shares of it."""
 
     E_0: float = key("E_0_J", "J", "Kinetic energy of the whole rod at first contact.")
-    rigid: float = key(
+    rigid: Num = key(
         "E_r_over_E_0",
         "-",
         "Kinetic energy of the rigid motion after the last separation (Eq 26)" + SHARE,
@@ -187,7 +187,7 @@ class Energy:
         "E_vib_floor_over_E_0", "-", "Numerical floor under which a vibration energy means nothing" + SHARE
     )
     below_floor: bool | Unknown = key("E_vib_below_floor", "", "True when E_vib is below its floor.")
-    friction: float = key(
+    friction: Num = key(
         "W_friction_over_E_0", "-", "Work turned to heat by friction at the contact" + SHARE, True
     )
     skin: Num = key(
@@ -196,10 +196,8 @@ class Energy:
         "Friction work and plastic work of the barrier down to 0.1 mm below its surface" + SHARE,
         True,
     )
-    plastic_rod: float = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
-    plastic_barrier: float = key(
-        "E_plastic_barrier_over_E_0", "-", "Plastic work in the barrier" + SHARE, True
-    )
+    plastic_rod: Num = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
+    plastic_barrier: Num = key("E_plastic_barrier_over_E_0", "-", "Plastic work in the barrier" + SHARE, True)
     locked_rod: Num = key(
         "E_locked_rod_over_E_0", "-", "Strain energy locked in by residual stress in the rod" + SHARE, True
     )

@@ -76,10 +76,11 @@ class Outcome:
         check_record(self.to_dict(), KEYS, "outcome")
 
     def __repr__(self) -> str:
-        e, vibration = (_short(value) for value in (self.restitution.edge.e, self.energy.vibration))
+        numbers = self.restitution.edge.e, self.restitution.mu, self.energy.vibration
+        e, mu, vibration = map(_short, numbers)
         return (
             f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
-            f"mu={self.restitution.mu:.4g}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
+            f"mu={mu}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
         )
 
     @property

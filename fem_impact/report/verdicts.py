@@ -83,7 +83,7 @@ def _apart(a: Sequence[float], b: Sequence[float]) -> float:
 
 def _sum(row: Outcome) -> float:
     paper = row.restitution.paper
-    return known(paper.E_ln) + known(paper.E_lt) + row.energy.rigid
+    return known(paper.E_ln) + known(paper.E_lt) + known(row.energy.rigid)
 
 
 def _spin(row: Outcome) -> float:
@@ -110,11 +110,11 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
     at = range(len(rows))
     series = (
         Series("measured mu", at, measured, "rings"),
-        Series("computed mu", at, [row.restitution.mu for row in rows], "points"),
+        Series("computed mu", at, [known(row.restitution.mu) for row in rows], "points"),
         Series("mu_c", at, [row.restitution.mu_c for row in rows], "points"),
     )
     ratios = [row.restitution for row in rows]
-    most = [max(mu, r.mu) / r.mu_c for r, mu in zip(ratios, measured, strict=True)]
+    most = [max(mu, known(r.mu)) / r.mu_c for r, mu in zip(ratios, measured, strict=True)]
     above = [name for name, ratio in zip(_names(rows), most, strict=True) if ratio > 1.02]
     sentence = (
         "Stands with a limit: mu_c is the ratio at which the tip stops without turning back, and no upper "
@@ -127,7 +127,7 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
 def _heat(rows: Sequence[Outcome]) -> Verdict:
     at = range(len(rows))
     tangential = [100 * known(row.restitution.paper.E_lt) for row in rows]
-    rubbed = [100 * row.energy.friction for row in rows]
+    rubbed = [100 * known(row.energy.friction) for row in rows]
     series = (
         Series("E_lt, rigid theory", at, tangential, "rings"),
         Series("friction work", at, rubbed, "points"),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RunCost
-from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactBodies, approach, arms, effective_mass, projectile
 from fem_impact.physics.contact_law import contact_law
@@ -63,7 +63,7 @@ def rigid_outcome(plan: Plan) -> Outcome:
         contact=Contact(
             intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
         ),
-        heat=_heat(plan, energy.friction * energy.E_0),
+        heat=_heat(plan, known(energy.friction) * energy.E_0),
         cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
     )
 

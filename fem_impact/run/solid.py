@@ -33,6 +33,7 @@ from fem_impact.run.common import (
     validity,
 )
 from fem_impact.run.markers import replay
+from fem_impact.run.resolution import doubted, is_resolved, too_narrow, without
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
@@ -56,9 +57,9 @@ def reduce(result: SolidResult) -> Outcome:
         raise RunError(f"There was no contact in {past}. {result.reason}")
     moved = _motion(result)
     coefficients, energy = restitution(result.plan.scene, moved), _energy(result, moved)
-    return Outcome(
+    outcome = Outcome(
         provenance=provenance(result.plan, _choices(result)),
-        validity=_validity(result),
+        validity=_validity(result, doubted(coefficients, result.plan.bodies.f, known(energy.rigid))),
         motion=moved,
         restitution=coefficients,
         energy=energy,
@@ -66,6 +67,8 @@ def reduce(result: SolidResult) -> Outcome:
         heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
         cost=_cost(result),
     )
+    withheld = not is_resolved(result) and result.plan.scene.accuracy.unresolved == "withhold"
+    return without(outcome, Unknown(too_narrow(result))) if withheld else outcome
 
 
 def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
@@ -73,7 +76,7 @@ def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
     return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in result.plan.choices)
 
 
-def _validity(result: SolidResult) -> Validity:
+def _validity(result: SolidResult, doubts: list[str]) -> Validity:
     plan, contacts = result.plan, result.model.book.table[:, :2]
     failed = open_ledger(result.worst / result.E_0) or too_slow(plan, contacts)
     return validity(
@@ -81,12 +84,13 @@ def _validity(result: SolidResult) -> Validity:
         result.finished and not failed,
         failed or result.reason,
         ONE_MESH,
-        warnings=[*_doubts(result), *gravity_warning(plan, contacts), *plan.warnings],
+        warnings=[*_doubts(result), *doubts, *gravity_warning(plan, contacts), *plan.warnings],
     )
 
 
 def _doubts(result: SolidResult) -> list[str]:
-    return [*result.warnings, *_ringing(result), *_unresolved(result)]
+    narrow = [] if is_resolved(result) else [too_narrow(result)]
+    return [*narrow, *result.warnings, *_ringing(result), *_untimed(result)]
 
 
 def _ringing(result: SolidResult) -> list[str]:
@@ -102,7 +106,7 @@ def _ringing(result: SolidResult) -> list[str]:
     ]
 
 
-def _unresolved(result: SolidResult) -> list[str]:
+def _untimed(result: SolidResult) -> list[str]:
     """Tell which effects' shares of the run time are not known, and why."""
     names = [name for name, share in result.shares.items() if share is None]
     if not names:

@@ -167,6 +167,7 @@ ACCURACY = (
     ),
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
+Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 SAVE = (
     Field(

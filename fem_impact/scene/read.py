@@ -167,9 +167,8 @@ def _accuracy(table: Table | str) -> Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
         return Accuracy(target=parse_share(table, ""))
-    numbers = _numbers(table, fields.ACCURACY, ("element", "target"))
-    if "element" in table:
-        numbers["element"] = table["element"]
+    numbers = _numbers(table, fields.ACCURACY, ("element", "unresolved", "target"))
+    numbers |= {key: table[key] for key in ("element", "unresolved") if key in table}
     if "target" not in table:
         return Accuracy(**numbers)
     for key in fields.MESH:

@@ -131,6 +131,8 @@ class Accuracy:
     ``step`` is the time step over the largest stable one. ``element`` names the operator of cells that
     cannot yield: with incompatible modes, fully integrated, or with mean dilatation, which yielding cells
     always have.
+    ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
+    withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
@@ -142,11 +144,13 @@ class Accuracy:
     max_time: float = 2.5e-3
     step: float = 0.9
     element: fields.Element = "incompatible"
+    unresolved: fields.Unresolved = "withhold"
     target: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)
         check_choice(self.element, get_args(fields.Element), "element")
+        check_choice(self.unresolved, get_args(fields.Unresolved), "unresolved")
         if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
             raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)
 

@@ -51,6 +51,8 @@ def digest(scene: Scene) -> str:
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
     written = _written(accuracy, fields.ACCURACY) | {"element": accuracy.element}
+    if accuracy.unresolved != Accuracy().unresolved:
+        written["unresolved"] = accuracy.unresolved
     if accuracy.target is None:
         return written
     rest = {key: value for key, value in written.items() if key not in fields.MESH}

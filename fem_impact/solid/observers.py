@@ -157,21 +157,26 @@ WINDOW = 2e-6  # s: nodes close one by one, and the impulse of a single step is 
 class PeakForce:
     """Follows the normal force on the whole rod.
 
-    ``largest`` is its largest mean over `WINDOW`, N.
+    ``largest`` is its largest mean over `WINDOW`, N, and ``nodes`` how many nodes of the half model were
+    pressed at once in that window.
     """
 
-    moving: ClassVar[tuple[str, ...]] = ("largest", "_time", "_impulse")
+    moving: ClassVar[tuple[str, ...]] = ("largest", "nodes", "_time", "_impulse", "_nodes")
     book: ContactBook
     every: int = 1
     largest: float = 0.0
+    nodes: int = 0
     _time: float = 0.0
     _impulse: float = 0.0
+    _nodes: int = 0
 
     def observe(self, state: State) -> bool:
         """Close a window when it is long enough."""
-        span = state.time - self._time
+        span, self._nodes = state.time - self._time, max(self._nodes, int(self.book.step[ACTIVE]))
         if span >= WINDOW:
             impulse = float(self.book.impulse[1])
-            self.largest = max(self.largest, 2 * (impulse - self._impulse) / span)
-            self._time, self._impulse = state.time, impulse
+            force = 2 * (impulse - self._impulse) / span
+            if force > self.largest:
+                self.largest, self.nodes = force, self._nodes
+            self._time, self._impulse, self._nodes = state.time, impulse, 0
         return False

@@ -55,6 +55,7 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     skin_share : share of the barrier's plastic work that lies right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
+    peak_nodes : nodes of the half model that were pressed at once then
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
@@ -72,6 +73,7 @@ class SolidResult:
     flight: FreeVibration
     skin_share: float
     peak_force: float
+    peak_nodes: int
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
@@ -157,6 +159,7 @@ def _result(
         flight=view.flight(state, model),
         skin_share=skin_share(model),
         peak_force=looking.peak.largest,
+        peak_nodes=looking.peak.nodes,
         vibration_check=check,
         finished=stop.finished,
         reason=looking.reason,

@@ -40,8 +40,9 @@ def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
         size = f"{QUICK_TIP * 1e3:g} mm"
         scene = replace_all(scene, {"accuracy.tip_size": size, "save.frames": QUICK_FRAMES})
     coarser = f"{COARSER * scene.accuracy.tip_size * 1e3:g} mm"
-    coarse = replace_all(scene, {"accuracy.tip_size": coarser, "save.frames": 0})
-    twin = Job(f"{set_id}-coarse", coarse, out=out / f"{set_id}-coarse")
+    coarse = {"accuracy.tip_size": coarser, "accuracy.unresolved": "report", "save.frames": 0}
+    coarse_scene = replace_all(scene, coarse)
+    twin = Job(f"{set_id}-coarse", coarse_scene, out=out / f"{set_id}-coarse")
     return {"fine": Job(set_id, scene, out=out / set_id), "coarse": twin} | (
         {} if quick else sensitivity_jobs(twin, out)
     )

@@ -313,9 +313,10 @@ def test_a_soft_plate_limits_the_pressure():
 def test_an_element_wider_than_the_contact_is_doubted():
     gentle = changed(changed(load("t5b"), "impact.v_n", "-0.05 m/s"), "accuracy.tip_size", "0.8 mm")
     size, widest = contact_estimate(bodies(gentle)), widest_tip_size(bodies(gentle))
-    assert 1.25 * size.a_t < widest <= sqrt(2) * size.a_t
+    radius = sqrt(size.a_t * size.a_b)
+    assert widest == pytest.approx(radius / (1.6 * sqrt(2)), rel=0.05)
     (told,) = coarse_tip(bodies(gentle))
-    assert f"at most {widest * 1e3:.2g} mm" in told
+    assert f"{radius / 4 * 1e3:.2g} mm or less" in told
     assert coarse_tip(bodies(changed(gentle, "accuracy.tip_size", f"{widest} m"))) == ()
     assert coarse_tip(bodies(changed(load("t5b"), "accuracy.tip_size", "0.8 mm"))) == ()
 

@@ -121,6 +121,7 @@ def coarse_scene():
             "effects": ["vibration", "barrier-rigid"],
             "accuracy.tip_size": "1.6 mm",
             "accuracy.across": 6,
+            "accuracy.unresolved": "report",
             "projectile.length": "60 mm",
         },
     )

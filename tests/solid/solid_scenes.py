@@ -41,7 +41,7 @@ def scene(
         surface=replace(base.surface, state="custom", friction=f, friction_low=f, friction_high=f),
         impact=replace(base.impact, angle=angle, v_n=v_n, v_t=v_t, omega=omega),
         effects=effects,
-        accuracy=replace(base.accuracy, tip_size=tip, across=across, max_time=max_time),
+        accuracy=replace(base.accuracy, tip_size=tip, across=across, max_time=max_time, unresolved="report"),
         save=replace(base.save, frames=0),
     )
 

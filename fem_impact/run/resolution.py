@@ -1,0 +1,83 @@
+"""Whether the mesh of a run resolved its contact; without that, coefficients and shares are not known."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from math import pi, sqrt
+from typing import TYPE_CHECKING, TypeVar
+
+from fem_impact.outcome.groups import ARMS
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.plan.limits import ADVISED_CELLS, LEAST_CELLS, contact_radius
+
+if TYPE_CHECKING:
+    from fem_impact.outcome.groups import ArmCoefficients, Energy, Restitution
+    from fem_impact.solid.run import SolidResult
+
+__all__ = ["doubted", "is_resolved", "too_narrow", "without"]
+
+T = TypeVar("T", "ArmCoefficients", "Energy")
+LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # pressed at once, of the half model
+ARM_LENGTHS = ("d_c", "d_d")
+PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
+ROUND_OFF = 0.01  # of mu, where f is 0
+LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # true whatever the contact is
+
+
+def is_resolved(result: SolidResult) -> bool:
+    """Return whether enough nodes were pressed at once when the contact was widest."""
+    return result.peak_nodes >= LEAST_NODES
+
+
+def too_narrow(result: SolidResult) -> str:
+    """Return the sentence that says how narrow the contact was and what resolves it."""
+    h = result.model.geometry.tip_size
+    radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
+    advised = min(radius, contact_radius(result.plan.bodies)) / ADVISED_CELLS
+    return (
+        f"the contact was not resolved: at its peak {result.peak_nodes} nodes of the half model were "
+        f"pressed, fewer than {LEAST_NODES}, on elements of {h * 1e3:.2g} mm. Give accuracy.tip_size = "
+        f'{advised * 1e3:.2g} mm or less, or accuracy.unresolved = "report"'
+    )
+
+
+def doubted(restitution: Restitution, f: float, E_r: float) -> list[str]:
+    """Return a sentence for each number that a blow on a resting barrier cannot give by itself.
+
+    Parameters
+    ----------
+    restitution : coefficients of the run; f : Coulomb coefficient in force
+    E_r : kinetic energy of the rigid motion after the last separation over E_0
+    """
+    e, mu, said = restitution.edge.e, restitution.mu, []
+    if not isinstance(e, Unknown) and e > 1:
+        said.append(
+            f"e = {e:.3g} is above 1: bending, spin or friction handed energy to the contact point, or the "
+            "mesh did. Confirm it with half the accuracy.tip_size."
+        )
+    if not isinstance(mu, Unknown) and abs(mu) > PLOUGHING * f + ROUND_OFF:
+        said.append(
+            f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form "
+            "of its crater, or by the mesh. Confirm it with half the accuracy.tip_size."
+        )
+    if E_r > 1:
+        said.append(f"E_r is {E_r:.4g} of E_0, more than the rod brought: distrust every share.")
+    return said
+
+
+def without(outcome: Outcome, reason: Unknown) -> Outcome:
+    """Return an outcome whose coefficients, impulse ratio, shares and peak force are not known."""
+    arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
+    return replace(
+        outcome,
+        restitution=replace(outcome.restitution, mu=reason, **arms),
+        energy=_blank(outcome.energy, reason, LEDGER),
+        contact=replace(outcome.contact, peak_force=reason),
+    )
+
+
+def _blank(group: T, reason: Unknown, kept: tuple[str, ...]) -> T:
+    """Return a group of numbers with all but the ``kept`` ones replaced by the reason."""
+    lost = [one.name for one in fields(group) if one.name not in kept]
+    return replace(group, **{name: reason for name in lost if not isinstance(getattr(group, name), Unknown)})

@@ -1,0 +1,86 @@
+"""A contact that the mesh does not resolve: what is withheld, what is said beforehand, what stays."""
+
+from dataclasses import replace
+
+import pytest
+import solid_scenes as scenes
+
+from fem_impact.errors import SceneError
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.plan.plan import plan
+from fem_impact.run.resolution import doubted
+from fem_impact.run.solid import reduce
+from fem_impact.scene import shipped
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.scene.write import digest, to_dict
+from fem_impact.solid.run import solve
+
+
+@pytest.fixture(scope="module")
+def result():
+    """A gentle blow: one node of the 1.6 mm mesh is pressed; e, mu and Omega depend on its place."""
+    short = {"length": 0.06, "v_n": -0.3, "v_t": -0.3, "tip": 1.6e-3, "max_time": 4e-4}
+    scene = scenes.scene("vibration", "friction", "barrier-elastic", **short)
+    return solve(plan(shipped.replace(scene, "accuracy.unresolved", "withhold")))
+
+
+def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(result, tmp_path):
+    outcome = reduce(result)
+    assert result.peak_nodes < 4
+    withheld = {name for name, why in outcome.reasons.items() if "the contact was not resolved" in why}
+    shares = ("E_r", "E_vib", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "W_closing")
+    assert {f"{share}_over_E_0" for share in shares} <= withheld
+    assert {"mu", "e_edge", "e_m_edge", "e_impulse", "E_ln_edge_over_E_0", "peak_force_N"} <= withheld
+    assert outcome.energy.E_0 > 0 and outcome.energy.residual < 1e-4 and outcome.restitution.edge.d_c > 0
+    assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
+    assert Outcome.read(outcome.write(tmp_path / "outcome.json")) == outcome
+    assert "e=not known, mu=not known" in repr(outcome)
+
+
+def test_the_scene_may_ask_for_the_numbers_all_the_same(result):
+    asked = shipped.replace(result.plan.scene, "accuracy.unresolved", "report")
+    outcome = reduce(replace(result, plan=plan(asked)))
+    assert 0.0 < outcome.restitution.edge.e < 2.0 and 0.0 < outcome.energy.rigid < 2.0
+    assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
+
+
+def test_four_pressed_nodes_resolve_a_contact(result):
+    assert isinstance(reduce(replace(result, peak_nodes=3)).restitution.mu, Unknown)
+    resolved = reduce(replace(result, peak_nodes=4))
+    assert isinstance(resolved.restitution.mu, float)
+    assert not any("not resolved" in words for words in resolved.validity.warnings)
+
+
+def test_a_narrow_contact_is_told_before_the_run(result):
+    (told,) = (words for words in result.plan.warnings if "too narrow" in words)
+    size = told.partition("accuracy.tip_size = ")[2].partition(" or less")[0]
+    assert not [
+        w for w in plan(shipped.replace(result.plan.scene, "accuracy.tip_size", size)).warnings if w == told
+    ]
+
+
+@pytest.mark.parametrize("name", [*MEASURED_SETS, "quick", "elastic-frictionless"])
+def test_shipped_scenes_resolve_their_contact(name):
+    assert not [words for words in plan(load(name)).warnings if "too narrow" in words]
+
+
+def test_what_a_blow_cannot_give_by_itself_is_doubted(result):
+    found = reduce(replace(result, peak_nodes=4)).restitution
+    fine = replace(found, mu=0.2, edge=replace(found.edge, e=0.9))
+    assert doubted(fine, 0.2, 0.9) == []
+    assert "above 1" in doubted(replace(fine, edge=replace(found.edge, e=1.01)), 0.2, 0.9)[0]
+    assert "beyond f = 0.2" in doubted(replace(fine, mu=-0.24), 0.2, 0.9)[0]
+    assert "E_r is 1.01 of E_0" in doubted(fine, 0.2, 1.01)[0]
+
+
+def test_a_choice_that_differs_is_written_and_another_refused():
+    scene = load("quick")
+    asked = shipped.replace(scene, "accuracy.unresolved", "report")
+    assert read_dict(to_dict(asked)) == asked
+    assert digest(asked) != digest(scene)
+    assert "unresolved" not in to_dict(scene)["accuracy"]
+    with pytest.raises(SceneError, match=r"accuracy\.unresolved"):
+        shipped.replace(scene, "accuracy.unresolved", "hide")
