@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import fields, replace
 from math import pi, sqrt
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Unknown
@@ -80,4 +80,5 @@ def without(outcome: Outcome, reason: Unknown) -> Outcome:
 def _blank(group: T, reason: Unknown, kept: tuple[str, ...]) -> T:
     """Return a group of numbers with all but the ``kept`` ones replaced by the reason."""
     lost = [one.name for one in fields(group) if one.name not in kept]
-    return replace(group, **{name: reason for name in lost if not isinstance(getattr(group, name), Unknown)})
+    changed: dict[str, Any] = {name: reason for name in lost if not isinstance(getattr(group, name), Unknown)}
+    return replace(group, **changed)
