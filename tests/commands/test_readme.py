@@ -190,7 +190,7 @@ def test_the_table_of_friction_is_the_data():
 
 
 def test_the_test_line_runs_pytest_and_ci_takes_its_lines_from_here():
-    assert block("test").split() == [".venv/bin/python", "-m", "pytest"]
+    assert block("test") == ".venv/bin/python -m pytest -n 2 --dist loadfile"
     script = (ROOT / ".ci" / "run").read_text()
     for marker in ("system", "packages", "test"):
         assert f"commands {marker}" in script
