@@ -210,9 +210,8 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
-    single = next(
-        s for s in to_target.summary()["scenes"]["t5b"]["settings"] if s["name"] == "solid 0.297 mm"
-    )
+    stored = to_target.summary()["scenes"]["t5b"]["settings"]
+    single = next(setting for setting in stored if setting["name"] == "solid 0.297 mm")
     chosen = to_target.ChosenSetting(0.2, Judged(**single), "t5b", 0.15, 1.0)
     monkeypatch.setattr(to_target, "choose_setting", lambda *_: chosen)
     outcome = to_target.simulate(asking(0.2))

@@ -244,7 +244,8 @@ def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, f
 def test_the_digest_covers_all_modules_that_a_run_imports():
     """All but those that refuse, write files or show progress."""
     probe = (
-        "import sys\nfrom fem_impact.scene.shipped import load\nfrom fem_impact.run.simulate import simulate\n"
+        "import sys\n"
+        "from fem_impact.run.simulate import simulate\nfrom fem_impact.scene.shipped import load\n"
         "import fem_impact.run.solid, fem_impact.solid.run\n"
         "simulate(load('t5b'), 'rigid'), simulate(load('t5b'), 'modal')\n"
         "print(*(name for name in sys.modules if name.startswith('fem_impact.')))"
