@@ -148,7 +148,7 @@ def _beside(comparison: Sequence[Row]) -> Table:
     """Return a row a set with the quantities that a camera sees."""
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = list(dict.fromkeys(row["set"] for row in comparison))
-    return Table.of(("set", *COMPARED), [(name, *(cells[name, q] for q in COMPARED)) for name in names])
+    return Table.of(("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names])
 
 
 def _cell(row: Row) -> str:

@@ -149,7 +149,7 @@ def test_text_names_arms_intervals_and_sources(cli, camera_file):
         "3 tests of a rod 80 mm x 19 mm",
         "d_c = 21.70 mm",
         "first order",
-        "contact 0.",
+        "contact  tracking",
         "from the contact point",
     ):
         assert words in out
