@@ -12,7 +12,7 @@ from fem_impact.commands.common import checked_out, print_json
 from fem_impact.commands.parser import Options
 from fem_impact.errors import RunError, UsageError, did_you_mean
 from fem_impact.files.atomic import read_text, write_text
-from fem_impact.hard_cases.run import MARKS, Row, page, run_cases, told
+from fem_impact.hard_cases.run import MARKS, Row, page, row_line, run_cases
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.jobs.executors import cores
 from fem_impact.outcome.record import utc_now
@@ -139,7 +139,7 @@ def _progress(options: Options, total: int) -> Callable[[Row], None]:
 
     def show(row: Row) -> None:
         if not options.quiet:
-            sys.stderr.write(f"{next(count)} of {total}: {told(row)}\n")
+            sys.stderr.write(f"{next(count)} of {total}: {row_line(row)}\n")
 
     return show
 

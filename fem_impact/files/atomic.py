@@ -93,15 +93,10 @@ def _draft(target: Path) -> Path:
 def _settle(draft: Path, target: Path) -> None:
     with draft.open("rb") as file:
         os.fsync(file.fileno())
-    draft.chmod(0o666 & ~_umask())
-    os.replace(draft, target)
-
-
-def _umask() -> int:
-    # the process mask can only be read by setting it
-    mask = os.umask(0o022)
+    mask = os.umask(0o022)  # can only be read by setting it
     os.umask(mask)
-    return mask
+    draft.chmod(0o666 & ~mask)
+    os.replace(draft, target)
 
 
 def unwritable(path: Path, error: OSError) -> OutputPathError:

@@ -18,8 +18,7 @@ from fem_impact.files.fields_read import read_fields
 __all__ = ["FieldWriter"]
 
 
-_WAITS = (0.01, 0.03, 0.1, 0.2)
-"""Pauses in s before each further try while a reader holds the file."""
+_WAITS = (0.01, 0.03, 0.1, 0.2)  # s before each further try while a reader has the file open
 
 
 class FieldWriter:
@@ -82,9 +81,9 @@ class FieldWriter:
     @frames.setter
     def frames(self, known: int) -> None:
         """Drop the frames after a checkpoint. Raises ResultError, or ValueError when some are missing."""
-        found = self.frames
-        if found < known:
-            raise ValueError(f"{self.path.name} holds {found} frames of the {int(known)} written before.")
+        present = self.frames
+        if present < known:
+            raise ValueError(f"{self.path.name} holds {present} frames of the {int(known)} written before.")
         import h5py
 
         with h5py.File(self.path, "r+") as file:

@@ -11,9 +11,9 @@ __all__ = ["CHECKPOINT", "COMPUTED", "earlier", "remove_drafts", "set_aside"]
 
 CHECKPOINT = "run.checkpoint"
 COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
-"""What a run computes; its scene, and what is made of these, lie beside them."""
-
+"""Files that a run computes."""
 MADE_OF_IT = ("scene.toml", "row.json", "report.html", "figures", "film*")
+"""The scene, and files made from those of the run."""
 
 
 def set_aside(out: Path) -> Path | None:
@@ -23,7 +23,7 @@ def set_aside(out: Path) -> Path | None:
         return None
     place = _free(out, max(path.stat().st_mtime for path in computed))
     make_directory(place)
-    for path in [*computed, *(found for name in MADE_OF_IT for found in out.glob(name))]:
+    for path in [*computed, *(path for name in MADE_OF_IT for path in out.glob(name))]:
         path.rename(place / path.name)
     return place
 

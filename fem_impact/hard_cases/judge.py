@@ -1,4 +1,4 @@
-"""What a run must obey whatever it computes: energy, friction, momentum."""
+"""Balances of energy and momentum, and the sign of friction work, which every run must obey."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class Balance:
 
     def faults(self) -> list[str]:
         """Return a sentence for each balance that does not hold."""
-        told = (
+        limits = (
             (self.residual, LEDGER, "the ledger misses {:.1e} of E_0"),
             (self.growth, LEDGER, "the energy grew by {:.1e} of E_0"),
             (self.fed, FED, "friction fed {:.1e} of E_0"),
             (self.momentum, MOMENTUM, "momentum misses {:.1e}"),
             (self.spin, SPIN, "angular momentum misses {:.1e}"),
         )
-        return [words.format(value) for value, most, words in told if not value <= most]
+        return [sentence.format(value) for value, most, sentence in limits if not value <= most]
 
 
 def balance(result: SolidResult, history: Path) -> Balance:
@@ -70,17 +70,13 @@ def _momenta(result: SolidResult) -> tuple[float, float]:
     centre = view.mass @ x / view.mass.sum()
     weight = (result.plan.slots.gravity or 0.0) * result.time
     down = weight * np.array([-np.sin(impact.angle), -np.cos(impact.angle)])
+    middle = 0.5 * (centre + np.asarray(motion.centre))  # mean place of the mass centre
+    moment = motion.mass * (middle[2] * down[0] - middle[0] * down[1])
     p = 2 * result.model.book.impulse
     m = motion.mass
     gained = m * (np.array([motion.V_t - impact.v_t, motion.V_n - impact.v_n]) - down)
     size = m * float(np.hypot(impact.v_t, impact.v_n)) + float(np.abs(p[:2]).sum())
     before = motion.inertia * impact.omega + m * (centre[2] * impact.v_t - centre[0] * impact.v_n)
-    turned = motion.spin - before + p[2] - _moment_of_weight(result, centre, down)
+    turned = motion.spin - before + p[2] - moment
     arm = float(np.linalg.norm(centre))
     return float(np.linalg.norm(gained - p[:2])) / size, abs(float(turned)) / (size * arm)
-
-
-def _moment_of_weight(result: SolidResult, centre: np.ndarray, down: np.ndarray) -> float:
-    """Return the moment impulse of gravity about the origin with the mean place of the mass centre."""
-    middle = 0.5 * (centre + np.asarray(result.motion.centre))
-    return float(result.motion.mass * (middle[2] * down[0] - middle[0] * down[1]))

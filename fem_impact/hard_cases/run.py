@@ -1,4 +1,4 @@
-"""Run hard cases, in processes, and keep each row so that a stopped command goes on."""
+"""Run hard cases in processes, keep each row so that a stopped command goes on, and tabulate the rows."""
 
 from __future__ import annotations
 
@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
 
-__all__ = ["MARKS", "Row", "page", "run_case", "run_cases", "told"]
+__all__ = ["MARKS", "Row", "page", "row_line", "run_case", "run_cases"]
 
 
 ROW = "row.json"
-CHECKPOINTS = 10.0  # s of wall time
+CHECKPOINT_INTERVAL = 10.0  # s of wall time
+MARKS = ("<!-- stress: written by `fem-impact stress --readme` -->", "<!-- end of the stress table -->")
+HEAD = ["scene", "what is hard", "verdict", "ledger / E_0", "elements", "steps", "CPU s"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +38,14 @@ class Row:
 
     Attributes
     ----------
+    difficulty : what is hard about the case
     verdict : ``closed``, ``refused`` or ``detected``; ``passed`` says whether that was expected
     reason : why it was refused or stopped, or which balance does not hold
     residual, growth : of E_0, None where nothing was computed
     """
 
     name: str
-    words: str
+    difficulty: str
     verdict: str
     passed: bool
     reason: str = ""
@@ -54,7 +57,7 @@ class Row:
     cpu_s: float = 0.0
 
 
-def run_cases(names: Sequence[str], out: Path, told: Callable[[Row], None], workers: int) -> list[Row]:
+def run_cases(names: Sequence[str], out: Path, report: Callable[[Row], None], workers: int) -> list[Row]:
     """Run cases in processes; rows of the same scenes and sources that lie in ``out`` are kept."""
     with directory_lock(out):
         rows = {name: row for name in names if (row := _kept(CASES[name], out)) is not None}
@@ -63,7 +66,7 @@ def run_cases(names: Sequence[str], out: Path, told: Callable[[Row], None], work
             futures = [pool.submit(run_case, name, out) for name in waiting]
             for done in as_completed(futures):
                 rows[done.result().name] = done.result()
-                told(done.result())
+                report(done.result())
     return [rows[name] for name in names]
 
 
@@ -84,7 +87,7 @@ def run_case(name: str, out: Path) -> Row:
 
 
 def _row(case: HardCase, verdict: str, reason: str = "", **more: Any) -> Row:
-    return Row(case.name, case.words, verdict, verdict == case.expected, reason, **more)
+    return Row(case.name, case.difficulty, verdict, verdict == case.expected, reason, **more)
 
 
 def _scene(case: HardCase, out: Path) -> Row:
@@ -100,7 +103,7 @@ def _solved(case: HardCase, plan: Plan, out: Path) -> SolidResult:
     from fem_impact.run.program import stamp
     from fem_impact.solid.run import solve
 
-    options = RunOptions(out, checkpoint_s=CHECKPOINTS, stamp=stamp(plan.scene))
+    options = RunOptions(out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(plan.scene))
     if (out / CHECKPOINT).exists():
         try:
             return solve(plan, replace(options, resume=True), _model(case, plan))
@@ -130,8 +133,8 @@ def _judged(case: HardCase, result: SolidResult, out: Path) -> Row:
     outcome = reduce(result)  # which holds no NaN
     (out / CHECKPOINT).unlink(missing_ok=True)
     outcome.write(out / "outcome.json")
-    found = balance(result, out / "history.csv")
-    faults = found.faults()
+    balances = balance(result, out / "history.csv")
+    faults = balances.faults()
     elements = known(outcome.cost.elements_rod) + known(outcome.cost.elements_barrier)
     stopped = "max_time" not in result.reason and not result.finished
     verdict = "detected" if stopped else "FAILED" if faults else "closed"
@@ -140,8 +143,8 @@ def _judged(case: HardCase, result: SolidResult, out: Path) -> Row:
         case,
         verdict,
         reason,
-        residual=found.residual,
-        growth=found.growth,
+        residual=balances.residual,
+        growth=balances.growth,
         steps=result.steps,
         elements=elements,
         time_s=result.time,
@@ -181,10 +184,6 @@ def _kept(case: HardCase, out: Path) -> Row | None:
         return None
 
 
-MARKS = ("<!-- stress: written by `fem-impact stress --readme` -->", "<!-- end of the stress table -->")
-HEAD = ["scene", "what is hard", "verdict", "ledger / E_0", "elements", "steps", "CPU s"]
-
-
 def page(rows: Sequence[Row], date: str) -> str:
     """Return date and counts, the table, and a sentence for each case that did not simply close."""
     passed, cpu = sum(row.passed for row in rows), sum(row.cpu_s for row in rows)
@@ -193,7 +192,7 @@ def page(rows: Sequence[Row], date: str) -> str:
     return "\n".join([line, "", Table.of(HEAD, map(_cells, rows)).markdown(), "", *notes]).rstrip()
 
 
-def told(row: Row) -> str:
+def row_line(row: Row) -> str:
     """Return one line on a case."""
     mark = "ok  " if row.passed else "FAIL"
     reason = f": {row.reason}" if row.reason else ""
@@ -203,7 +202,7 @@ def told(row: Row) -> str:
 def _cells(row: Row) -> list[str]:
     verdict = row.verdict if row.passed else f"**{row.verdict}**"
     counts = [f"{n}" if n else "" for n in (row.elements, row.steps)]
-    return [f"`{row.name}`", row.words, verdict, _share(row), *counts, f"{row.cpu_s:.0f}"]
+    return [f"`{row.name}`", row.difficulty, verdict, _share(row), *counts, f"{row.cpu_s:.0f}"]
 
 
 def _share(row: Row) -> str:

@@ -36,7 +36,7 @@ class HardCase:
 
     Attributes
     ----------
-    words : what is hard about it
+    difficulty : what is hard about it
     changes : of the base scene, as ``--set`` takes them
     expected : ``closed`` run, ``refused`` before the run, or trouble ``detected`` during it
     gap : height of the lowest point at the start, m
@@ -46,7 +46,7 @@ class HardCase:
     """
 
     name: str
-    words: str
+    difficulty: str
     changes: Changes = field(default_factory=dict)
     expected: Expected = "closed"
     gap: float = 2e-6

@@ -1,4 +1,4 @@
-"""What a study would cost before it starts."""
+"""Forecast of the time that the jobs of a study take."""
 
 from __future__ import annotations
 
@@ -18,9 +18,8 @@ if TYPE_CHECKING:
 __all__ = ["WorkForecast", "estimate"]
 
 
-CROWDS = (1, 2, 10, 100, 1000)
-SAMPLE = 8
-"""Jobs of a fidelity that are computed, and kept, when none was measured yet."""
+WORKERS = (1, 2, 10, 100, 1000)  # numbers of workers that a time is forecast for
+SAMPLE = 8  # jobs of a fidelity that are computed, and kept, when none was measured yet
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,7 +53,7 @@ def estimate(
         costs, done = base.costs(), stored_results(base, wanted, progress)
     left = [job for job in wanted if job.name not in done]
     expected = expected_costs(left, costs)
-    wall = {n: makespan(expected.values(), n) for n in CROWDS}
+    wall = {n: makespan(expected.values(), n) for n in WORKERS}
     longest = max(expected.values(), default=0.0)
     kinds = _kinds(left, expected, costs)
     return WorkForecast(len(wanted), len(done), sum(expected.values()), longest, wall, kinds)

@@ -93,7 +93,7 @@ class Answer:
 def compute(job: Job) -> Answer:
     """Run a job in this process. A failure is a value, so that a study goes on."""
     begun = time.perf_counter()
-    ran = source_digest()  # before the run: the sources that are loaded, not those that lie there at its end
+    program = source_digest()  # before the run: files may be changed during it
     text, reason, lasting = "", "", False
     try:
         text = _run(job)
@@ -101,7 +101,7 @@ def compute(job: Job) -> Answer:
         reason, lasting = str(error), error.exit_code in (3, 6)  # the scene or the run, not the disk
     except Exception as error:  # whatever went wrong, the other jobs of the study go on
         reason = repr(error)
-    return Answer(ran, text, reason, lasting, time.perf_counter() - begun)
+    return Answer(program, text, reason, lasting, time.perf_counter() - begun)
 
 
 def _run(job: Job) -> str:

@@ -116,7 +116,8 @@ def run_jobs(
     RunError
         A worker holds another version of the program.
     """
-    wanted = {job.name: _placed(job) for job in jobs}
+    # directories by their absolute path: a worker may stand in another one than this process
+    wanted = {j.name: replace(j, out=j.out and j.out.absolute()) for j in jobs}
     with Store.open(store) as base:
         results = stored_results(base, wanted.values(), progress)
         costs = expected_costs((wanted[name] for name in wanted if name not in results), base.costs())
@@ -126,11 +127,6 @@ def run_jobs(
             with LocalProcesses() if executor is None else nullcontext(executor) as engine:
                 _compute(waiting, base, engine, results, Eta.start(costs, len(wanted), progress))
     return {name: results[name] for name in wanted}
-
-
-def _placed(job: Job) -> Job:
-    """Name the place absolutely: a worker may stand in another directory than this process."""
-    return job if job.out is None else replace(job, out=job.out.absolute())
 
 
 def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> Results:

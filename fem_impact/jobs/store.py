@@ -42,7 +42,7 @@ _PLACE = {
 
 
 class Store:
-    """The results in a file; made by `Store.open`."""
+    """The answers in a file; made by `Store.open`."""
 
     def __init__(self, path: Path, base: sqlite3.Connection) -> None:
         self._path, self._base = path, base
@@ -84,11 +84,11 @@ class Store:
         """
         key = job.key
         with _named(self._path):
-            row = self._base.execute("SELECT outcome, reason, checksum FROM answers WHERE key = ?", (key,))
-            found = row.fetchone()
-        if found is None:
+            rows = self._base.execute("SELECT outcome, reason, checksum FROM answers WHERE key = ?", (key,))
+            row = rows.fetchone()
+        if row is None:
             return None
-        outcome, reason, checksum = found
+        outcome, reason, checksum = row
         if checksum != _checksum(key, outcome, reason):
             raise ResultError(f"{job.name}: its stored answer does not match its checksum.")
         return outcome, reason

@@ -29,7 +29,7 @@ QUICK = (
 def test_the_list_is_long_and_holds_refused_and_detected_ones():
     assert len(CASES) >= 40
     assert {case.expected for case in CASES.values()} == {"closed", "refused", "detected"}
-    assert len({case.words for case in CASES.values()}) == len(CASES)
+    assert len({case.difficulty for case in CASES.values()}) == len(CASES)
 
 
 @pytest.mark.parametrize("name", QUICK)
