@@ -63,7 +63,7 @@ def test_a_case_that_ends_otherwise_than_expected_has_not_passed(tmp_path, monke
 def test_the_start_and_the_step_of_a_case_are_its_own():
     case = replace(CASES["between-nodes"], step=0.45)
     scene = case.scene()
-    own, plain = model_of(case, scene), build(plan(scene))
+    own, plain = model_of(case, plan(scene)), build(plan(scene))
     moved = own.start[0] - plain.start[0]
     assert moved[own.layout.rod[:, 0]] == pytest.approx(4e-4)
     assert own.step == pytest.approx(0.5 * plain.step)
@@ -113,8 +113,7 @@ def test_a_spin_is_refused_where_the_contact_point_lifts_off():
 def test_an_indentation_deeper_than_the_radius_is_refused():
     scene = load("t5b")
     fast = replace_all(scene, {"impact.v_n": "-200 m/s"})
-    assert contact_estimate(plan(fast, "modal").bodies).depth > 0.0095
-    assert contact_estimate(plan(scene).bodies).depth < 0.0095
+    assert 0.0095 > contact_estimate(plan(scene).bodies).depth
     with pytest.raises(SceneError, match="press the tip"):
         plan(fast, "solid")
 
@@ -124,7 +123,7 @@ def run(tmp_path_factory):
     """A case that closes, with its history."""
     out = tmp_path_factory.mktemp("run")
     scene = CASES["overlap"].scene()
-    return solve(plan(scene), RunOptions(out)), out / "history.csv"
+    return solve(plan(scene), RunOptions(out), build(plan(scene))), out / "history.csv"
 
 
 def test_the_judge_sees_what_is_wrong(run):
