@@ -73,9 +73,9 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+    require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
     bodies = bodies_of(in_model)
-    require_approach(scene)
     slots, zones = ModelSpec(), zones_of(bodies)
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)
