@@ -73,7 +73,9 @@ def test_indices_of_a_known_function(tmp_path, monkeypatch):
     request = Request(tmp_path, ("t5b",))
     monkeypatch.setattr(scatter_module, "publish", lambda paper, *_: paper)
     paper = conclude(request, results_of(request), NullMeter())
-    total = {(q, i): t for _, q, i, _, _, t, _ in next(s for s in paper.sheets if s.name == "sobol").rows}
+    total = {
+        (q, i): t for _, q, i, _, _, t, _ in next(s for s in paper.sheets if s.name == "sobol").table.rows
+    }
     spans = [i.span(SCENE, SET) for i in UNCERTAIN_INPUTS]
     mean_speed = np.hypot(SCENE.impact.v_n, SCENE.impact.v_t)
     friction, speed = 2 * np.ptp(spans[0]), 0.1 * mean_speed * np.ptp(spans[4])
