@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import EXIT_CODES
+from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES
 
 __all__ = ["Options", "add_rigid_commands", "build_parser", "read_line"]
 
@@ -56,7 +57,7 @@ class Options(argparse.Namespace):
     stored: bool = False
     estimate: bool = False
     resume: bool = False
-    checkpoint: float = 30.0
+    checkpoint: float = CHECKPOINT_INTERVAL
     result: Path
     results: list[Path]
     set_id: str | None = None
@@ -130,7 +131,7 @@ def _add_run(commands: Commands) -> None:
     _add_scene_options(parser)
     parser.add_argument(
         "--fidelity",
-        choices=["rigid", "modal", "solid"],
+        choices=FIDELITIES,
         default="",
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )

@@ -92,12 +92,14 @@ def _show_parameters(options: Options) -> int:
 
 def _parameter(found: Problem, i: int) -> dict[str, object]:
     p = found.parameters[i]
-    limits = {"default": p.default, "low": p.low, "high": p.high, "multiple": p.multiple}
-    return {"name": p.name, "words": p.words, "unit": p.unit, **limits}
+    limits = {"default": p.default, "low": p.low, "high": p.high, "whole": p.whole, "even": p.even}
+    return {"name": p.key, "meaning": p.meaning, "unit": p.si_unit, **limits}
 
 
 def _parameter_text(found: Problem) -> str:
-    rows = [(p.name, p.unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.words) for p in found.parameters]
+    rows = [
+        (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in found.parameters
+    ]
     table = Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
     return f"{found.name}: {found.words}\n{table.terminal(200)}\n"
 

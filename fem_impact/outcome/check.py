@@ -10,8 +10,8 @@ from typing import Any
 import fastjsonschema
 
 from fem_impact.errors import ResultError, did_you_mean
+from fem_impact.options import FIDELITIES
 from fem_impact.outcome.keys import Key, Kind
-from fem_impact.scene.types import FIDELITIES
 
 SCHEMA_VERSION = 3
 """Raised whenever a key is renamed, removed, added or changes its meaning."""

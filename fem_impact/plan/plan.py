@@ -7,12 +7,13 @@ from dataclasses import dataclass
 from fem_impact.effects.registry import EFFECTS
 from fem_impact.effects.slots import ModelSpec, bodies_of
 from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.options import FIDELITIES
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.limits import coarse_tip, require_approach, require_shallow, validity
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
-from fem_impact.scene.types import FIDELITIES, Scene
+from fem_impact.scene.types import Scene
 
 __all__ = ["Plan", "plan"]
 

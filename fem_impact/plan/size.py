@@ -34,20 +34,10 @@ __all__ = ["RunSize", "about", "machine_memory", "require_memory", "run_size"]
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
 SMALLEST = {"rod": 0.62, "barrier": 0.65}  # stable step over that in which a wave crosses the finest edge
-UNTIL_APART = (
-    1.43,
-    0.67,
-)  # time of a run over contact time and bending period: a second contact comes after one
-BASE, PER_ELEMENT, FILL = (
-    2.1e8,
-    5.5e3,
-    1500.0,
-)  # bytes: program, an element, the rod's factor (n^4/3, n elements)
-SLICED, ELASTIC, YIELDING = (
-    84e-9,
-    84e-9,
-    365e-9,
-)  # s of a step for a cell: in a slice, elastic, that may yield
+UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
+BASE, PER_ELEMENT = 2.1e8, 5.5e3  # bytes: of the program, and of an element
+FILL = 1500.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
+ELASTIC, YIELDING = 84e-9, 365e-9  # s of a step for an element that cannot yield, and for one that may
 SETUP = 5.6e-4  # s for an element: mesh, assembly, modes
 
 
@@ -78,7 +68,7 @@ class RunSize:
 def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
     """Return about what a run of these bodies takes with these fine zones."""
     scene = bodies.scene
-    slices, rod = _rod_elements(scene, zones, slots.vibrating)
+    rod = _rod_elements(scene, zones, slots.vibrating)
     barrier = _block_elements(scene, zones) if slots.meshed_barrier else 0.0
     yielding = _yielding_rod(scene, zones) if slots.rod_law else 0.0
     yielding += _yielding_block(zones) if slots.barrier_law else 0.0
@@ -86,7 +76,7 @@ def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
     touch, swing = UNTIL_APART
     apart = touch * contact_estimate(bodies).duration + swing * bending_period(scene)
     elements = rod + barrier
-    each = SLICED * slices + ELASTIC * max(elements - slices - yielding, 0.0) + YIELDING * yielding
+    each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
     steps, most = min(apart, latest) / step, latest / step
     return RunSize(
         *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
@@ -157,17 +147,15 @@ def _split_boxes(zones: Zones, low: Array, high: Array) -> Iterator[tuple[float,
         yield edge, low - margin, high + margin
 
 
-def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> tuple[float, float]:
-    """Return the elements in slices and in all of half the rod."""
+def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
+    """Return the elements of half the rod, without slices if it cannot vibrate."""
     (t, b, n), length = zones.half, scene.projectile.length
     low, high = np.array([-t - zones.reach, 0.0, -zones.tip_size]), np.array([t, b, n])
     layer = len(section(scene.accuracy.across).quads) / zones.base  # elements of a metre of the coarse rod
-    start = min(_body_start(scene, zones, low, high), length)
-    slices = layer * (length - start) if vibrating else 0.0
-    nose = layer * start
+    count = layer * (length if vibrating else min(_body_start(scene, zones, low, high), length))
     for edge, lowest, highest in _split_boxes(zones, low, high):
-        nose += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
-    return slices, slices + nose
+        count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
+    return count
 
 
 def _body_start(scene: Scene, zones: Zones, low: Array, high: Array) -> float:
@@ -175,11 +163,11 @@ def _body_start(scene: Scene, zones: Zones, low: Array, high: Array) -> float:
     alpha, foot = scene.impact.angle, float(lowest_point(scene)[2])
     top = foot + high[2] * cos(alpha) + max(-low[0], high[0]) * sin(alpha)
     above = float(reach(1.4 * zones.base, 1, zones.levels)) if zones.levels else 0.0
-    return float(max(top + above + 1.5 * zones.base, scene.projectile.diameter / 3))
+    return max(float(top) + above + 1.5 * zones.base, scene.projectile.diameter / 3)
 
 
 def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
-    """Return points (k, 3) of a box (t, b, n), m, that lie in the half rod b >= 0, and their volume, m3."""
+    """Return points (k, 3), m, of a box that lie in the half rod b >= 0, and the volume there, m3."""
     low = np.array([low[0], 0.0, low[2]])
     ends = (np.arange(SAMPLES) + 0.5) / SAMPLES
     grid = np.stack(np.meshgrid(*[a + (z - a) * ends for a, z in zip(low, high, strict=True)]), axis=-1)
@@ -188,8 +176,8 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
     rho_0, _, z_0 = lowest_point(scene)
     rho, z = np.hypot(x + rho_0, b), z + z_0
-    radii, heights = body.meridian().T
-    surface = np.interp(rho, radii, heights, right=np.inf)
+    outline = body.meridian()
+    surface = np.interp(rho, outline[:, 0], outline[:, 1], right=np.inf)
     inside = points[(z >= surface) & (z <= body.length)]
     return inside, float(np.prod(high - low)) * len(inside) / len(points)
 
@@ -208,7 +196,7 @@ def _block_elements(scene: Scene, zones: Zones) -> float:
 
 
 def _radii(zones: Zones) -> Array:
-    """Return the radii (3,), m, of the ellipsoid whose cells may yield: those that touch it stand out half."""
+    """Return the radii (3,), m, of the ellipsoid whose cells may yield; cells that touch it count half."""
     return 1.1 * np.array(zones.half) + zones.tip_size / 2
 
 
@@ -216,11 +204,7 @@ def _yielding_rod(scene: Scene, zones: Zones) -> float:
     radii = _radii(zones)
     low, high = np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii
     points, volume = _inside_rod(scene, low, high)
-    points = points + np.clip(-points[:, :1], 0.0, zones.reach) * [
-        1.0,
-        0.0,
-        0.0,
-    ]  # the ellipsoid is drawn out
+    points[:, 0] += np.clip(-points[:, 0], 0.0, zones.reach)  # the ellipsoid is drawn out along -t
     share = float(np.mean(np.sum((points / radii) ** 2, axis=1) < 1)) if len(points) else 0.0
     return share * volume / zones.tip_size**3
 

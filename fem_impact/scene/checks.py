@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 import re
 from typing import Any
 
 from fem_impact.errors import SceneError
-from fem_impact.scene.fields import Field
-from fem_impact.scene.units import parse_number
+from fem_impact.scene.fields import Parameter
 
 __all__ = ["check_choice", "check_id", "check_names", "check_numbers", "check_text"]
 
@@ -16,11 +14,10 @@ __all__ = ["check_choice", "check_id", "check_names", "check_numbers", "check_te
 _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
 
 
-def check_numbers(part: object, fields: tuple[Field, ...]) -> None:
+def check_numbers(part: object, parameters: tuple[Parameter, ...]) -> None:
     """Check every number of a frozen dataclass against its table and store it as int or float."""
-    for field in fields:
-        value = getattr(part, field.key)
-        object.__setattr__(part, field.key, _checked(value, field))
+    for parameter in parameters:
+        object.__setattr__(part, parameter.key, parameter.checked(getattr(part, parameter.key)))
 
 
 def check_text(value: Any, key: str, longest: int = 300) -> str:
@@ -58,35 +55,7 @@ def check_names(value: Any, key: str) -> tuple[str, ...]:
 def check_choice(value: Any, choices: tuple[str, ...], key: str) -> str:
     """Return one of a few words."""
     if value not in choices:
-        raise SceneError("is not a choice.", key=key, value=value, remedy=f"Use {_either(choices)}.")
+        quoted = [f'"{choice}"' for choice in choices]
+        either = " or ".join([", ".join(quoted[:-1]), quoted[-1]])
+        raise SceneError("is not a choice.", key=key, value=value, remedy=f"Use {either}.")
     return str(value)
-
-
-def _either(choices: tuple[str, ...]) -> str:
-    quoted = [f'"{choice}"' for choice in choices]
-    return " or ".join([", ".join(quoted[:-1]), quoted[-1]])
-
-
-def _checked(value: Any, field: Field) -> float | int:
-    number = parse_number(value, field.key)
-    if not math.isfinite(number):
-        raise SceneError("must be a finite number.", key=field.key, value=value)
-    if field.whole and number != int(number):
-        raise SceneError(f"({field.meaning}) must be a whole number.", key=field.key, value=value)
-    if field.even and number % 2:
-        raise SceneError(f"({field.meaning}) must be an even number.", key=field.key, value=value)
-    if not field.allows(number):
-        shown = field.write(number) if not field.whole else value
-        problem = f"({field.meaning}) must be {field.bounds}."
-        raise SceneError(problem, key=field.key, value=_Shown(shown), remedy=field.remedy)
-    return int(number) if field.whole else number + 0.0
-
-
-class _Shown:
-    """A value shown in a message without quotes, unit and all."""
-
-    def __init__(self, text: object) -> None:
-        self.text = text
-
-    def __repr__(self) -> str:
-        return str(self.text)

@@ -1,4 +1,4 @@
-"""Every number of a scene in one table: its meaning, dimension, bounds, default and source."""
+"""What a stated number is, and all numbers of a scene: meaning, dimension, bounds, default, source."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from fem_impact.scene.units import DIMENSIONS, format_quantity
+from fem_impact.errors import SceneError
+from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
 
 __all__ = [
     "ACCURACY",
@@ -19,13 +20,24 @@ __all__ = [
     "SURFACE",
     "TOP",
     "Default",
-    "Field",
+    "Parameter",
 ]
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
-    """One number of a scene; bounds and default in SI units, ``dimension`` empty for a pure number."""
+class Parameter:
+    """One number that a user states: of a scene, or of a problem of the verification.
+
+    Attributes
+    ----------
+    key, meaning : its name and what it is
+    dimension : a name in `DIMENSIONS`, empty for a pure number
+    low, high : bounds in SI units; ``low_open``, ``high_open``: the bound itself is outside
+    whole, even : only whole, only even numbers
+    default : SI value where none is stated, None where one must be; source : where it comes from
+    remedy : what to do about a value outside the bounds
+    unit : in which the value is written, that of its dimension unless stated
+    """
 
     key: str
     meaning: str
@@ -40,6 +52,11 @@ class Field:
     source: str = ""
     remedy: str = ""
     unit: str = ""
+
+    @property
+    def si_unit(self) -> str:
+        """The SI unit, ``1`` for a pure number."""
+        return DIMENSIONS[self.dimension].units[0].symbol if self.dimension else "1"
 
     @property
     def si_key(self) -> str:
@@ -65,29 +82,70 @@ class Field:
         first = f"above {low}" if self.low_open else f"at least {low}"
         return f"{first} and {'below' if self.high_open else 'at most'} {high}"
 
+    def checked(self, value: Any) -> float | int:
+        """Return an SI value as int or float.
+
+        Raises
+        ------
+        SceneError
+            If it is no number, not finite, out of bounds, or not whole or even where it must be.
+        """
+        number = parse_number(value, self.key)
+        if not math.isfinite(number):
+            raise SceneError("must be a finite number.", key=self.key, value=value)
+        if self.whole and number != int(number):
+            raise SceneError(f"({self.meaning}) must be a whole number.", key=self.key, value=value)
+        if self.even and number % 2:
+            raise SceneError(f"({self.meaning}) must be an even number.", key=self.key, value=value)
+        if not self.allows(number):
+            shown = value if self.whole else _Shown(self.write(number))
+            problem = f"({self.meaning}) must be {self.bounds}."
+            raise SceneError(problem, key=self.key, value=shown, remedy=self.remedy)
+        return int(number) if self.whole else number + 0.0
+
+    def read(self, value: float | str) -> float:
+        """Return a checked value in SI from a number in SI, or from text with or without a unit."""
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            if not self.dimension:
+                raise SceneError("is not a number.", key=self.key, value=value) from None
+            number = parse_quantity(value, self.dimension, self.key)
+        return float(self.checked(number))
+
+
+class _Shown:
+    """A value shown in a message without quotes, unit and all."""
+
+    def __init__(self, text: object) -> None:
+        self.text = text
+
+    def __repr__(self) -> str:
+        return str(self.text)
+
 
 PROJECTILE = (
-    Field("length", "length of the rod, tip to tail", "length", 1e-3, 10.0),
-    Field("diameter", "diameter of the rod", "length", 1e-4, 1.0),
-    Field("tip_radius", "radius of the nose (tip A) or of the edge (tip B)", "length", 0.0, 0.5),
+    Parameter("length", "length of the rod, tip to tail", "length", 1e-3, 10.0),
+    Parameter("diameter", "diameter of the rod", "length", 1e-4, 1.0),
+    Parameter("tip_radius", "radius of the nose (tip A) or of the edge (tip B)", "length", 0.0, 0.5),
 )
 MATERIAL = (
-    Field("E", "Young's modulus", "stress", 1e6, 1e13, unit="GPa"),
-    Field("nu", "Poisson's ratio", "", 0.0, 0.5, high_open=True),
-    Field("rho", "density", "density", 10.0, 3e4),
-    Field("yield_stress", "yield stress in tension", "stress", 1e3, 1e11),
-    Field("ultimate_stress", "ultimate stress (engineering)", "stress", 1e3, 1e11),
+    Parameter("E", "Young's modulus", "stress", 1e6, 1e13, unit="GPa"),
+    Parameter("nu", "Poisson's ratio", "", 0.0, 0.5, high_open=True),
+    Parameter("rho", "density", "density", 10.0, 3e4),
+    Parameter("yield_stress", "yield stress in tension", "stress", 1e3, 1e11),
+    Parameter("ultimate_stress", "ultimate stress (engineering)", "stress", 1e3, 1e11),
 )
 SURFACE = (
-    Field("friction", "Coulomb coefficient f", "", 0.0, 10.0),
-    Field("friction_low", "lower end of the interval of f", "", 0.0, 10.0),
-    Field("friction_high", "upper end of the interval of f", "", 0.0, 10.0),
+    Parameter("friction", "Coulomb coefficient f", "", 0.0, 10.0),
+    Parameter("friction_low", "lower end of the interval of f", "", 0.0, 10.0),
+    Parameter("friction_high", "upper end of the interval of f", "", 0.0, 10.0),
 )
-TOP = (Field("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
+TOP = (Parameter("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
 _INTO = "n points out of the barrier, so a rod that strikes it has v_n below 0."
 _DOWN = "t points up the slope, so a falling rod has v_t at or below 0."
 IMPACT = (
-    Field(
+    Parameter(
         "angle",
         "angle between the rod's axis and the barrier's normal",
         "angle",
@@ -95,9 +153,9 @@ IMPACT = (
         math.pi / 2,
         high_open=True,
     ),
-    Field("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO),
-    Field("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN),
-    Field(
+    Parameter("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO),
+    Parameter("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN),
+    Parameter(
         "omega",
         "angular velocity, positive turning n towards t",
         "angular speed",
@@ -108,7 +166,7 @@ IMPACT = (
     ),
 )
 ACCURACY = (
-    Field(
+    Parameter(
         "tip_size",
         "element size at the contact",
         "length",
@@ -117,7 +175,7 @@ ACCURACY = (
         default=0.35e-3,
         source="chosen for this package: the two-mesh band of every result says what it costs",
     ),
-    Field(
+    Parameter(
         "across",
         "cells over the diameter of the body",
         "",
@@ -128,7 +186,7 @@ ACCURACY = (
         default=8,
         source="chosen for this package; check its cost with a second value",
     ),
-    Field(
+    Parameter(
         "grid_shift",
         "place of a meshed barrier's grid along t, in cells at the contact",
         "",
@@ -138,7 +196,7 @@ ACCURACY = (
         default=0.0,
         source="chosen for this package: no place is better; runs at 0 and 0.5 differ by the scatter of both",
     ),
-    Field(
+    Parameter(
         "block_margin",
         "width of the barrier block beyond its fine zone",
         "length",
@@ -147,7 +205,7 @@ ACCURACY = (
         default=6e-3,
         source="chosen for this package: springs and dampers stand for the rest; `study sets` widens it once",
     ),
-    Field(
+    Parameter(
         "max_time",
         "latest time at which the run stops",
         "time",
@@ -156,7 +214,7 @@ ACCURACY = (
         default=2.5e-3,
         source="chosen for this package: a second contact comes 0.3-1.0 ms after the first",
     ),
-    Field(
+    Parameter(
         "step",
         "time step over the largest stable one",
         "",
@@ -170,7 +228,7 @@ Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells th
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 SAVE = (
-    Field(
+    Parameter(
         "frames",
         "frames of the fields",
         "",
@@ -180,7 +238,7 @@ SAVE = (
         default=120,
         source="a film of 5 s at 24 frames a second",
     ),
-    Field(
+    Parameter(
         "history_every",
         "steps between rows of the histories",
         "",
@@ -194,7 +252,7 @@ SAVE = (
 
 _STEEL = "carbon steel at 20 degC, EN 1993-1-2:2005, 3.4.1"
 HEATING = (
-    Field(
+    Parameter(
         "ignition",
         "temperature that the contact must not reach",
         "temperature",
@@ -203,7 +261,7 @@ HEATING = (
         default=703.15,
         source="hot spots of 430 degC and more set off secondary explosives (Bowden & Yoffe 1952)",
     ),
-    Field(
+    Parameter(
         "ambient",
         "temperature before the impact",
         "temperature",
@@ -213,9 +271,11 @@ HEATING = (
         source="a room; the bound on the contact grows with it degree by degree",
     ),
     *(
-        Field(f"{body}_{key}", f"{words} of the {body}", words, 1e-3, 1e5, default=value, source=_STEEL)
+        Parameter(
+            f"{body}_{key}", f"{quantity} of the {body}", quantity, 1e-3, 1e5, default=value, source=_STEEL
+        )
         for body in ("rod", "barrier")
-        for key, words, value in (
+        for key, quantity, value in (
             ("conductivity", "conductivity", 53.0),
             ("heat_capacity", "heat capacity", 440.0),
         )

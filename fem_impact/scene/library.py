@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
@@ -13,7 +12,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.types import Material, Surface
 from fem_impact.scene.units import parse_quantity
 
-__all__ = ["material", "materials", "proposal", "shipped", "source_of", "surface", "surfaces"]
+__all__ = ["material", "materials", "nearest_scene", "shipped", "source_of", "surface", "surfaces"]
 
 
 _DATA = files("fem_impact.scene").joinpath("data")
@@ -65,12 +64,8 @@ def source_of(name: str, key: str = "") -> str:
     return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
 
 
-def proposal(path: Path) -> str:
-    """Return what to type instead of a path that does not exist."""
-    return _near(path.stem)
-
-
-def _near(name: str) -> str:
+def nearest_scene(name: str) -> str:
+    """Return what to type instead of the id of a scene that is not shipped."""
     return did_you_mean(name, shipped(), "`fem-impact scenes` lists the shipped scenes.")
 
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
 from fem_impact.scene.checks import check_names
-from fem_impact.scene.fields import Field
+from fem_impact.scene.fields import Parameter
 from fem_impact.scene.types import (
     Accuracy,
     Barrier,
@@ -52,7 +52,9 @@ def _load(path: Path) -> str:
             raw = file.read(_LARGEST_FILE + 1)
         text = raw.decode("utf-8-sig")
     except FileNotFoundError:
-        raise UsageError("there is no such file.", source=str(path), remedy=library.proposal(path)) from None
+        raise UsageError(
+            "there is no such file.", source=str(path), remedy=library.nearest_scene(path.stem)
+        ) from None
     except IsADirectoryError:
         remedy = f"Name the file, such as {path / 'scene.toml'}."
         raise SceneError("is a directory, not a scene file.", source=str(path), remedy=remedy) from None
@@ -219,7 +221,7 @@ def _custom_surface(table: Table) -> Surface:
 
 
 def _numbers(
-    table: Table, wanted: tuple[Field, ...], words: Iterable[str] = (), instead: Table | None = None
+    table: Table, wanted: tuple[Parameter, ...], words: Iterable[str] = (), instead: Table | None = None
 ) -> dict[str, Any]:
     """Read the numbers of one table: each with its unit, as its SI key, or left to its default."""
     keys = [f.key for f in wanted]
@@ -227,7 +229,7 @@ def _numbers(
     return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
 
 
-def _number(table: Table, field: Field, default: Any) -> Any:
+def _number(table: Table, field: Parameter, default: Any) -> Any:
     if field.si_key and field.si_key in table:
         if field.key in table:
             raise SceneError(

@@ -1,4 +1,4 @@
-"""What is shipped with the package: materials and surfaces with their sources, and ready scenes."""
+"""Scenes by id or from a file, and copies of them with changed values."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import Any
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.library import _near, shipped, stated
+from fem_impact.scene.library import nearest_scene, shipped, stated
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.types import Scene
+from fem_impact.scene.units import DIMENSIONS
 from fem_impact.scene.write import to_dict
 
 __all__ = ["load", "replace", "replace_all"]
@@ -31,36 +32,20 @@ def load(id_or_path: str | Path) -> Scene:
     name = os.fspath(id_or_path)
     if name in shipped():
         return _shipped(name)
-    if not _looks_like_a_file(name):
+    if not (name.endswith(".toml") or "/" in name or os.sep in name or os.path.lexists(name)):
         raise UsageError(
-            "is neither a shipped scene nor a file.", key="scene", value=name, remedy=_near(name)
+            "is neither a shipped scene nor a file.", key="scene", value=name, remedy=nearest_scene(name)
         )
     return read_toml(Path(name))
 
 
-def _looks_like_a_file(name: str) -> bool:
-    return name.endswith(".toml") or "/" in name or os.sep in name or os.path.lexists(name)
-
-
 @cache
 def _shipped(name: str) -> Scene:
-    from fem_impact.scene.read import read_dict
-
     return read_dict(stated(name), f"shipped scene {name}")
 
 
-_SUFFIXES = (
-    "_m_per_s",
-    "_rad_per_s",
-    "_kg_per_m3",
-    "_rad",
-    "_Pa",
-    "_W_per_m_K",
-    "_J_per_kg_K",
-    "_K",
-    "_m",
-    "_s",
-)
+# longest first: "_rad_per_s" before "_s"
+_SUFFIXES = sorted((f"_{dimension.suffix}" for dimension in DIMENSIONS.values()), key=len, reverse=True)
 
 
 def replace(scene: Scene, key: str, value: Any) -> Scene:

@@ -14,7 +14,6 @@ from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 
 __all__ = [
-    "FIDELITIES",
     "MEASURED_SETS",
     "Accuracy",
     "Barrier",
@@ -28,7 +27,6 @@ __all__ = [
 ]
 
 
-FIDELITIES = ("rigid", "modal", "solid")
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
     *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),

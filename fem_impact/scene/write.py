@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from fem_impact.scene import fields
-from fem_impact.scene.fields import Field
+from fem_impact.scene.fields import Parameter
 from fem_impact.scene.types import Accuracy, Material, Scene
 
 __all__ = ["digest", "to_dict", "to_toml"]
@@ -63,7 +63,7 @@ def _material(material: Material) -> dict[str, Any]:
     return {"name": material.name, **_written(material, fields.MATERIAL)}
 
 
-def _written(part: object, wanted: tuple[Field, ...]) -> dict[str, Any]:
+def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
     return {f.key: f.write(getattr(part, f.key)) for f in wanted}
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 import meshes
 from fem_impact.reference.rod_end import BarImpact, bar_speed, strike
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march
@@ -17,7 +18,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.watch import ForceRecorder, Until
 
 __all__ = ["PROBLEM"]
@@ -147,10 +148,19 @@ PROBLEM = Problem(
         steel.length(),
         steel.diameter(),
         steel.speed("speed", "approach speed", 2.0),
-        *(q for q in steel.elastic() if q.name != "nu"),
-        Parameter("slices", "cells along the bar", 100, 50, 2000, multiple=1),
+        *(q for q in steel.elastic() if q.key != "nu"),
+        Parameter("slices", "cells along the bar", "", 50, 2000, default=100, whole=True),
         steel.across(6),
-        Parameter("bounces", "bounces between two walls, 0 for none", 1000, 0, 1e5, multiple=2),
+        Parameter(
+            "bounces",
+            "bounces between two walls, 0 for none",
+            "",
+            0,
+            1e5,
+            default=1000,
+            whole=True,
+            even=True,
+        ),
     ),
     solve,
 )

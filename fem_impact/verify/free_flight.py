@@ -15,6 +15,7 @@ import numpy as np
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import plan
 from fem_impact.reference.rod_end import bar_speed
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
@@ -23,7 +24,7 @@ from fem_impact.solid.run import solve as run_solid
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import rigid_of
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import rod_scene
 
 __all__ = ["MOMENTUM", "SPIN"]
@@ -125,21 +126,21 @@ def momentum(p: Values) -> Solved:
     return Solved(checks, result.steps, len(result.model.geometry.rod.mesh.cells))
 
 
-_SPIN = Parameter("omega", "spin, positive from n to t", 45.0, -1e3, 1e3, "angular speed")
+_SPIN = Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=45.0)
 _SIZE = (
     steel.length(0.08),
     steel.diameter(),
-    Parameter("tip_radius", "radius of the rounded edge", 3e-3, 1e-4, 0.1, "length"),
+    Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
     *steel.elastic(),
 )
 _MESH = (
-    Parameter("tip_size", "cell edge at the contact", 0.8e-3, 1e-5, 5e-3, "length"),
+    Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.8e-3),
     steel.across(6),
 )
 SPIN = Problem(
     "free-spin",
     "a free rod turns in flight: no strain energy, no growth, the same spin",
-    (*_SIZE, _SPIN, Parameter("time", "time of flight", 4e-3, 1e-5, 1e-1, "time"), *_MESH),
+    (*_SIZE, _SPIN, Parameter("time", "time of flight", "time", 1e-5, 1e-1, default=4e-3), *_MESH),
     spin,
 )
 MOMENTUM = Problem(
@@ -147,12 +148,12 @@ MOMENTUM = Problem(
     "a spinning rod strikes a frictionless plane: momentum, angular momentum and energy balance",
     (
         *_SIZE,
-        Parameter("angle", "rod axis to barrier normal", pi / 4, 0.1, 1.4, "angle"),
+        Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
         steel.speed("v_n", "approach speed along the normal", 1.5, 500.0),
-        Parameter("v_t", "speed down the slope", 1.0, 0.0, 500.0, "speed"),
-        Parameter("omega", "spin, positive from n to t", 20.0, -1e3, 1e3, "angular speed"),
+        Parameter("v_t", "speed down the slope", "speed", 0.0, 500.0, default=1.0),
+        Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=20.0),
         *_MESH,
-        Parameter("max_time", "time after which a run stops", 2.5e-3, 1e-5, 1e-2, "time"),
+        Parameter("max_time", "time after which a run stops", "time", 1e-5, 1e-2, default=2.5e-3),
     ),
     momentum,
 )

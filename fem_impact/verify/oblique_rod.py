@@ -33,10 +33,11 @@ from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import plan
 from fem_impact.reference.hertz import SpringRow, contact_modulus, equivalent_radius, hertz, tangential_ratio
 from fem_impact.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
 from fem_impact.verify import setups as steel
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Problem, Solved, Values
 from fem_impact.verify.setups import rod_scene
 from rigid import Projectile
 
@@ -120,17 +121,17 @@ def solve(p: Values) -> Solved:
 PARAMETERS = (
     steel.length(),
     steel.diameter(),
-    Parameter("tip_radius", "radius of the rounded edge", 3e-3, 1e-4, 0.1, "length"),
-    Parameter("angle", "rod axis to barrier normal", pi / 4, 0.1, 1.4, "angle"),
+    Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
+    Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
     steel.speed("v_n", "approach speed along the normal", 2.1 / sqrt(2)),
-    Parameter("v_t", "speed down the slope", 2.1 / sqrt(2), 0.0, 1e3, "speed"),
+    Parameter("v_t", "speed down the slope", "speed", 0.0, 1e3, default=2.1 / sqrt(2)),
     steel.friction(0.34),
     *steel.elastic(),
-    Parameter("elastic_barrier", "1: an elastic block, 0: a rigid plane", 1, 0, 1, multiple=1),
-    Parameter("barrier_E", "Young's modulus of the block", 206e9, 1e6, 2e12, "stress"),
-    Parameter("tip_size", "cell edge at the contact", 0.2e-3, 1e-5, 5e-3, "length"),
+    Parameter("elastic_barrier", "1: an elastic block, 0: a rigid plane", "", 0, 1, default=1, whole=True),
+    Parameter("barrier_E", "Young's modulus of the block", "stress", 1e6, 2e12, default=206e9),
+    Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.2e-3),
     steel.across(),
-    Parameter("max_time", "time after which a run stops", 2e-3, 1e-5, 1e-2, "time"),
+    Parameter("max_time", "time after which a run stops", "time", 1e-5, 1e-2, default=2e-3),
 )
 PROBLEM = Problem(
     "oblique-rod",

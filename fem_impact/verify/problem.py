@@ -9,64 +9,13 @@ from math import inf, isfinite
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.scene.units import DIMENSIONS, parse_quantity
+from fem_impact.scene.fields import Parameter
 
-__all__ = ["Check", "Parameter", "Problem", "ProblemCost", "Solved", "Values", "Verification", "within"]
+__all__ = ["Check", "Problem", "ProblemCost", "Solved", "Values", "Verification", "within"]
 
 
 Values = Mapping[str, float]
 Kind = Literal["relative", "absolute", "at most", "shown"]
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """A physical or mesh parameter.
-
-    Attributes
-    ----------
-    default, low, high : in ``unit``, SI
-    dimension : a name in `DIMENSIONS`, or empty for a plain number
-    multiple : only multiples of it, 0 for any number
-    """
-
-    name: str
-    words: str
-    default: float
-    low: float
-    high: float
-    dimension: str = ""
-    multiple: int = 0
-
-    @property
-    def unit(self) -> str:
-        """Return the SI unit, ``1`` for a plain number."""
-        return DIMENSIONS[self.dimension].units[0].symbol if self.dimension else "1"
-
-    def read(self, value: float | str) -> float:
-        """Return a value in SI: a number in ``unit``, or text with a unit.
-
-        Raises
-        ------
-        SceneError
-            If it is no number, out of range or not whole or even where it must be.
-        """
-        number = self._number(value)
-        if not isfinite(number) or not self.low <= number <= self.high:
-            raise SceneError(
-                f"must lie from {self.low:g} to {self.high:g} {self.unit}.", key=self.name, value=value
-            )
-        if self.multiple and number % self.multiple:
-            kind = "an even number" if self.multiple == 2 else "a whole number"
-            raise SceneError(f"must be {kind}.", key=self.name, value=value)
-        return number
-
-    def _number(self, value: float | str) -> float:
-        try:
-            return float(value)
-        except (TypeError, ValueError):
-            if self.dimension:
-                return parse_quantity(value, self.dimension, self.name)
-        raise SceneError("is not a number.", key=self.name, value=value)
 
 
 def within(p: Values, name: str, low: float, high: float, unit: str, why: str) -> None:
@@ -202,9 +151,10 @@ class Problem:
 
     def values(self, changes: Mapping[str, float | str]) -> dict[str, float]:
         """Return all parameters in SI."""
-        known = {p.name: p for p in self.parameters}
+        known = {p.key: p for p in self.parameters}
         for name in changes:
             if name not in known:
                 hint = did_you_mean(name, known, f"Known are: {', '.join(known)}.")
                 raise SceneError(f"is no parameter of {self.name}.", key=name, remedy=hint)
-        return {name: p.read(changes[name]) if name in changes else p.default for name, p in known.items()}
+        stated = {key: p.read(changes[key]) for key, p in known.items() if key in changes}
+        return {key: p.default for key, p in known.items() if p.default is not None} | stated

@@ -33,13 +33,14 @@ from fem_impact.errors import SceneError
 from fem_impact.fem.flight import flight
 from fem_impact.reference.hertz import contact_modulus
 from fem_impact.reference.rod_end import AxialImpact, end_law, rod_impact, sears
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import Block, FreeBody, body_model, placed
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import block_under, contact_zone, levels_for_radius, run_strike
 
 __all__ = ["PROBLEM"]
@@ -149,12 +150,12 @@ PROBLEM = Problem(
     (
         steel.length(),
         steel.diameter(),
-        Parameter("tip_radius", "radius of the round end at its pole", 7e-3, 1e-4, 1.0, "length"),
+        Parameter("tip_radius", "radius of the round end at its pole", "length", 1e-4, 1.0, default=7e-3),
         steel.speed("speed", "approach speed", 2.0),
         *steel.elastic(),
-        Parameter("block", "1: an elastic block, 0: a rigid plane", 1, 0, 1, multiple=1),
-        Parameter("barrier_E", "Young's modulus of the block", 206e9, 1e6, 2e12, "stress"),
-        Parameter("cells", "cells over the contact radius", 6, 2, 20),
+        Parameter("block", "1: an elastic block, 0: a rigid plane", "", 0, 1, default=1, whole=True),
+        Parameter("barrier_E", "Young's modulus of the block", "stress", 1e6, 2e12, default=206e9),
+        Parameter("cells", "cells over the contact radius", "", 2, 20, default=6),
         steel.across(8),
     ),
     solve,

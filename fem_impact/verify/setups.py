@@ -9,13 +9,14 @@ import numpy as np
 
 import meshes
 from fem_impact.fem.flight import RigidMotion
+from fem_impact.scene.fields import Parameter
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Material, Scene
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify.bodies import rigid_of
-from fem_impact.verify.problem import Parameter, Values, within
+from fem_impact.verify.problem import Values, within
 from fem_impact.verify.watch import ForceRecorder, Until
 from meshes import HexMesh, Zone
 
@@ -38,36 +39,36 @@ __all__ = [
 
 def length(default: float = 0.24) -> Parameter:
     """Return the rod's length."""
-    return Parameter("length", "length of the rod", default, 0.02, 2.0, "length")
+    return Parameter("length", "length of the rod", "length", 0.02, 2.0, default=default)
 
 
 def diameter() -> Parameter:
     """Return the rod's diameter."""
-    return Parameter("diameter", "diameter of the rod", 0.019, 1e-3, 0.2, "length")
+    return Parameter("diameter", "diameter of the rod", "length", 1e-3, 0.2, default=0.019)
 
 
 def elastic(E: float = 219e9, nu: float = 0.29, rho: float = 7850.0) -> tuple[Parameter, ...]:
     """Return Young's modulus, Poisson's ratio and density."""
     return (
-        Parameter("E", "Young's modulus", E, 1e6, 2e12, "stress"),
-        Parameter("nu", "Poisson's ratio", nu, 0.0, 0.49),
-        Parameter("rho", "density", rho, 10.0, 3e4, "density"),
+        Parameter("E", "Young's modulus", "stress", 1e6, 2e12, default=E),
+        Parameter("nu", "Poisson's ratio", "", 0.0, 0.49, default=nu),
+        Parameter("rho", "density", "density", 10.0, 3e4, default=rho),
     )
 
 
 def across(default: int = 8, low: int = 6) -> Parameter:
     """Return the number of cells over the diameter, even."""
-    return Parameter("across", "cells over the diameter, even", default, low, 24, multiple=2)
+    return Parameter("across", "cells over the diameter, even", "", low, 24, default=default, even=True)
 
 
 def speed(name: str, words: str, default: float, high: float = 1e3) -> Parameter:
     """Return a speed, above 0."""
-    return Parameter(name, words, default, 1e-4, high, "speed")
+    return Parameter(name, words, "speed", 1e-4, high, default=default)
 
 
 def friction(default: float) -> Parameter:
     """Return Coulomb's coefficient."""
-    return Parameter("f", "Coulomb friction", default, 0.0, 5.0)
+    return Parameter("f", "Coulomb friction", "", 0.0, 5.0, default=default)
 
 
 def slender(p: Values, across: str, low: float, high: float) -> None:

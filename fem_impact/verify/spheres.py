@@ -14,10 +14,11 @@ from fem_impact.reference.finite_sphere import ball_impact
 from fem_impact.reference.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
 from fem_impact.reference.sphere import oblique_ball, oblique_sphere
 from fem_impact.reference.waves import radiated_energy
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import Block, FreeBody, body_model, placed, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import TipImpact, block_under, contact_zone, levels_for_radius, run_strike
 
 __all__ = [
@@ -38,10 +39,10 @@ CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
 def parameters(radius: float, *others: Parameter) -> tuple[Parameter, ...]:
     """Return the list: radius, the problem's own, mesh and barrier."""
     return (
-        Parameter("radius", "radius of the sphere", radius, 1e-4, 1.0, "length"),
+        Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=radius),
         *others,
-        Parameter("block", "1: a block like the sphere, 0: a rigid plane", 1, 0, 1, multiple=1),
-        Parameter("cells", "cells over the contact radius", 8, 2, 20),
+        Parameter("block", "1: a block like the sphere, 0: a rigid plane", "", 0, 1, default=1, whole=True),
+        Parameter("cells", "cells over the contact radius", "", 2, 20, default=8),
         steel.across(16),
     )
 
@@ -212,8 +213,8 @@ OBLIQUE_SPHERE = Problem(
     parameters(
         2.5e-3,
         steel.speed("speed", "approach speed", 3.9),
-        Parameter("angle", "path to the normal", 20 * pi / 180, 0.01, 1.5, "angle"),
-        Parameter("f", "Coulomb friction", 0.092, 0.001, 5.0),
+        Parameter("angle", "path to the normal", "angle", 0.01, 1.5, default=20 * pi / 180),
+        Parameter("f", "Coulomb friction", "", 0.001, 5.0, default=0.092),
         *steel.elastic(380e9, 0.23, 4000.0),
     ),
     solve_oblique,

@@ -14,12 +14,13 @@ from fem_impact.arrays import Array
 from fem_impact.fem.elements import Kind
 from fem_impact.reference.bricks import Bar, spring_force, wall_stress
 from fem_impact.reference.rod_end import bar_speed
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Problem, Solved, Values
 from meshes import OUTER, SKIN, HexMesh
 
 __all__ = [
@@ -89,18 +90,28 @@ KINDS: tuple[Kind, ...] = ("full", "bbar", "incompatible")
 def parameters() -> tuple[Parameter, ...]:
     """Return size, material, cells across and kind of element."""
     return (
-        Parameter("side", "side of the square section", PRINTED_BAR["side"], 1e-3, 0.2, "length"),
+        Parameter("side", "side of the square section", "length", 1e-3, 0.2, default=PRINTED_BAR["side"]),
         steel.length(PRINTED_BAR["length"]),
         *steel.elastic(PRINTED_BAR["E"], PRINTED_BAR["nu"], PRINTED_BAR["rho"]),
         Parameter(
             "cells",
             "cells across the bar, even; 12 times as many along the printed one",
-            12,
+            "",
             4,
             24,
-            multiple=2,
+            default=12,
+            whole=True,
+            even=True,
         ),
-        Parameter("element", "0: plain 8-point, 1: mean dilatation, 2: incompatible", 2, 0, 2, multiple=1),
+        Parameter(
+            "element",
+            "0: plain 8-point, 1: mean dilatation, 2: incompatible",
+            "",
+            0,
+            2,
+            default=2,
+            whole=True,
+        ),
     )
 
 

@@ -16,10 +16,11 @@ import meshes
 from fem_impact.physics.hardening import linear_hardening
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.reference.taylor import Metal, taylor_bar
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.watch import Until, follow
 
 __all__ = ["PROBLEM"]
@@ -128,14 +129,14 @@ PROBLEM = Problem(
     "taylor",
     "a yielding bar flattens on a frictionless wall: final length and foot radius",
     (
-        Parameter("length", "length of the bar", LENGTH, 1e-3, 1.0, "length"),
-        Parameter("radius", "radius of the bar", PRINTED["radius"], 1e-4, 0.1, "length"),
+        Parameter("length", "length of the bar", "length", 1e-3, 1.0, default=LENGTH),
+        Parameter("radius", "radius of the bar", "length", 1e-4, 0.1, default=PRINTED["radius"]),
         steel.speed("speed", "speed of the bar", PRINTED["speed"], 5e3),
         *steel.elastic(PRINTED["E"], PRINTED["nu"], PRINTED["rho"]),
-        Parameter("yield_stress", "yield stress", PRINTED["yield_stress"], 1e5, 1e10, "stress"),
-        Parameter("hardening", "plastic modulus", PRINTED["hardening"], 0.0, 1e11, "stress"),
-        Parameter("time", "time that is followed; 0: until it has stopped", 0.0, 0.0, 1.0, "time"),
-        Parameter("slices", "cells along the bar", 96, 10, 200, multiple=1),
+        Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=PRINTED["yield_stress"]),
+        Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=PRINTED["hardening"]),
+        Parameter("time", "time that is followed; 0: until it has stopped", "time", 0.0, 1.0, default=0.0),
+        Parameter("slices", "cells along the bar", "", 10, 200, default=96, whole=True),
         steel.across(8),
     ),
     solve,

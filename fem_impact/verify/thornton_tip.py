@@ -22,10 +22,11 @@ from fem_impact.reference.hertz import (
     thornton_restitution,
     yield_speed,
 )
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import contact_zone
 from fem_impact.verify.spheres import ball_mass
 from fem_impact.verify.watch import Until, follow
@@ -136,13 +137,13 @@ PROBLEM = Problem(
     "thornton",
     "a yielding sphere on a rigid plane: restitution falls as speed to the power -1/4",
     (
-        Parameter("radius", "radius of the sphere", 9.5e-3, 1e-4, 1.0, "length"),
+        Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=9.5e-3),
         steel.speed("slowest", "lowest approach speed", 2.5),
         steel.speed("fastest", "highest approach speed", 10.0),
         *steel.elastic(),
-        Parameter("yield_stress", "yield stress", 546e6, 1e5, 1e10, "stress"),
-        Parameter("hardening", "plastic modulus", 0.0, 0.0, 1e11, "stress"),
-        Parameter("cells", "cells over the contact radius", 7, 2, 20),
+        Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=546e6),
+        Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=0.0),
+        Parameter("cells", "cells over the contact radius", "", 2, 20, default=7),
     ),
     solve,
 )

@@ -32,11 +32,12 @@ import numpy as np
 
 from fem_impact.reference.bricks import rebound
 from fem_impact.reference.rod_end import bar_speed
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values, within
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.square_bars import (
     KINDS,
     NodeSprings,
@@ -153,12 +154,17 @@ PROBLEM = Problem(
     (
         steel.speed("speed", "speed along the bar's axis", SPEED),
         Parameter(
-            "angle", "bar's axis to the plate's normal; printed is 20 degrees", ANGLE, 0.02, 0.7, "angle"
+            "angle",
+            "bar's axis to the plate's normal; printed is 20 degrees",
+            "angle",
+            0.02,
+            0.7,
+            default=ANGLE,
         ),
-        Parameter("f", "Coulomb friction; printed are 0 and 0.2", 0.0, 0.0, 5.0),
+        Parameter("f", "Coulomb friction; printed are 0 and 0.2", "", 0.0, 5.0, default=0.0),
         *parameters(),
-        Parameter("stiffness", "of the public codes' springs, N/m3", 2.6e13, 1e13, 3e14),
-        Parameter("stick", "their tangential over their normal stiffness", 0.1, 0.01, 1.0),
+        Parameter("stiffness", "of the public codes' springs, N/m3", "", 1e13, 3e14, default=2.6e13),
+        Parameter("stick", "their tangential over their normal stiffness", "", 0.01, 1.0, default=0.1),
     ),
     solve,
 )

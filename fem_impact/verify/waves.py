@@ -19,13 +19,14 @@ from fem_impact.fem.sparse import assemble, tie_operator
 from fem_impact.reference.free_modes import Frequencies, bending_modes, cylinder_frequencies
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.reference.waves import flexural_speed, longitudinal_speed
+from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Problem, Solved, Values
 
 __all__ = ["MODES", "WAVES", "Probe", "bar_of", "frequencies"]
 
@@ -242,9 +243,11 @@ WAVES = Problem(
     (
         steel.diameter(),
         *steel.elastic(),
-        Parameter("ratio", "largest radius over wavelength, judged up to 0.2", 0.2, 0.01, 0.5),
+        Parameter("ratio", "largest radius over wavelength, judged up to 0.2", "", 0.01, 0.5, default=0.2),
         steel.across(low=8),
-        Parameter("aspect", "height of a slice over diameter / across (runs take 1)", 1.0, 0.1, 4.0),
+        Parameter(
+            "aspect", "height of a slice over diameter / across (runs take 1)", "", 0.1, 4.0, default=1.0
+        ),
     ),
     solve_waves,
 )

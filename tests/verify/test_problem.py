@@ -7,11 +7,12 @@ import pytest
 
 from fem_impact.commands.main import main
 from fem_impact.errors import SceneError, UsageError
+from fem_impact.scene.fields import Parameter
 from fem_impact.verify.catalogue import PROBLEMS, problem, verify
-from fem_impact.verify.problem import Check, Parameter, Problem, Solved
+from fem_impact.verify.problem import Check, Problem, Solved
 
-LENGTH = Parameter("length", "of it", 0.24, 0.02, 2.0, "length")
-COUNT = Parameter("across", "cells", 8, 6, 24, multiple=2)
+LENGTH = Parameter("length", "of it", "length", 0.02, 2.0, default=0.24)
+COUNT = Parameter("across", "cells", "", 6, 24, default=8, even=True)
 TWICE = Problem(
     "twice",
     "a stand-in",
@@ -89,9 +90,9 @@ def test_every_problem_states_its_parameters(name, capsys):
         assert p.read(p.default) == p.default
     assert main(["verify", name, "--parameters"]) == 0
     shown = capsys.readouterr().out
-    assert all(p.name in shown and p.unit in shown for p in found.parameters)
+    assert all(p.key in shown and p.si_unit in shown for p in found.parameters)
     assert main(["verify", name, "--parameters", "--json"]) == 0
-    assert [p["name"] for p in json.loads(capsys.readouterr().out)] == [p.name for p in found.parameters]
+    assert [p["name"] for p in json.loads(capsys.readouterr().out)] == [p.key for p in found.parameters]
 
 
 def test_the_command_refuses_what_it_does_not_know(capsys):
