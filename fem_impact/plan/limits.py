@@ -33,22 +33,30 @@ ADVISED_CELLS = 4.0  # splitting may leave 2.8 of them: e and mu within some 2 %
 
 def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range."""
-    sentences = (_length(scene), _section(scene), _speed(scene), _angle(scene), _fall(scene), _spin(scene))
-    more = (_steels(scene), _surface(scene, active), _idealised(active))
-    return tuple(sentence for sentence in (*sentences, *more) if sentence)
+    speed = round(math.hypot(scene.impact.v_n, scene.impact.v_t), 3)
+    sentences = (
+        _outside(scene.projectile.length, LENGTHS, "length", "length"),
+        _section(scene),
+        _outside(speed, SPEEDS, "speed", "speed"),
+        _outside(scene.impact.angle, ANGLES, "angle", "angle"),
+        _fall(scene),
+        "outside the measured range: the measured rods did not turn before impact"
+        if scene.impact.omega
+        else "",
+        _steels(scene),
+        _surface(scene, active),
+        _idealised(active),
+    )
+    return tuple(sentence for sentence in sentences if sentence)
 
 
-def _outside(value: float, ends: tuple[float, float], words: str, dimension: str) -> str:
+def _outside(value: float, ends: tuple[float, float], name: str, dimension: str) -> str:
     low, high = (format_quantity(end, dimension) for end in ends)
     slack = 1e-9 * abs(ends[1])
     if ends[0] - slack <= value <= ends[1] + slack:
         return ""
     stated = format_quantity(value, dimension)
-    return f"outside the measured range: {words} {stated}, measured {low} to {high}"
-
-
-def _length(scene: Scene) -> str:
-    return _outside(scene.projectile.length, LENGTHS, "length", "length")
+    return f"outside the measured range: {name} {stated}, measured {low} to {high}"
 
 
 def _section(scene: Scene) -> str:
@@ -60,15 +68,6 @@ def _section(scene: Scene) -> str:
     return "outside the measured range: measured were 19 mm rods with a 7 mm nose (A) or a 3 mm edge (B)"
 
 
-def _speed(scene: Scene) -> str:
-    speed = round(math.hypot(scene.impact.v_n, scene.impact.v_t), 3)
-    return _outside(speed, SPEEDS, "speed", "speed")
-
-
-def _angle(scene: Scene) -> str:
-    return _outside(scene.impact.angle, ANGLES, "angle", "angle")
-
-
 def _fall(scene: Scene) -> str:
     impact = scene.impact
     beside = math.degrees(math.atan2(-impact.v_t, -impact.v_n) - impact.angle)
@@ -77,14 +76,6 @@ def _fall(scene: Scene) -> str:
     return (
         f"outside the measured range: the rod moves {abs(beside):.2g} deg beside its axis, which no dropped "
         f"rod does: v_n and v_t are those of another angle than {math.degrees(impact.angle):.4g} deg"
-    )
-
-
-def _spin(scene: Scene) -> str:
-    return (
-        "outside the measured range: the measured rods did not turn before impact"
-        if scene.impact.omega
-        else ""
     )
 
 

@@ -1,4 +1,4 @@
-"""What is shipped with the package: materials and surfaces with their sources, and ready scenes."""
+"""What is shipped with the package: materials and surfaces with their sources, and tables of scenes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.types import Material, Surface
+from fem_impact.scene.types import MEASURED_SETS, Material, Surface
 from fem_impact.scene.units import parse_quantity
 
 __all__ = ["material", "materials", "nearest_scene", "shipped", "source_of", "surface", "surfaces"]
@@ -20,7 +20,7 @@ _DATA = files("fem_impact.scene").joinpath("data")
 
 def shipped() -> tuple[str, ...]:
     """Return the ids of the shipped scenes: the measured sets in the paper's order, then the others."""
-    return tuple(_table("scenes.toml")["order"])
+    return (*MEASURED_SETS, *_table("scenes.toml")["others"])
 
 
 def stated(name: str) -> dict[str, Any]:

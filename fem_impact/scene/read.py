@@ -74,6 +74,7 @@ def _parse(text: str, source: str) -> dict[str, Any]:
         raise SceneError(f"is not readable as TOML: {error}.", source=source, remedy=_TOML) from None
 
 
+SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
 ROD = ("length", "diameter", "tip_radius")
 T = TypeVar("T")
 Table = Mapping[str, Any]
@@ -99,35 +100,38 @@ def read_scene(data: Table) -> Scene:
         raise SceneError("a scene must be a table of tables.", value=data)
     _check_keys(data, _TOP)
     effects = check_names(data.get("effects", "auto"), "effects")
+    # only a list of effects without friction needs no surface
+    rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
+    restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
     scene = Scene(
         id=_needed(data, "id"),
         title=data.get("title", data["id"]),
         projectile=_within(data, "projectile", _projectile),
         barrier=_within(data, "barrier", _barrier),
-        surface=_within(data, "surface", _surface) if _rubs(data, effects) else _frictionless(),
+        surface=_within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
         impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
         effects=effects,
         accuracy=_within(data, "accuracy", _accuracy, {}),
         save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
         heating=_within(data, "heating", lambda t: Heating(**_numbers(t, fields.HEATING)), {}),
         measured=data.get("measured"),
-        restitution=_restitution(data),
+        restitution=restitution,
     )
     _check_measured(scene)
     return scene
 
 
 def _check_measured(scene: Scene) -> None:
-    """Refuse the name of a measured set beside another rod or angle: its arms and results are not theirs."""
+    """Refuse the name of a measured set beside another rod or angle, whose arms and results differ."""
     if scene.measured is None:
         return
     stated, rod = library.stated(scene.measured), scene.projectile
-    its = _projectile(stated["projectile"])
-    pairs = {f"projectile.{key}": (getattr(rod, key), getattr(its, key)) for key in ROD}
+    measured_rod = _projectile(stated["projectile"])
+    pairs = {f"projectile.{key}": (getattr(rod, key), getattr(measured_rod, key)) for key in ROD}
     angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
     pairs["impact.angle"] = (scene.impact.angle, angle)
     other = [key for key, (a, b) in pairs.items() if not isclose(a, b, rel_tol=1e-3)]
-    other += ["projectile.tip"] if rod.tip != its.tip else []
+    other += ["projectile.tip"] if rod.tip != measured_rod.tip else []
     if other:
         raise SceneError(
             f"names a set that was measured with another {' and '.join(other)}.",
@@ -137,24 +141,9 @@ def _check_measured(scene: Scene) -> None:
         )
 
 
-def _restitution(data: Table) -> float | None:
-    return parse_number(data["restitution"], "restitution") if "restitution" in data else None
-
-
-def _rubs(data: Table, effects: tuple[str, ...]) -> bool:
-    """Return whether a surface is stated, or must be: only a list without friction needs none."""
-    needed = "friction" in effects or ("auto" in effects and "-friction" not in effects)
-    return "surface" in data or needed
-
-
-def _frictionless() -> Surface:
-    return Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
-
-
 def _projectile(table: Table) -> ProjectileSpec:
-    words = ("tip", "material")
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
-    numbers = _numbers(table, fields.PROJECTILE, words, plain)
+    numbers = _numbers(table, fields.PROJECTILE, ("tip", "material"), plain)
     return ProjectileSpec(
         tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers
     )
@@ -221,11 +210,14 @@ def _custom_surface(table: Table) -> Surface:
 
 
 def _numbers(
-    table: Table, wanted: tuple[Parameter, ...], words: Iterable[str] = (), instead: Table | None = None
+    table: Table, wanted: tuple[Parameter, ...], others: Iterable[str] = (), instead: Table | None = None
 ) -> dict[str, Any]:
-    """Read the numbers of one table: each with its unit, as its SI key, or left to its default."""
+    """Read the numbers of one table: each with its unit, as its SI key, or left to its default.
+
+    ``others`` are keys of the table that hold no number; ``instead`` are defaults that replace the tables'.
+    """
     keys = [f.key for f in wanted]
-    _check_keys(table, [*words, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*words, *keys])
+    _check_keys(table, [*others, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*others, *keys])
     return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
 
 

@@ -70,7 +70,9 @@ def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     table = _section(data, path, key)
-    table.pop(_plain(last, table), None)
+    # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
+    bare = (last.removesuffix(suffix) for suffix in _SUFFIXES)
+    table.pop(next((name for name in bare if name in table), last), None)
     table[last] = value
     _rename(table, path, last)
     if path == ["accuracy"]:
@@ -95,11 +97,6 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     return table
 
 
-def _plain(last: str, table: Mapping[str, Any]) -> str:
-    """Return the unit-free twin of an SI key, so that ``length_m`` replaces ``length``."""
-    return next((last.removesuffix(s) for s in _SUFFIXES if last.removesuffix(s) in table), last)
-
-
 def _keep_one(table: dict[str, Any], last: str) -> None:
     """Let a mesh replace a target, and a target a mesh."""
     mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
@@ -108,16 +105,13 @@ def _keep_one(table: dict[str, Any], last: str) -> None:
 
 
 def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
+    """Let no name stand for other values: of a surface state, of a material."""
     if path == ["surface"] and last.startswith("friction"):
-        _own_surface(table, last)
+        table |= {"state": "custom", "source": "set by the user"}
+        if last == "friction":
+            table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
     elif path == ["surface"] and last == "state":
         for key in ("friction", "friction_low", "friction_high", "source"):
             table.pop(key, None)
     elif path[-1:] == ["material"] and last != "name":
         table["name"] = f"{table['name'].removesuffix(' (changed)')} (changed)"
-
-
-def _own_surface(table: dict[str, Any], last: str) -> None:
-    table |= {"state": "custom", "source": "set by the user"}
-    if last == "friction":
-        table |= {"friction_low": table["friction"], "friction_high": table["friction"]}

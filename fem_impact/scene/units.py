@@ -129,9 +129,9 @@ def parse_share(value: Any, key: str) -> float:
     >>> parse_share("2 %", "accuracy")
     0.02
     """
-    found = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
-    per_cent = found is not None and (found[2] or "").strip() == "%" and 0 < float(found[1]) <= 100
-    share = float(Decimal(found[1]).scaleb(-2)) if found and per_cent else 0.0
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) and len(value) <= _LONGEST else None
+    per_cent = match is not None and (match[2] or "").strip() == "%" and 0 < float(match[1]) <= 100
+    share = float(Decimal(match[1]).scaleb(-2)) if match and per_cent else 0.0
     if not 0.0 < share <= 1.0:
         raise SceneError(
             "must be a share in per cent, above 0 and at most 100 %.",
@@ -158,12 +158,9 @@ def format_quantity(value: float, dimension: str, symbol: str = "") -> str:
     """Write an SI value with a unit, so that `parse_quantity` gives back the very same float."""
     dim = DIMENSIONS[dimension]
     unit = dim.unit(symbol or dim.written) or dim.units[0]
-    text = _decimal(value, unit) if unit.factor == 1.0 else _scaled(value, unit)
+    decimal = Decimal(repr(value)).scaleb(-unit.power).normalize()
+    text = _digits(decimal) if unit.factor == 1.0 else _scaled(value, unit)
     return f"{text} {unit.symbol}" if text else f"{value!r} {dim.units[0].symbol}"
-
-
-def _decimal(value: float, unit: Unit) -> str:
-    return _digits(Decimal(repr(value)).scaleb(-unit.power).normalize())
 
 
 def _scaled(value: float, unit: Unit) -> str:
