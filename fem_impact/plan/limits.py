@@ -121,8 +121,8 @@ def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
         return ()
     return (
         f"The contact, about {radius * 1e3:.2g} mm in radius, may be too narrow for elements of "
-        f"{h * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. Give accuracy.tip_size = "
-        f"{radius / ADVISED_CELLS * 1e3:.2g} mm or less.",
+        f"{h * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. Give "
+        f"accuracy.tip_size = {radius / ADVISED_CELLS * 1e3:.2g} mm or less.",
     )
 
 
