@@ -80,5 +80,5 @@ def without(outcome: Outcome, reason: Unknown) -> Outcome:
 def _blank(group: T, reason: Unknown, kept: tuple[str, ...]) -> T:
     """Return a group of numbers with all but the ``kept`` ones replaced by the reason."""
     lost = [one.name for one in fields(group) if one.name not in kept]
-    changed: dict[str, Any] = {name: reason for name in lost if not isinstance(getattr(group, name), Unknown)}
-    return replace(group, **changed)
+    blank: dict[str, Any] = {n: reason for n in lost if not isinstance(getattr(group, n), Unknown)}
+    return replace(group, **blank)
