@@ -232,8 +232,8 @@ def test_nodes_on_the_symmetry_plane_stay_on_the_barrier(barrier):
 
 
 def _spun(*effects):
-    """Turn a free rod for 4 ms at 45 rad/s: strain energy share, stretch, residual share, spin at the end."""
-    model = scenes.model(*effects, length=0.08, v_n=-1e-3, v_t=0.0, tip=2e-3, omega=45.0).coasting()
+    """Turn a free rod for 4 ms at -45 rad/s: strain energy share, stretch, residual share, spin at the end."""
+    model = scenes.model(*effects, length=0.08, v_n=-1e-3, v_t=0.0, tip=2e-3, omega=-45.0).coasting()
     state, ledger, most = model.initial_state(), model.ledger(), 0.0
 
     class Until:
@@ -257,14 +257,14 @@ def test_a_free_spin_costs_nothing_and_keeps_lengths():
     assert strain < 1e-6
     assert abs(stretch) < 1e-6
     assert residual < 1e-6
-    assert spin == pytest.approx(45.0, rel=1e-6)
+    assert spin == pytest.approx(-45.0, rel=1e-6)
 
 
 def test_small_rotations_let_a_spinning_rod_grow():
     """Nodes fly on straight lines: no strain energy, but a length that grows by theta^2 / 2."""
     _, stretch, _, spin = _spun(*PLANE)
     assert stretch == pytest.approx(np.sqrt(1 + 0.18**2) - 1, rel=0.05)
-    assert spin == pytest.approx(45.0 / (1 + 0.18**2), rel=0.01)
+    assert spin == pytest.approx(-45.0 / (1 + 0.18**2), rel=0.01)
 
 
 def test_body_and_tip_operators_are_the_assembled_rod():
