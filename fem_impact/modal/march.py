@@ -15,7 +15,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
 
-__all__ = ["ALONE", "MOST_CONTACTS", "RIGID", "Bounds", "End", "Modes", "Others", "Start", "drop"]
+__all__ = ["ALONE", "MOST_CONTACTS", "RIGID", "Bounds", "ModalEnd", "Modes", "Others", "Start", "drop"]
 
 
 MOST_CONTACTS = 200
@@ -97,7 +97,7 @@ class Springs(NamedTuple):
     shift: Array
 
 
-class End(NamedTuple):
+class ModalEnd(NamedTuple):
     """The end of a march.
 
     Attributes
@@ -321,7 +321,7 @@ def touch(
 
 
 @allocating_kernel
-def drop(start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array) -> End:
+def drop(start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array) -> ModalEnd:
     """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
 
     ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.
@@ -365,4 +365,4 @@ def drop(start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bo
         steps += 1
     held = stored(depth, tally[PEAK], force[0], springs, law)
     over = struck in (NOTHING, TIP) and not late
-    return End(now, tally, held, time, steps, count, struck, wait, over)
+    return ModalEnd(now, tally, held, time, steps, count, struck, wait, over)

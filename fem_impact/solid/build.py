@@ -47,7 +47,7 @@ PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
 
 
 @dataclass(frozen=True, slots=True)
-class Block:
+class ElasticBlockParts:
     """A meshed barrier and the half-space around it.
 
     Attributes
@@ -63,7 +63,7 @@ class Block:
     pots: Array
 
 
-def elastic_block(body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic") -> Block:
+def elastic_block(body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic") -> ElasticBlockParts:
     """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it."""
     from fem_impact.fem.boundary import spread_boundary
 
@@ -77,10 +77,10 @@ def elastic_block(body: MeshedBody, layout: DofLayout, x: Array, effect: str = "
     K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
     item = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
-    return Block(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
+    return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
 
 
-def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: Block) -> Dashpots:
+def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
     """Return the radiating boundary of a block."""
     from fem_impact.fem.boundary import radiating_share
 
