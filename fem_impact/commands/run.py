@@ -142,7 +142,9 @@ def scenes(options: Options) -> int:
     if options.json:
         print_json({"scenes": rows})
     else:
-        sys.stdout.write(Table.of(("id", "speed", "title"), rows, left=range(3)).terminal() + "\n")
+        listed = [(row["id"], row["speed"], row["title"]) for row in rows]
+        table = Table.of(("id", "speed", "title"), listed, left=range(3))
+        sys.stdout.write(table.terminal() + "\n")
     return 0
 
 
