@@ -138,13 +138,12 @@ def _stopped(cause: str, out: Path) -> int:
 
 def scenes(options: Options) -> int:
     """List the shipped scenes."""
-    rows: list[Any] = [_listed(load(name)) for name in shipped()]
+    listed = [_listed(load(name)) for name in shipped()]
     if options.json:
-        print_json({"scenes": rows})
+        print_json({"scenes": listed})
     else:
-        listed = [(row["id"], row["speed"], row["title"]) for row in rows]
-        table = Table.of(("id", "speed", "title"), listed, left=range(3))
-        sys.stdout.write(table.terminal() + "\n")
+        rows = [[scene[key] for key in ("id", "speed", "title")] for scene in listed]
+        sys.stdout.write(Table.of(("id", "speed", "title"), rows, left=range(3)).terminal() + "\n")
     return 0
 
 

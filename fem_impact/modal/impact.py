@@ -19,7 +19,7 @@ from fem_impact.modal.march import (
     WORK_G,
     WORK_T,
     Bounds,
-    End,
+    ModalEnd,
     Modes,
     Start,
     drop,
@@ -132,7 +132,7 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     )
 
 
-def _reason(rod: ModalRod, end: End, V_n: float, bounds: Bounds) -> str:
+def _reason(rod: ModalRod, end: ModalEnd, V_n: float, bounds: Bounds) -> str:
     """Return why the march ended, as a sentence."""
     if end.over and V_n > 0:
         return f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no further contact."

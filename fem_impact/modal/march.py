@@ -321,7 +321,9 @@ def touch(
 
 
 @allocating_kernel
-def drop(start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array) -> ModalEnd:
+def drop(
+    start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array
+) -> ModalEnd:
     """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
 
     ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.

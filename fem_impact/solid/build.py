@@ -63,7 +63,9 @@ class ElasticBlockParts:
     pots: Array
 
 
-def elastic_block(body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic") -> ElasticBlockParts:
+def elastic_block(
+    body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic"
+) -> ElasticBlockParts:
     """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it."""
     from fem_impact.fem.boundary import spread_boundary
 

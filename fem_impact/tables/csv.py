@@ -7,8 +7,6 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
-import numpy as np
-
 __all__ = ["COMPARISON", "CONTACTS", "HISTORY", "Plain", "csv_line", "row_of"]
 
 
@@ -36,8 +34,8 @@ def csv_line(cells: Sequence[Plain]) -> str:
 
 
 def _written(cell: Plain) -> Plain:
-    if isinstance(cell, np.generic):
-        cell = cell.item()
+    # a number of numpy gives a plain one; numpy itself is not imported for a list of scenes
+    cell = getattr(cell, "item", lambda: cell)()
     if isinstance(cell, bool):
         return str(cell).lower()
     if isinstance(cell, str):

@@ -10,13 +10,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from pathlib import Path
-from typing import Self
-
-import numpy as np
+from typing import TYPE_CHECKING, Self
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text
 from fem_impact.tables.csv import Plain, csv_line, row_of
+
+if TYPE_CHECKING:
+    import numpy as np
 
 __all__ = ["DASH", "Cell", "Column", "Marked", "Missing", "Table", "number", "read_csv"]
 
@@ -136,6 +137,8 @@ class Table:
 
     def numbers(self, name: str) -> np.ndarray:
         """Return a column as ``(n_rows,) float64``, nan where nothing is known. Raises ResultError."""
+        import numpy as np
+
         return np.array([self._number(name, i, text) for i, text in enumerate(self.texts(name))])
 
     def _number(self, column: str, row: int, text: str) -> float:
