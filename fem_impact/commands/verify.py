@@ -16,6 +16,7 @@ from fem_impact.hard_cases.run import MARKS, Row, page, row_line, run_cases
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.jobs.executors import cores
 from fem_impact.outcome.record import utc_now
+from fem_impact.scene.fields import Parameter
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
@@ -46,9 +47,9 @@ def verify(options: Options) -> int:
             sys.stdout.write(_text(done[-1]))
             sys.stdout.flush()
     if options.json:
-        documents = [found.document() for found in done]
+        documents = [verification.document() for verification in done]
         print_json(documents[0] if options.problem else documents)
-    return 0 if all(found.passed for found in done) else RunError.exit_code
+    return 0 if all(verification.passed for verification in done) else RunError.exit_code
 
 
 def _write_page(options: Options) -> int:
@@ -66,8 +67,8 @@ def _write_page(options: Options) -> int:
         sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
     write_text(options.readme, put_page(read_text(options.readme), page(done, utc_now()[:10])))
     if options.json:
-        print_json([found.document() for found in done])
-    return 0 if all(found.passed for found in done) else RunError.exit_code
+        print_json([verification.document() for verification in done])
+    return 0 if all(verification.passed for verification in done) else RunError.exit_code
 
 
 def _change(text: str) -> tuple[str, str]:
@@ -82,33 +83,33 @@ def _show_parameters(options: Options) -> int:
         raise UsageError(
             "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
         )
-    found = problem(options.problem)
+    chosen = problem(options.problem)
     if options.json:
-        print_json([_parameter(found, i) for i in range(len(found.parameters))])
+        print_json([_entry(parameter) for parameter in chosen.parameters])
     else:
-        sys.stdout.write(_parameter_text(found))
+        sys.stdout.write(_parameter_text(chosen))
     return 0
 
 
-def _parameter(found: Problem, i: int) -> dict[str, object]:
-    p = found.parameters[i]
+def _entry(p: Parameter) -> dict[str, object]:
     limits = {"default": p.default, "low": p.low, "high": p.high, "whole": p.whole, "even": p.even}
     return {"name": p.key, "meaning": p.meaning, "unit": p.si_unit, **limits}
 
 
-def _parameter_text(found: Problem) -> str:
+def _parameter_text(chosen: Problem) -> str:
     rows = [
-        (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in found.parameters
+        (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in chosen.parameters
     ]
     table = Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
-    return f"{found.name}: {found.words}\n{table.terminal(200)}\n"
+    return f"{chosen.name}: {chosen.words}\n{table.terminal(200)}\n"
 
 
-def _text(found: Verification) -> str:
-    verdict = "passed" if found.passed else "FAILED"
-    cost = f"{found.cost.cpu_s:.1f} s of CPU, {found.cost.steps} steps, {found.cost.elements} elements"
-    lines = [f"{found.name}: {verdict} ({cost})"]
-    for c in found.checks:
+def _text(verification: Verification) -> str:
+    verdict = "passed" if verification.passed else "FAILED"
+    cost = verification.cost
+    spent = f"{cost.cpu_s:.1f} s of CPU, {cost.steps} steps, {cost.elements} elements"
+    lines = [f"{verification.name}: {verdict} ({spent})"]
+    for c in verification.checks:
         mark = "FAIL" if not c.passed else "ok  " if c.judged else "    "
         allowed = f"allowed {c.tolerance:g} {c.kind}" if c.judged else f"not judged: {c.note}"
         unit = "" if c.unit == "1" else f" {c.unit}"
