@@ -232,7 +232,7 @@ def test_nodes_on_the_symmetry_plane_stay_on_the_barrier(barrier):
 
 
 def _spun(*effects):
-    """Turn a free rod for 4 ms at -45 rad/s: shares of strain energy and residual, stretch, spin at the end."""
+    """Turn a free rod for 4 ms at -45 rad/s: shares of strain and residual, stretch, spin at the end."""
     model = scenes.model(*effects, length=0.08, v_n=-1e-3, v_t=0.0, tip=2e-3, omega=-45.0).coasting()
     state, ledger, most = model.initial_state(), model.ledger(), 0.0
 
