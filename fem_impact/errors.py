@@ -5,20 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any, ClassVar
 
-__all__ = [
-    "EXIT_CODES",
-    "FemImpactError",
-    "MissingLibraryError",
-    "OutputPathError",
-    "ResultError",
-    "RunError",
-    "SceneError",
-    "StatementError",
-    "UsageError",
-    "did_you_mean",
-    "printable",
-]
-
 
 class FemImpactError(ValueError):
     """Anything a user can cause and mend; the message names the cause and the remedy, in printable text."""

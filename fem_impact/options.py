@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fem_impact.progress import Progress
 
-__all__ = ["CHECKPOINT_INTERVAL", "FIDELITIES", "RunOptions"]
 
 FIDELITIES = ("rigid", "modal", "solid")  # models of a scene, the cheapest first
 CHECKPOINT_INTERVAL = 30.0  # s of wall time

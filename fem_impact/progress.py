@@ -7,20 +7,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol, TextIO
 
-__all__ = [
-    "CaseProgress",
-    "LineMeter",
-    "Notice",
-    "NullMeter",
-    "Progress",
-    "ProgressMeter",
-    "TerminalMeter",
-    "clock_text",
-    "compiling",
-    "describe",
-    "meter_for",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Progress:

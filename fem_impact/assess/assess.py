@@ -21,9 +21,6 @@ from fem_impact.assess.drop import DroppedRod, outside_of, warnings_of, weights_
 from rigid import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres
 from rigid.arrays import Floats
 
-__all__ = ["ASSUMPTIONS", "assess"]
-
-
 CONTACT = 0.5e-3
 """Error of the contact point, m."""
 

@@ -22,19 +22,6 @@ from rigid import (
 from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet
 
-__all__ = [
-    "Carried",
-    "Range",
-    "Tests",
-    "Worst",
-    "carry",
-    "largest_loss_whatever",
-    "measured_on",
-    "sliding_heat",
-    "worst_losses",
-]
-
-
 STEPS = 9
 FRICTION = np.concatenate([np.linspace(0.0, 1.5, 601), np.geomspace(1.6, 50.0, 20)])
 """Coulomb coefficients that are searched for the most friction work; beyond 50 nothing changes."""

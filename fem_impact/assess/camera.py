@@ -17,9 +17,6 @@ from fem_impact.files.atomic import read_text
 from fem_impact.scene.units import DIMENSIONS, Unit
 from rigid.arrays import Floats
 
-__all__ = ["Camera", "read_camera"]
-
-
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 LARGEST = 1e6  # m/s or rad/s

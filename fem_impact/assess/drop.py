@@ -14,19 +14,6 @@ from fem_impact.scene.units import parse_quantity
 from rigid import SHAPES, Arms, Nose, Projectile, RigidError, drop_velocities
 from rigid.experiments import MeasuredSet, measured_sets
 
-__all__ = [
-    "DENSITY",
-    "TIP_RADII",
-    "DroppedRod",
-    "outside_of",
-    "quantity",
-    "rod_from_options",
-    "sets_of",
-    "warnings_of",
-    "weights_of",
-]
-
-
 Surface = Literal["machined", "contaminated", "cleaned"]
 NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
 """What counts as one step away: twice the length, 20 degrees, twice the speed."""

@@ -22,9 +22,6 @@ from rigid import (
 from rigid.arrays import Floats
 from rigid.experiments import statistic
 
-__all__ = ["own_coefficients"]
-
-
 SHARES = ("E_ln", "E_lt", "E_r")
 
 

@@ -15,9 +15,6 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import materials, surface
 from fem_impact.scene.types import Barrier, Impact, ProjectileSpec, Scene
 
-__all__ = ["rigid_enough"]
-
-
 ANGLES = np.radians(np.arange(5.0, 81.0, 5.0))
 FAIR, POOR = 0.02, 0.05
 """Error of e up to which the answer is yes, and from which it is no."""

@@ -9,9 +9,6 @@ from typing import Any
 from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import wrapped
 
-__all__ = ["assess_text", "own_text"]
-
-
 Document = Mapping[str, Any]
 SPANS = (("e", 1.0, 2), ("d_c_m", 1e3, 1))  # of the range that is searched: key, scale, digits
 WORDS = {

@@ -20,16 +20,6 @@ from fem_impact.progress import NullMeter, ProgressMeter, meter_for
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = [
-    "changed_scene",
-    "checked_file",
-    "checked_out",
-    "checked_result",
-    "chosen_meter",
-    "print_json",
-    "read_changes",
-]
-
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     """Load a scene and apply the changes of the command line, checked together at the end."""

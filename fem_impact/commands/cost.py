@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from fem_impact.cost.settings import Mesh
     from fem_impact.scene.types import Scene
 
-__all__ = ["cost"]
-
 
 PAPER = "paper"
 

@@ -16,8 +16,6 @@ from importlib import import_module
 from fem_impact.commands.parser import Options, build_parser, read_line
 from fem_impact.errors import FemImpactError, OutputPathError, RunError, printable
 
-__all__ = ["main"]
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""

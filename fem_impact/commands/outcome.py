@@ -12,9 +12,6 @@ from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
 from fem_impact.tables.text import wrapped
 
-__all__ = ["print_outcome"]
-
-
 _MOTION = (
     ("impulse ratio mu", "mu", ""),
     ("V_n after", "V_n_m_per_s", "m/s"),

@@ -10,9 +10,6 @@ from typing import TYPE_CHECKING
 from fem_impact.errors import EXIT_CODES
 from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES
 
-__all__ = ["Options", "add_rigid_commands", "build_parser", "read_line"]
-
-
 if TYPE_CHECKING:
     Commands = argparse._SubParsersAction[argparse.ArgumentParser]
 

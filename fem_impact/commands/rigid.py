@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from fem_impact.paper.drawn import Drawn
     from rigid import Arms, Projectile
 
-__all__ = ["assess", "audit", "coefficients", "figure"]
-
 
 def audit(options: Options) -> int:
     """Recompute the printed columns and print where they disagree."""

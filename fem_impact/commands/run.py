@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
 
-__all__ = ["check", "run", "scenes"]
-
 
 LONG = 600.0  # s: a run that takes longer says so before it starts
 

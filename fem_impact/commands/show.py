@@ -9,8 +9,6 @@ from fem_impact.commands.common import checked_file, checked_result, print_json
 from fem_impact.commands.parser import Options
 from fem_impact.errors import MissingLibraryError, ResultError
 
-__all__ = ["render", "report"]
-
 
 def render(options: Options) -> int:
     """Make a film of the stress waves of a result, or of several side by side."""

@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
     from fem_impact.study.document import Request
 
-__all__ = ["study"]
-
 
 ABOUT_SETS = ("sets", "scatter", "convergence", "effects")
 

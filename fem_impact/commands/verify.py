@@ -22,8 +22,6 @@ from fem_impact.tables.text import wrapped
 from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
 from fem_impact.verify.problem import Problem, Verification
 
-__all__ = ["stress", "verify"]
-
 
 def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""

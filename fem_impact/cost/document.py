@@ -17,8 +17,6 @@ from fem_impact.tables.table import Cell, Column, Table
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["summary_markdown", "text_table", "work_precision", "write_cost"]
-
 
 WIDE = 400
 """Letters of a line of cost.txt: its tables are never broken."""

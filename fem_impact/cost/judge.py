@@ -14,21 +14,6 @@ from fem_impact.cost.settings import Setting
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 
-__all__ = [
-    "Judged",
-    "advice",
-    "best_pair",
-    "best_within",
-    "cheapest",
-    "front",
-    "judge",
-    "pair_sentence",
-    "verdict",
-    "wall_seconds",
-    "worst",
-]
-
-
 Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
 
 

@@ -24,19 +24,6 @@ from fem_impact.errors import RunError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEYS, Outcome
 
-__all__ = [
-    "Placed",
-    "Truth",
-    "mean",
-    "mesh_limits",
-    "mesh_means",
-    "pair_limit",
-    "standard_error",
-    "truths",
-    "values_of",
-]
-
-
 # Lowest order of convergence in the band of two meshes. Over twelve sets and nine quantities, 91 % of
 # such bands contain the limit of all meshes, and all of them do within the band of that limit.
 LOWEST = 0.75

@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
-__all__ = ["SCHEMA", "CostStudy", "judge_stored", "measure"]
-
 
 SCHEMA = "fem-impact/cost/2"
 BRIEF = 5e-6  # s: into the first contact

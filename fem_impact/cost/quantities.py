@@ -15,8 +15,6 @@ from fem_impact.plan.choose import active
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = ["QUANTITIES", "TARGETED", "TargetQuantity", "chosen"]
-
 
 @dataclass(frozen=True, slots=True)
 class TargetQuantity:

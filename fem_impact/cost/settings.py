@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from fem_impact.scene.fields import Element
     from fem_impact.scene.types import Scene
 
-__all__ = ["FAMILY", "PLAIN", "Mesh", "Setting", "ladder", "on_mesh", "placed"]
-
 
 Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
 

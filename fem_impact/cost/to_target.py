@@ -32,17 +32,6 @@ from fem_impact.run import simulate as run
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Material, Scene
 
-__all__ = [
-    "NEARNESS",
-    "SUMMARY",
-    "ChosenSetting",
-    "choose_setting",
-    "nearest",
-    "simulate",
-    "summarise",
-]
-
-
 SUMMARY = "fem-impact/cost-summary/2"
 
 STEEL = ("E", "rho", "yield", "ultimate over yield")

@@ -19,9 +19,6 @@ from fem_impact.effects import (
 from fem_impact.effects.slots import Effect
 from fem_impact.errors import SceneError, did_you_mean
 
-__all__ = ["AUTO", "BARRIERS", "EFFECTS", "NAMES", "check_effects", "grounded"]
-
-
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
     for effect in (

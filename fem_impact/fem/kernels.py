@@ -16,9 +16,6 @@ from numba import extending, types
 from numba.core import event
 from numba.extending import models, register_model
 
-__all__ = ["add_product", "load", "spread", "store", "three"]
-
-
 SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
 

@@ -17,8 +17,6 @@ from fem_impact.tables.table import Table
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["force_figure", "ledger_figure"]
-
 
 COLUMNS = ("time_s", "force_n_N", "force_t_N")
 

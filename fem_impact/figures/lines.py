@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["Mark", "Panel", "Series", "lines_figure"]
-
 
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
 LETTERS = {"wide": 110, "narrow": 52}

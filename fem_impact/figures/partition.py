@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-__all__ = ["comparison_figure", "partition_figure", "study_partition_figure"]
-
 
 UNSEEN = 1e-5  # of E_0
 

@@ -14,8 +14,6 @@ from fem_impact.files.atomic import atomic_path
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["INK", "PALETTE", "QUIET", "Shape", "figure", "new_figure", "percent", "save"]
-
 
 Shape = Literal["wide", "narrow"]
 """Wide for paper and desktop, narrow for a phone."""

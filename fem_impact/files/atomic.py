@@ -11,8 +11,6 @@ from tempfile import mkstemp
 
 from fem_impact.errors import OutputPathError, ResultError
 
-__all__ = ["atomic_path", "make_directory", "read_text", "unwritable", "write_bytes", "write_text"]
-
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:

@@ -11,8 +11,6 @@ import numpy as np
 if TYPE_CHECKING:
     import h5py
 
-__all__ = ["STEP_ROWS", "add_frame", "write_mesh"]
-
 
 VTK_HEXAHEDRON = 12
 STEP_ROWS = ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets", "NumberOfParts")

@@ -16,8 +16,6 @@ from fem_impact.errors import ResultError
 if TYPE_CHECKING:
     import h5py
 
-__all__ = ["FieldFile", "read_fields"]
-
 
 T = TypeVar("T")
 _WAITS = (0.02, 0.1, 0.5, 0.0)  # s before each further try while a writer has the file open

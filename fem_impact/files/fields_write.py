@@ -15,9 +15,6 @@ from fem_impact.files.atomic import atomic_path
 from fem_impact.files.fields_layout import add_frame, write_mesh
 from fem_impact.files.fields_read import read_fields
 
-__all__ = ["FieldWriter"]
-
-
 _WAITS = (0.01, 0.03, 0.1, 0.2)  # s before each further try while a reader has the file open
 
 

@@ -14,8 +14,6 @@ from pathlib import Path
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import make_directory, unwritable
 
-__all__ = ["LOCK", "directory_lock"]
-
 LOCK = ".lock"
 _NO_LOCKS = (errno.ENOLCK, errno.ENOTSUP, errno.EOPNOTSUPP, errno.ENOSYS)
 _thread = threading.local()  # its attribute `directories`: those that this thread has locked

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from fem_impact.files.atomic import make_directory
 
-__all__ = ["CHECKPOINT", "COMPUTED", "earlier", "remove_drafts", "set_aside"]
-
 CHECKPOINT = "run.checkpoint"
 COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
 """Files that a run computes."""

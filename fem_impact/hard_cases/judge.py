@@ -10,9 +10,6 @@ import numpy as np
 from fem_impact.solid.run import SolidResult
 from fem_impact.tables.table import read_csv
 
-__all__ = ["LEDGER", "Balance", "balance"]
-
-
 LEDGER = 1e-3  # of E_0: most that the ledger may miss, to either side
 FED = 1e-6  # of E_0: most that friction may give back between two rows of the history
 MOMENTUM = 1e-3  # of the momentum at the start plus the impulse

@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
 
-__all__ = ["MARKS", "Row", "page", "row_line", "run_case", "run_cases"]
-
 
 ROW = "row.json"
 CHECKPOINT_INTERVAL = 10.0  # s of wall time

@@ -9,9 +9,6 @@ from typing import Any, Literal
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import Scene
 
-__all__ = ["CASES", "HardCase"]
-
-
 Expected = Literal["closed", "refused", "detected"]
 Changes = Mapping[str, Any]
 

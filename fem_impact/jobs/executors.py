@@ -15,8 +15,6 @@ from typing import Any, ParamSpec, TypeVar
 
 from fem_impact.errors import MissingLibraryError, UsageError
 
-__all__ = ["LocalProcesses", "cores", "on_scheduler"]
-
 P = ParamSpec("P")
 T = TypeVar("T")
 

@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from fem_impact.jobs.job import Job, Kind
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["WorkForecast", "estimate"]
-
 
 WORKERS = (1, 2, 10, 100, 1000)  # numbers of workers that a time is forecast for
 SAMPLE = 8  # jobs of a fidelity that are computed, and kept, when none was measured yet

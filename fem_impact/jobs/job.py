@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
     from fem_impact.scene.types import Scene
 
-__all__ = ["Answer", "Failure", "Job", "Kind", "compute", "read_outcome"]
-
 
 Kind = tuple[str, float]
 

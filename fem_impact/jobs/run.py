@@ -24,8 +24,6 @@ if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["Eta", "Results", "expected_costs", "makespan", "run_jobs", "stored_results"]
-
 
 GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
 """s a job, for the order and the ETA until one of its fidelity was measured."""

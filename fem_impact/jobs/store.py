@@ -13,9 +13,6 @@ from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import make_directory
 from fem_impact.jobs.job import Answer, Job, Kind
 
-__all__ = ["STORE", "Store"]
-
-
 STORE = "store.sqlite"
 _TABLE = """
 CREATE TABLE IF NOT EXISTS answers (

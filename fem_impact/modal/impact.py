@@ -31,9 +31,6 @@ from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
 
-__all__ = ["ModalResult", "plastic_work", "reach", "solve"]
-
-
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
 FASTEST = 0.1  # of a step, rad of the highest mode

@@ -15,9 +15,6 @@ from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
 
-__all__ = ["ALONE", "MOST_CONTACTS", "RIGID", "Bounds", "ModalEnd", "Modes", "Others", "Start", "drop"]
-
-
 MOST_CONTACTS = 200
 SPRINGS = 100
 LOOK = 8  # steps between looks at the rod's other points

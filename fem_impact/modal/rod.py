@@ -16,9 +16,6 @@ from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Scene, Surface
 
-__all__ = ["ModalRod", "modal_rod"]
-
-
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
 

@@ -6,23 +6,6 @@ from collections.abc import Mapping
 
 from fem_impact.outcome.keys import Num, Unknown, group, key, part
 
-__all__ = [
-    "ARMS",
-    "ArmCoefficients",
-    "Contact",
-    "ContactInterval",
-    "EffectChoice",
-    "Energy",
-    "Heat",
-    "Markers",
-    "Provenance",
-    "Restitution",
-    "RodMotion",
-    "RunCost",
-    "Validity",
-]
-
-
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
 

@@ -13,22 +13,6 @@ from typing import Any, Literal, NoReturn, TypeVar, dataclass_transform, get_arg
 
 from fem_impact.errors import ResultError
 
-__all__ = [
-    "Key",
-    "Kind",
-    "Num",
-    "Unknown",
-    "group",
-    "key",
-    "keys_of",
-    "known",
-    "markdown_table",
-    "or_none",
-    "part",
-    "unknown",
-]
-
-
 T = TypeVar("T")
 Kind = Literal["number", "count", "flag", "text", "texts", "named texts", "named numbers", "entries"]
 KINDS: Mapping[Any, Kind] = {

@@ -29,9 +29,6 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 
-__all__ = ["KEYS", "KEY_TABLE", "Outcome", "installed_versions", "utc_now"]
-
-
 CHECKSUM = "checksum_sha256"
 """Last key of the file: SHA-256 of everything else, so that a damaged file cannot pass for a result."""
 

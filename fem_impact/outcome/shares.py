@@ -9,9 +9,6 @@ from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Key, Num
 from fem_impact.outcome.record import KEY_TABLE
 
-__all__ = ["ACCOUNTS", "SHARES", "EnergyShare", "LedgerAccount", "Place", "shares"]
-
-
 Place = Literal["terminal", "figure", "comparison", "report", "study"]
 """Where shares are listed: the terminal, figures of one or many runs, model beside measurement, pages,
 the ledger of a study's runs and its families of meshes."""

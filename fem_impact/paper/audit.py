@@ -22,16 +22,6 @@ from rigid.experiments import (
     set_ids,
 )
 
-__all__ = [
-    "CSV_COLUMNS",
-    "audit_document",
-    "audit_text",
-    "estimate_entry",
-    "finite",
-    "records_table",
-    "statistic_entry",
-]
-
 
 def finite(value: Any) -> float | None:
     """Return a float, or None where it is infinite or undefined."""

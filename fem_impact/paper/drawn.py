@@ -16,8 +16,6 @@ from fem_impact.tables.table import Cell, Table
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["Drawn", "Statement", "canvas", "paths", "write_data"]
-
 
 @dataclass(frozen=True, slots=True)
 class Statement:

@@ -9,9 +9,6 @@ from fem_impact.paper.drawn import Drawn
 from fem_impact.paper.figures_4_5 import figure_4, figure_5
 from fem_impact.paper.figures_6_7 import figure_6, figure_7
 
-__all__ = ["FIGURES", "draw_figure"]
-
-
 FIGURES: dict[int, Callable[[Path], Drawn]] = {4: figure_4, 5: figure_5, 6: figure_6, 7: figure_7}
 
 

@@ -27,8 +27,6 @@ from rigid.experiments import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["figure_4", "figure_5"]
-
 
 NAMES = {"e": "restitution e", "mu": "impulse ratio μ", "e_m": "moment restitution $e_m$"}
 COLUMNS_4 = ("test", "e", "mu", "e_m", "e_printed", "mu_printed", "e_m_printed")

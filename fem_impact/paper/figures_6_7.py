@@ -24,8 +24,6 @@ from rigid.experiments import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["figure_6", "figure_7"]
-
 
 MU = np.linspace(0.0, 1.2, 241)
 COLOURS = ("blue", "sky", "green", "orange", "vermilion")

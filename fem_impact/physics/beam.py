@@ -15,16 +15,6 @@ from fem_impact.physics.contact import projectile, section_frequency, shear_spee
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = [
-    "Beam",
-    "BeamFlight",
-    "Rigid",
-    "beam",
-    "bending_frequencies",
-    "bending_period",
-    "stretching_period",
-]
-
 
 ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
 SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)

@@ -36,9 +36,6 @@ from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.hardening import rate_gain
 from rigid import GRAVITY
 
-__all__ = ["BeamImpact", "Touch", "strike"]
-
-
 STEPS, MOST_STEPS = 150, 6000  # over the estimated contact; with contact, in all
 LAYER = 3.0  # a shear stress counts three times squared beside a normal one (von Mises)
 DRAGGED = 1 / (1 + pi / 2)

@@ -16,7 +16,6 @@ from fem_impact.physics.contact import LIMIT_PRESSURE, ContactBodies, contact_mo
 if TYPE_CHECKING:
     from fem_impact.scene.types import Material
 
-__all__ = ["ContactLaw", "contact_law", "restitution", "softer", "thornton"]
 
 # releases shorter than this are one contact: a few passages of a wave across the tip
 MERGE_GAP = 10e-6

@@ -28,19 +28,6 @@ from fem_impact.physics.contact import ContactBodies, approach, contact_estimate
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = [
-    "ASSUMPTIONS",
-    "Flash",
-    "Half",
-    "closed_form",
-    "expected_rise",
-    "flash",
-    "flash_bound",
-    "halves",
-    "moving_rise",
-    "short_rise",
-]
-
 
 HARDNESS = 3.0  # of the ultimate stress: mean pressure that no asperity of the softer body exceeds
 ASSUMPTIONS = (

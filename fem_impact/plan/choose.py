@@ -16,8 +16,6 @@ from fem_impact.plan.measured import expected_shares
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = ["Choice", "active", "choices", "everything", "left_out", "neglected", "resolved"]
-
 
 UNFELT = ("contact-heating",)  # what the motion does not feel is watched or not, never missed
 

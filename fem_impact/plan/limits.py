@@ -13,9 +13,6 @@ from fem_impact.scene import library
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 
-__all__ = ["validity"]
-
-
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019

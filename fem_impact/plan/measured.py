@@ -14,9 +14,6 @@ from typing import Any
 import numpy as np
 import scipy.sparse as sp
 
-__all__ = ["expected_shares", "summary", "yardsticks"]
-
-
 UNDER = {"barrier-elastoplastic": "barrier-elastic"}  # a block that yields is an elastic one first
 
 

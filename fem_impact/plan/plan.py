@@ -15,8 +15,6 @@ from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
 from fem_impact.scene.types import Scene
 
-__all__ = ["Plan", "plan"]
-
 
 @dataclass(frozen=True, slots=True)
 class Plan:

@@ -28,9 +28,6 @@ from meshes import thin_skin_rise
 from meshes.refine import reach
 from meshes.section import section
 
-__all__ = ["RunSize", "about", "machine_memory", "require_memory", "run_size"]
-
-
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
 SMALLEST = {"rod": 0.62, "barrier": 0.65}  # stable step over that in which a wave crosses the finest edge

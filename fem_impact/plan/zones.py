@@ -20,17 +20,6 @@ from fem_impact.physics.contact import (
 )
 from fem_impact.scene.types import Scene
 
-__all__ = [
-    "Zones",
-    "face_reach",
-    "half_widths",
-    "levels_of",
-    "lowest_point",
-    "require_fine_zone",
-    "slide",
-    "zones_of",
-]
-
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
 # geometric mean), and how many cells it has at least
 ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0

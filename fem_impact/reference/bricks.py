@@ -17,9 +17,6 @@ from scipy.sparse.linalg import eigsh
 
 from fem_impact.arrays import Array
 
-__all__ = ["Bar", "brick_stiffness", "rebound", "spring_force", "wall_stress"]
-
-
 CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 GAUSS = CORNERS / sqrt(3)
 

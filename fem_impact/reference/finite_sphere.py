@@ -23,20 +23,6 @@ from scipy.integrate import cumulative_simpson
 from fem_impact.arrays import Array
 from fem_impact.reference.hertz import HertzImpact, hertz
 
-__all__ = [
-    "ball_excess",
-    "ball_impact",
-    "ball_shear",
-    "bounce",
-    "braked",
-    "fitted",
-    "legendre",
-    "local_law",
-    "pressure_rings",
-    "surface_shape",
-]
-
-
 GAUSS = 100
 POINTS = 4001
 SMALLEST, LARGEST = 5e-3, 0.4  # a / R: below, the excess is under 0.5 % of the approach

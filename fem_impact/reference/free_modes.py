@@ -15,8 +15,6 @@ from scipy.linalg import block_diag, eigh
 
 from fem_impact.arrays import Array
 
-__all__ = ["BeamModes", "Frequencies", "bending_modes", "cylinder_frequencies"]
-
 RIGID = 2
 
 

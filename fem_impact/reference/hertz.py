@@ -11,23 +11,6 @@ from scipy.special import beta, ellipe, ellipk
 
 from fem_impact.arrays import Array
 
-__all__ = [
-    "HertzImpact",
-    "SpringRow",
-    "contact_modulus",
-    "equivalent_radius",
-    "fitted_restitution",
-    "hertz",
-    "plastic_radius",
-    "plastic_speeds",
-    "radiated_share",
-    "sliding_ratio",
-    "tangential_ratio",
-    "thornton_restitution",
-    "yield_speed",
-]
-
-
 # t_c = HALF_SPAN d / v with HALF_SPAN = 2 int_0^1 (1 - s^(5/2))^(-1/2) ds
 SPAN = 0.8 * float(beta(0.4, 0.5))
 

@@ -16,9 +16,6 @@ from fem_impact.arrays import Array
 from fem_impact.reference.free_modes import bending_modes
 from fem_impact.reference.hertz import SpringRow
 
-__all__ = ["ObliqueRebound", "ObliqueRod", "oblique_drop", "oblique_rod"]
-
-
 MODES = 12, 8  # bending, stretching
 FASTEST = 0.3  # step times the largest circular frequency of the modes
 LONGEST = 2e-7  # s

@@ -28,9 +28,6 @@ from skfem.helpers import ddot, div, sym_grad
 from fem_impact.arrays import Array
 from fem_impact.reference.finite_sphere import POINTS, local_law
 
-__all__ = ["AxialImpact", "BarImpact", "bar_speed", "end_excess", "end_law", "sears", "strike"]
-
-
 SMALLEST, RADII = 1 / 128, 7  # contact radii over R: the smallest, each twice the last
 PER_OCTAVE, CORE = 4, 8  # cells per octave of radius, and over the smallest radius
 BEHIND = 3.0  # radii of rod behind the nose: the stress of a loaded end decays like exp(-2.7 z / R)

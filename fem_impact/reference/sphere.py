@@ -11,9 +11,6 @@ import numpy as np
 from fem_impact.reference.finite_sphere import POINTS, ball_excess, ball_shear, fitted, local_law
 from fem_impact.reference.hertz import SpringRow, hertz, tangential_ratio
 
-__all__ = ["SphereRebound", "oblique_ball", "oblique_sphere", "reversal"]
-
-
 STEPS = 4000
 INERTIA = 0.4  # K^2 of a solid sphere
 

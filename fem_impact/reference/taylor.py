@@ -16,9 +16,6 @@ from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
 
-__all__ = ["Metal", "taylor_bar"]
-
-
 CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 GAUSS = CORNERS / sqrt(3)
 SHAPE = np.prod(1 + GAUSS[:, None] * CORNERS, axis=2) / 4  # (points, corners)

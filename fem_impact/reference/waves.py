@@ -18,14 +18,6 @@ from scipy.special import beta, ive, jv
 
 from fem_impact.reference.hertz import SPAN, HertzImpact
 
-__all__ = [
-    "flexural_speed",
-    "longitudinal_speed",
-    "radiated_energy",
-    "radiation_resistance",
-    "rayleigh_speed",
-]
-
 SCAN = 400
 
 

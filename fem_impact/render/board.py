@@ -20,21 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-__all__ = [
-    "Curve",
-    "FilmBackground",
-    "Limits",
-    "Strip",
-    "below",
-    "blank",
-    "clock",
-    "colour_bar",
-    "heading",
-    "limits_of",
-    "picture",
-    "write",
-]
-
 
 CLOCK, LETTER = 220, 11
 """Pixels that clock and margins take of the first line, and that a letter of the title takes of it."""

@@ -19,8 +19,6 @@ from fem_impact.files.atomic import atomic_path, make_directory
 if TYPE_CHECKING:
     from PIL.Image import Image
 
-__all__ = ["PACKAGES", "SUFFIXES", "best_suffix", "encode", "require_gl"]
-
 
 SUFFIXES = (".mp4", ".webp", ".gif", ".png")
 """Formats that can be asked for; ``.png`` makes a folder of numbered frames."""

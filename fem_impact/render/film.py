@@ -16,8 +16,6 @@ from fem_impact.render.layout import FrameLayout
 from fem_impact.render.motion import FilmData, prepare
 from fem_impact.tables.table import read_csv
 
-__all__ = ["RenderResult", "context", "render", "require_libraries", "target"]
-
 
 @dataclass(frozen=True, slots=True)
 class RenderResult:

@@ -4,18 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-__all__ = [
-    "axis_of",
-    "hex_volumes",
-    "magnified",
-    "nice_factor",
-    "nodal_volumes",
-    "rigid_motion",
-    "stretch",
-    "to_points",
-]
-
-
 _CORNERS = np.array(
     [[-1, -1, -1], [1, -1, -1], [1, 1, -1], [-1, 1, -1], [-1, -1, 1], [1, -1, 1], [1, 1, 1], [-1, 1, 1]],
     float,

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["Abreast", "Frame", "FrameLayout", "Rectangle"]
-
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:

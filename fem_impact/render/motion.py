@@ -12,8 +12,6 @@ from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import FieldFile
 from fem_impact.render.kinematics import axis_of, magnified, nice_factor, nodal_volumes, rigid_motion, stretch
 
-__all__ = ["FIELDS", "FieldStyle", "FilmData", "prepare"]
-
 
 class FieldStyle(NamedTuple):
     """How a field is shown: label, unit, factor from SI, colour map, whether it has a sign."""

@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
-__all__ = ["render_side_by_side"]
-
 
 FRAMES = 120
 TITLE = "Strain along the axis: of one sign over a section in longitudinal waves, of both in bending"

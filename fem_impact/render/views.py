@@ -12,8 +12,6 @@ from fem_impact.render.motion import FIELDS, FilmData
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["CLOSE_WIDTH", "CloseView", "RodPicture", "needed_height"]
-
 
 CLOSE_WIDTH = 0.45
 """Width of the close-up in diameters of the rod."""

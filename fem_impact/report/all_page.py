@@ -21,8 +21,6 @@ from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_
 from fem_impact.study.document import LEDGER
 from fem_impact.tables.table import Table, read_csv
 
-__all__ = ["Conclusion", "conclusion_section", "conclusion_text", "conclusions", "write_all"]
-
 
 def write_all(results: Path, out: Path) -> Path:
     """Write ``report.html``, ``summary.md``, ``ledger.csv`` over the studies in ``results``; return the page.

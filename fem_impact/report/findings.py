@@ -11,8 +11,6 @@ from fem_impact.report.page import download, stored_picture
 from fem_impact.report.study_data import Study
 from fem_impact.tables.table import Table
 
-__all__ = ["figure_id", "findings_section"]
-
 
 def findings_section(study: Study) -> Markup:
     """Return what a study found, its pictures and data inside."""

@@ -8,18 +8,6 @@ from html import escape
 
 from fem_impact.tables.table import Table, number
 
-__all__ = [
-    "Markup",
-    "bullets",
-    "details",
-    "join",
-    "paragraph",
-    "place",
-    "section",
-    "table",
-    "with_band",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Markup:

@@ -14,8 +14,6 @@ from fem_impact.errors import ResultError
 from fem_impact.figures.style import Shape
 from fem_impact.report.html import Markup, bullets, join, section
 
-__all__ = ["FILMS", "data_link", "download", "film", "page", "picture", "sources", "stored_picture"]
-
 
 def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
     """Return the whole document; it refers to nothing outside itself.

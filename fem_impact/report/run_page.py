@@ -30,8 +30,6 @@ from fem_impact.report.sections import (
 )
 from fem_impact.tables.table import Cell, Table
 
-__all__ = ["run_page"]
-
 
 def _keys(*path: str) -> list[Key]:
     """Return the keys of a group, by the attributes that lead to it."""

@@ -29,23 +29,6 @@ from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Cell, Missing, Table, read_csv
 
-__all__ = [
-    "all_keys",
-    "card",
-    "contacts_table",
-    "effects_section",
-    "estimated",
-    "film_section",
-    "has_film",
-    "history_figures",
-    "key_table",
-    "known_cell",
-    "notices",
-    "sentences",
-    "strangers",
-    "unknown",
-]
-
 
 def strangers(outcome: Outcome, folder: Path) -> list[str]:
     """Return what says that files of the folder are not, or not wholly, those of the outcome."""

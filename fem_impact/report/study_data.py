@@ -14,9 +14,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import SCHEMA
 from fem_impact.tables.csv import COMPARISON
 
-__all__ = ["Study", "read_study"]
-
-
 Record = Mapping[str, Any]
 TEXTS = ("study", "title", "command")
 SENTENCES = ("findings", "assumptions", "sources")

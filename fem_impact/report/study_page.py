@@ -29,8 +29,6 @@ from fem_impact.report.sections import (
 from fem_impact.report.study_data import Study, read_study
 from fem_impact.tables.table import DASH, Cell, Marked, Table
 
-__all__ = ["comparison_part", "draw_study", "partition_part", "study_page"]
-
 
 def draw_study(folder: Path) -> None:
     """Draw the study's own figures into ``folder/figures``, for a page that is not to draw them again."""

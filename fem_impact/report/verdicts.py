@@ -17,9 +17,6 @@ from fem_impact.report.page import download, picture
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import measured_set
 
-__all__ = ["Verdict", "marker_section", "marker_sentence", "verdict_section", "verdicts"]
-
-
 MOMENTS = (KEY_TABLE["e_m_paper"], KEY_TABLE["e_m_edge"], KEY_TABLE["e_m_impulse"])
 MARKED = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
 """Unit of what two markers measure, by its attribute of the motion and of the markers."""

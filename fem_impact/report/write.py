@@ -9,8 +9,6 @@ from fem_impact.files.atomic import write_text
 from fem_impact.report.run_page import run_page
 from fem_impact.report.study_page import study_page
 
-__all__ = ["write_report"]
-
 
 def write_report(result_dir: str | Path, again: bool = True) -> Path:
     """Write ``report.html`` into a result folder and return its path.

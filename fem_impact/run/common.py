@@ -29,18 +29,6 @@ from rigid.experiments import measured_set
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = [
-    "gravity_warning",
-    "heat",
-    "motion",
-    "open_ledger",
-    "plastic_shares",
-    "provenance",
-    "restitution",
-    "too_slow",
-    "validity",
-]
-
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"

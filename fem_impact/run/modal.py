@@ -24,9 +24,6 @@ from fem_impact.run.common import (
 )
 from fem_impact.scene.types import Scene
 
-__all__ = ["ASSUMPTIONS", "beside_solid", "reduce"]
-
-
 WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")

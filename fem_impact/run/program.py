@@ -16,8 +16,6 @@ if TYPE_CHECKING:
 
     from fem_impact.scene.types import Scene
 
-__all__ = ["source_digest", "stamp"]
-
 
 ROOMS = (
     *("fem_impact/scene", "fem_impact/effects", "fem_impact/physics", "fem_impact/plan", "fem_impact/fem"),

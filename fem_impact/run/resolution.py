@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import ArmCoefficients, Energy, Restitution
     from fem_impact.solid.run import SolidResult
 
-__all__ = ["doubted", "is_resolved", "too_narrow", "without"]
 
 T = TypeVar("T", "ArmCoefficients", "Energy")
 LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # pressed at once, of the half model

@@ -21,8 +21,6 @@ from fem_impact.run.common import heat, motion, plastic_shares, provenance, rest
 if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
 
-__all__ = ["rigid_outcome"]
-
 
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
 WITHOUT = ("vibration", "rate-hardening", "radiation", "gravity", "large-rotation", "material-damping")

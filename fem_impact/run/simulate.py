@@ -15,8 +15,6 @@ if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
     from fem_impact.scene.types import Scene
 
-__all__ = ["simulate"]
-
 
 def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOptions()) -> Outcome:
     """Compute an impact on the mesh that its scene gives.

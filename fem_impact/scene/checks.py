@@ -8,9 +8,6 @@ from typing import Any
 from fem_impact.errors import SceneError
 from fem_impact.scene.fields import Parameter
 
-__all__ = ["check_choice", "check_id", "check_names", "check_numbers", "check_text"]
-
-
 _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
 
 

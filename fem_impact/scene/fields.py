@@ -9,20 +9,6 @@ from typing import Any, Literal
 from fem_impact.errors import SceneError
 from fem_impact.scene.units import DIMENSIONS, format_quantity, parse_number, parse_quantity
 
-__all__ = [
-    "ACCURACY",
-    "DEFAULTS",
-    "HEATING",
-    "IMPACT",
-    "MATERIAL",
-    "PROJECTILE",
-    "SAVE",
-    "SURFACE",
-    "TOP",
-    "Default",
-    "Parameter",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Parameter:

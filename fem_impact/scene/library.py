@@ -12,9 +12,6 @@ from fem_impact.scene import fields
 from fem_impact.scene.types import MEASURED_SETS, Material, Surface
 from fem_impact.scene.units import parse_quantity
 
-__all__ = ["material", "materials", "nearest_scene", "shipped", "source_of", "surface", "surfaces"]
-
-
 _DATA = files("fem_impact.scene").joinpath("data")
 
 

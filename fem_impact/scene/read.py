@@ -25,9 +25,6 @@ from fem_impact.scene.types import (
 )
 from fem_impact.scene.units import parse_number, parse_quantity, parse_share
 
-__all__ = ["read_dict", "read_scene", "read_toml"]
-
-
 _LARGEST_FILE = 1_000_000
 _TOML = 'A scene is a TOML file: key = value lines under [section] headings, text in "quotes".'
 

@@ -16,8 +16,6 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.scene.write import to_dict
 
-__all__ = ["load", "replace", "replace_all"]
-
 
 def load(id_or_path: str | Path) -> Scene:
     """Return a shipped scene by its id, or read a scene file.

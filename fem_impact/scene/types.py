@@ -13,20 +13,6 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 
-__all__ = [
-    "MEASURED_SETS",
-    "Accuracy",
-    "Barrier",
-    "Heating",
-    "Impact",
-    "Material",
-    "ProjectileSpec",
-    "Save",
-    "Scene",
-    "Surface",
-]
-
-
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
     *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),

@@ -10,17 +10,6 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 
-__all__ = [
-    "DIMENSIONS",
-    "Dimension",
-    "Unit",
-    "format_quantity",
-    "parse_number",
-    "parse_quantity",
-    "parse_share",
-]
-
-
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
 _LONGEST = 64

@@ -11,8 +11,6 @@ from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.types import Accuracy, Material, Scene
 
-__all__ = ["digest", "to_dict", "to_toml"]
-
 
 def to_dict(scene: Scene) -> dict[str, Any]:
     """Return every value of the scene, defaults too, quantities with their units."""

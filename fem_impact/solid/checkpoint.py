@@ -23,8 +23,6 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
 from fem_impact.solid.state import State
 
-__all__ = ["Checkpoint", "Moving", "put_back", "take_out"]
-
 
 class Moving(Protocol):
     """Anything whose moving part can be stored; () when nothing moves.

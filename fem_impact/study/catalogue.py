@@ -15,8 +15,6 @@ from fem_impact.study.document import Conclude, Plan, Request, StudyResult
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["estimate_study", "run_study"]
-
 
 def run_study(
     name: str, request: Request, progress: ProgressMeter, executor: Executor | None = None

@@ -17,8 +17,6 @@ from fem_impact.study.rods import BODY, PAPER_RODS, STATES, TIP, Drop, length_of
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "plan"]
-
 
 GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45, 42.0)
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)

@@ -24,21 +24,6 @@ from fem_impact.study.point_mass import contact_time, spring_drop
 from fem_impact.study.rods import BODY, Drop, length_of
 from rigid import LIMIT
 
-__all__ = [
-    "LEVELS",
-    "Measure",
-    "Rod",
-    "Rods",
-    "blind_ratio",
-    "error_of",
-    "exponent",
-    "gamma_at",
-    "linear_rods",
-    "rods_of",
-    "spread_of",
-]
-
-
 LEVELS = (0.02, 0.05, 0.10)
 """Errors of e at which a rod counts as no longer rigid."""
 

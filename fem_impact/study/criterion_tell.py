@@ -28,9 +28,6 @@ from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
 
-__all__ = ["study_report"]
-
-
 KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 """T1/tau and worst e of elastic frictionless drops, derived independently (benchmark problem 8)."""
 

@@ -20,18 +20,6 @@ from fem_impact.tables.table import Cell, Table
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = [
-    "LEDGER",
-    "SCHEMA",
-    "Picture",
-    "Request",
-    "Sheet",
-    "StudyReport",
-    "StudyResult",
-    "failures_of",
-    "publish",
-]
-
 
 @dataclass(frozen=True, slots=True)
 class Request:

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
-__all__ = ["DESIGNED", "conclude", "cost_row", "expected_row", "plan", "row"]
-
 
 TIP = 0.8e-3  # m; coarse: both runs of a pair share it
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0

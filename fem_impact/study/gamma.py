@@ -18,8 +18,6 @@ from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "plan"]
-
 
 FINE = np.concatenate([np.arange(10.0, 60.0, 2.0), np.arange(60.0, 121.0, 10.0)])
 COARSE = np.array([10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0])

@@ -16,9 +16,6 @@ from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, STATES, Drop
 from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT, slenderness
 
-__all__ = ["Maps", "first_only", "study_report"]
-
-
 X = "gamma, m^-0.3815"
 MARKS = (
     *(Mark(float(slenderness(l, BODY)), w) for w, l in PAPER_RODS.items()),

@@ -20,8 +20,6 @@ from rigid.experiments import MeasuredSet
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
-__all__ = ["UNCERTAIN_INPUTS", "UncertainInput", "changes", "sample_values"]
-
 
 ANGLE = radians(0.5)
 CONTACT = 0.5e-3  # m

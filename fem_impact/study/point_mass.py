@@ -12,9 +12,6 @@ from fem_impact.modal.march import ALONE, MOST_CONTACTS, RIGID, Bounds, Start, d
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.reference.oblique import ObliqueRod
 
-__all__ = ["SpringDrop", "contact_time", "spring_drop"]
-
-
 STEP, FREE = 2e-8, 1e-6  # s
 LATEST = 1.0  # s
 

@@ -9,9 +9,6 @@ from fem_impact.scene.library import materials
 from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
 from rigid.slenderness import EXPONENT
 
-__all__ = ["MAP_NOTES", "PAPER_RODS", "STATES", "Drop", "length_of"]
-
-
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 """Lengths, m, of the three rods of 19 mm."""
 

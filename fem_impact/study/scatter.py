@@ -27,8 +27,6 @@ from rigid.experiments import correlation, measured_set
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "plan", "study_report"]
-
 
 MEASURED = ("e", "mu", "Omega")
 TOLD_OUTPUTS = (*MEASURED, "E_vib/E_0")

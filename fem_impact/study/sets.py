@@ -24,8 +24,6 @@ from fem_impact.tables.table import Table
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
-__all__ = ["conclude", "jobs_of", "miss_sentence", "plan", "sets_report"]
-
 
 QUICK_TIP = 0.6e-3  # m
 QUICK_FRAMES = 60  # half the usual

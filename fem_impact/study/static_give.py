@@ -20,9 +20,6 @@ from fem_impact.study.document import Picture, Sheet
 from fem_impact.study.rods import BODY, PAPER_RODS, Drop
 from fem_impact.tables.table import Cell, Table
 
-__all__ = ["Gives", "give_picture", "give_sheet", "give_words", "gives_of", "static_restitution"]
-
-
 SHORT = 14.5  # gamma: below it vibration takes less than .5 % of E_0 at any angle
 SHOWN = (5.0, 45.0, 70.0)  # degrees
 Gives = Sequence[tuple[Rod, NDArray[np.float64]]]

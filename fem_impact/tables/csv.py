@@ -7,9 +7,6 @@ import io
 from collections.abc import Mapping, Sequence
 from typing import TypeVar
 
-__all__ = ["COMPARISON", "CONTACTS", "HISTORY", "Plain", "csv_line", "row_of"]
-
-
 Plain = float | int | str | None
 """A cell of a CSV file."""
 C = TypeVar("C")

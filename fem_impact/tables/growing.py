@@ -12,8 +12,6 @@ from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import write_text
 from fem_impact.tables.csv import HISTORY, Plain, csv_line, row_of
 
-__all__ = ["HistoryWriter"]
-
 
 class HistoryWriter:
     """Append rows to a CSV table in batches.

@@ -19,8 +19,6 @@ from fem_impact.tables.csv import Plain, csv_line, row_of
 if TYPE_CHECKING:
     import numpy as np
 
-__all__ = ["DASH", "Cell", "Column", "Marked", "Missing", "Table", "number", "read_csv"]
-
 
 DASH = "–"
 GAP = "  "

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import textwrap
 
-__all__ = ["wrapped"]
-
-
 WIDTH = 79
 
 

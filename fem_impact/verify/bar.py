@@ -21,9 +21,6 @@ from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.watch import ForceRecorder, Until
 
-__all__ = ["PROBLEM"]
-
-
 PLATEAU, DURATION, GROWTH, CLOSING = 0.005, 0.01, 1e-3, 1e-6
 WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
 AFTER = 1.3  # durations that are followed

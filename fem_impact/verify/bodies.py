@@ -34,8 +34,6 @@ from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
 from meshes import HexMesh, RodMesh
 
-__all__ = ["Block", "FreeBody", "body_model", "placed", "rigid_of", "unsliced"]
-
 
 @dataclass(frozen=True, slots=True)
 class Block:

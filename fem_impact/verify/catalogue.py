@@ -14,9 +14,6 @@ from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.tables.table import Table
 from fem_impact.verify.problem import Check, Problem, Verification
 
-__all__ = ["HEAD", "MARKS", "PROBLEMS", "page", "problem", "put_page", "verify"]
-
-
 # name -> module and its problem; a module is imported when its problem is asked for
 PROBLEMS = {
     "bar": ("bar", "PROBLEM"),

@@ -27,9 +27,6 @@ from fem_impact.verify.bodies import rigid_of
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import rod_scene
 
-__all__ = ["MOMENTUM", "SPIN"]
-
-
 SMALL = 1e-6
 FASTEST = 0.05  # spin times length over c0
 CLOSING = 2e-3  # speed of the tip over c0

@@ -41,9 +41,6 @@ from fem_impact.verify.problem import Check, Problem, Solved, Values
 from fem_impact.verify.setups import rod_scene
 from rigid import Projectile
 
-__all__ = ["PROBLEM"]
-
-
 E_TOLERANCE, BENDING_RELATIVE, BENDING_ABSOLUTE = 0.04, 0.15, 1e-3
 CORNER = "a plain cylinder that touches with its corner, as the printed ones do"
 SLENDER = (2.5, 100.0)  # length over diameter: a stubbier rod is no beam

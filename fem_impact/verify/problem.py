@@ -11,9 +11,6 @@ from typing import Any, Literal
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene.fields import Parameter
 
-__all__ = ["Check", "Problem", "ProblemCost", "Solved", "Values", "Verification", "within"]
-
-
 Values = Mapping[str, float]
 Kind = Literal["relative", "absolute", "at most", "shown"]
 

@@ -43,9 +43,6 @@ from fem_impact.verify.bodies import Block, FreeBody, body_model, placed
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import block_under, contact_zone, levels_for_radius, run_strike
 
-__all__ = ["PROBLEM"]
-
-
 FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4
 AFTER = 1.1  # contact times that are followed
 SLENDER, CONTACT = (3.5, 100.0), (5e-3, 0.3)  # length over diameter; contact radius over the rod's and tip's

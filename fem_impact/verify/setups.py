@@ -20,22 +20,6 @@ from fem_impact.verify.problem import Values, within
 from fem_impact.verify.watch import ForceRecorder, Until
 from meshes import HexMesh, Zone
 
-__all__ = [
-    "TipImpact",
-    "across",
-    "block_under",
-    "contact_zone",
-    "diameter",
-    "elastic",
-    "friction",
-    "length",
-    "levels_for_radius",
-    "rod_scene",
-    "run_strike",
-    "slender",
-    "speed",
-]
-
 
 def length(default: float = 0.24) -> Parameter:
     """Return the rod's length."""

@@ -21,18 +21,6 @@ from fem_impact.verify.bodies import Block, FreeBody, body_model, placed, unslic
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import TipImpact, block_under, contact_zone, levels_for_radius, run_strike
 
-__all__ = [
-    "HERTZ",
-    "OBLIQUE_SPHERE",
-    "ball_mass",
-    "modulus",
-    "parameters",
-    "plain_hertz",
-    "small_contact",
-    "sphere_model",
-]
-
-
 CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
 
 

@@ -23,18 +23,6 @@ from fem_impact.verify.bodies import FreeBody, body_model, unsliced
 from fem_impact.verify.problem import Check, Problem, Solved, Values
 from meshes import OUTER, SKIN, HexMesh
 
-__all__ = [
-    "KINDS",
-    "WALL_BAR",
-    "NodeSprings",
-    "counts",
-    "is_printed",
-    "node_areas",
-    "parameters",
-    "square_bar",
-    "twin",
-]
-
 
 def node_areas(mesh: HexMesh, faces: NDArray[np.bool_]) -> Array:
     """Return the area (n,), m2, that each node has in some of the outer faces (k,)."""

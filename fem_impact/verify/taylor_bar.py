@@ -23,9 +23,6 @@ from fem_impact.verify.bodies import FreeBody, body_model, placed, unsliced
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.watch import Until, follow
 
-__all__ = ["PROBLEM"]
-
-
 PRINTED = {
     "radius": 3.2e-3,
     "speed": 227.0,

@@ -31,9 +31,6 @@ from fem_impact.verify.setups import contact_zone
 from fem_impact.verify.spheres import ball_mass
 from fem_impact.verify.watch import Until, follow
 
-__all__ = ["PROBLEM", "judged_slope"]
-
-
 SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
 FIRST = 1.6  # peak pressure of first yield over yield stress
 NAME = "slope of ln e over ln v"

@@ -49,9 +49,6 @@ from fem_impact.verify.square_bars import (
 )
 from fem_impact.verify.watch import Until
 
-__all__ = ["PROBLEM"]
-
-
 ANGLE, SPEED = radians(20), 3.0
 PRINTED, REBOUND = {0.0: 1.403, 0.2: 1.91}, 0.03  # m/s, by friction; tolerance
 PRINTED_MESH = {"cells": 4, "element": 0}

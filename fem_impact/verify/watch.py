@@ -14,9 +14,6 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 
-__all__ = ["ForceRecorder", "Until", "follow"]
-
-
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 

@@ -28,9 +28,6 @@ from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model
 from fem_impact.verify.problem import Check, Problem, Solved, Values
 
-__all__ = ["MODES", "WAVES", "Probe", "bar_of", "frequencies"]
-
-
 MODES_TOLERANCE = 0.005
 COUNT = 14  # modes that are computed
 SLENDER = (2.5, 30.0)  # length over diameter; stubbier bars have oval modes among the stretching ones
