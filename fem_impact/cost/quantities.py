@@ -34,10 +34,10 @@ class TargetQuantity:
     floor: float
 
     def value(self, outcome: Outcome) -> float | None:
-        """Return the value, None where the fidelity does not know it."""
+        """Return the sum of what the fidelity knows, None where that is nothing."""
         values: list[Num] = [key.of(outcome) for key in self.keys]
         parts = [part for value in values if (part := or_none(value)) is not None]
-        return float(sum(parts)) if len(parts) == len(values) else None
+        return float(sum(parts)) if parts else None
 
     def scale(self, value: float, outcome: Outcome) -> float:
         """Return what an error is divided by."""

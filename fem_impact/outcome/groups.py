@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from fem_impact.outcome.keys import Num, Unknown, group, key, part
+from fem_impact.outcome.keys import Num, Unknown, group, key, or_none, part
 
 ARMS = ("paper", "edge", "impulse")
 """The three sets of contact arms that every coefficient is given with."""
@@ -213,6 +213,13 @@ class Energy:
         True,
     )
     residual: float = key("residual_over_E_0", "-", "What the ledger fails to close by" + SHARE)
+
+    @property
+    def plastic(self) -> Num:
+        """Plastic work of both bodies over E_0; what is not known of one is in the other's."""
+        if isinstance(self.plastic_rod, Unknown) and isinstance(self.plastic_barrier, Unknown):
+            return self.plastic_rod
+        return sum(or_none(work) or 0.0 for work in (self.plastic_rod, self.plastic_barrier))
 
 
 @group

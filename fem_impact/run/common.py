@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
+HARDER = Unknown("the contact law lets the softer body alone flow: what the harder one takes is in its share")
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
@@ -173,10 +174,11 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoeffic
     return ArmCoefficients(d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln), E_lt=float(lost.E_lt))
 
 
-def plastic_shares(bodies: ContactBodies, share: float) -> tuple[float, float]:
-    """Return the plastic work of rod and barrier: the law lets only the softer one yield."""
+def plastic_shares(bodies: ContactBodies, share: float) -> tuple[Num, Num]:
+    """Return the plastic work of rod and barrier; that of a harder body that may yield is not known."""
     in_rod = bodies.rod_yields and softer(bodies) == bodies.scene.projectile.material
-    return (share, 0.0) if in_rod else (0.0, share)
+    other = HARDER if bodies.rod_yields and bodies.barrier_yields else 0.0
+    return (share, other) if in_rod else (other, share)
 
 
 def heat(

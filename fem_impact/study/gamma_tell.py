@@ -37,9 +37,7 @@ RESTITUTION = Measure("e_edge", lambda run: run.restitution.edge.e)
 MU = Measure("mu", lambda run: run.restitution.mu)
 CONTACTS = Measure("contacts", lambda run: float(len(known(run.contact.intervals))))
 FRICTION = Measure("W_friction_over_E_0", lambda run: run.energy.friction, 100.0)
-PLASTIC = Measure(
-    "plastic", lambda run: known(run.energy.plastic_rod) + known(run.energy.plastic_barrier), 100.0
-)
+PLASTIC = Measure("plastic", lambda run: run.energy.plastic, 100.0)
 
 DRAWN = {
     "vibration, % of E_0": VIBRATION,

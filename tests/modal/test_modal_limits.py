@@ -155,3 +155,13 @@ def test_an_impact_in_which_gravity_rules_is_no_result():
     told = outcome_of(scene).validity
     assert not told.finished
     assert "no impact any more" in told.stopped_because
+
+
+def test_plastic_work_of_the_harder_body_is_not_known():
+    """The contact law lets the softer body flow alone; the rod of the paper yields too."""
+    scene = load("t5b")
+    energy = outcome_of(scene).energy
+    assert "the softer body alone" in energy.plastic_rod.reason
+    assert energy.plastic == energy.plastic_barrier > 0.1
+    stiff = outcome_of(replace(scene, effects=("vibration", "friction", "barrier-elastoplastic"))).energy
+    assert stiff.plastic_rod == 0.0
