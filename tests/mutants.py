@@ -42,7 +42,7 @@ GAUSS_PRESSURE = """\
 """
 SPHERE = "tests/verify/test_verify_oblique_sphere.py"
 RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
-HEATING = "tests/heating/test_heating.py"
+HEATING = "tests/physics/test_heating.py"
 LAST = "            n_n += w[a] * normals[node, 2]\n"
 UNIT = "        length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)\n"
 FORCE = "            _add_force(w, stress, weight, z.pressure[b], X, Y, Z)\n"
@@ -73,14 +73,14 @@ MUTANTS = (
         "fem_impact/fem/eigen.py",
         "    pull -= rigid @ (rigid.T @ pull)\n",
         "",
-        "tests/modes/test_modes.py::test_released_energy_is_that_of_all_shapes_whoever_knows_them",
+        "tests/fem/test_modes.py::test_released_energy_is_that_of_all_shapes_whoever_knows_them",
     ),
     Mutant(
         "sign of Omega",
         "fem_impact/fem/flight.py",
         "float(V[2]), float(V[0]), spin / inertia)",
         "float(V[2]), float(V[0]), -spin / inertia)",
-        "tests/modes/test_modes.py::test_rigid_sums",
+        "tests/fem/test_modes.py::test_rigid_sums",
     ),
     Mutant(
         "a spin before the impact left out of coefficients and losses",
