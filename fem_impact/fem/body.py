@@ -1,4 +1,7 @@
-"""A meshed body and its stiffness, assembled without ever keeping all element matrices."""
+"""Meshed bodies: positions, numbering, lumped masses and stiffness.
+
+Element matrices are assembled in batches and never stored all at once.
+"""
 
 from __future__ import annotations
 
@@ -25,7 +28,7 @@ HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
 
 
 class Elastic(Protocol):
-    """What an operator needs of a material: E, Pa; nu; rho, kg/m3."""
+    """Elastic constants and density of a material: E, Pa; nu; rho, kg/m3."""
 
     @property
     def E(self) -> float: ...  # noqa: D102
@@ -37,13 +40,15 @@ class Elastic(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class MeshedBody:
-    """One meshed body ready for assembly.
+    """One meshed body with the data that assembly needs.
 
     Attributes
     ----------
-    points, places : (n, 3), positions in the barrier frame and unknowns of all nodes
-    yields : (m,) cells that may yield; element : kind of the others
-    mass : (m, 8) lumped
+    points : (n, 3) node positions in the barrier frame, m
+    places : (n, 3) int64, indices of the node unknowns in the flat vectors
+    yields : (m,) bool, cells that may yield
+    element : element type of the cells that cannot yield
+    mass : (m, 8) lumped masses of each cell at its nodes, kg
     """
 
     name: str
@@ -65,13 +70,16 @@ def make_body(
     yields: Bools,
     element: Kind = "incompatible",
 ) -> MeshedBody:
-    """Return a body with its masses; ``element`` is that of cells that cannot yield."""
+    """Return a body with its lumped masses; ``element`` is the type of the cells that cannot yield."""
     mass = lumped_mass(points, mesh.cells, material.rho)
     return MeshedBody(name, mesh, points, places, material, yields, element, mass)
 
 
 def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
-    """Return the stiffness of ``chosen`` cells over ``size`` unknowns, those from ``shift`` on."""
+    """Return the stiffness (size, size), N/m, of the cells in the mask ``chosen`` (m,).
+
+    Row 0 is the unknown with index ``shift`` in the flat vectors.
+    """
     T = tie_operator(body.mesh.tie, body.places - shift, size)
     lame, cells = lame_constants(body.material.E, body.material.nu), body.mesh.cells
     elastic = assemble(body.points, cells[chosen & ~body.yields], lame, body.element, T)
@@ -79,7 +87,7 @@ def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> 
 
 
 def slices_of(body: MeshedBody, rod: RodMesh) -> SliceOperator:
-    """Return the operator of the rod's slices, all like the first."""
+    """Return the stiffness operator of the rod's slices, built from the first, which all others equal."""
     m, first = body.material, body.mesh.cells[rod.body_cells[:, 0]]
     K = element_stiffness(body.points, first, lame_constants(m.E, m.nu), body.element)
     return SliceOperator.of_rod(rod, K)
@@ -88,9 +96,10 @@ def slices_of(body: MeshedBody, rod: RodMesh) -> SliceOperator:
 def nose_and_whole(
     body: MeshedBody, rod: RodMesh, drawn: MassPoints, layout: DofLayout
 ) -> tuple[sp.csr_matrix, MassStiffness]:
-    """Return the rod's stiffness over its free unknowns: of cells neither sliced nor yielding, and of all.
+    """Return two stiffnesses of the rod, N/m.
 
-    The second is that over the masses.
+    The first is that of the elastic nose cells (neither in a slice nor yielding) over the free unknowns of
+    the nodes, the second that of all cells over the unknowns of the mass points.
     """
     sliced, n = np.zeros(len(body.mesh.cells), dtype=bool), layout.rod_size
     sliced[rod.body_cells] = True
@@ -100,10 +109,10 @@ def nose_and_whole(
 
 
 def skin_weight(barrier: HexMesh, h: float) -> Array:
-    """Return the factor (m,) of the masses of a barrier's cells, ``h`` m wide at the contact.
+    """Return the mass factors (m,) of a barrier's cells, whose edge at the contact is ``h``, m.
 
-    One as low as c h with c < `HEAVY` gets (`HEAVY` / c)^2 times its mass, and so the step of one `HEAVY` h
-    high. These cells move no faster than the indentation grows.
+    A cell of height c h with c < `HEAVY` gets (`HEAVY` / c)^2 times its mass, so that its stable step is that
+    of a cell of height `HEAVY` h. These cells move no faster than the indentation grows.
     """
     z = barrier.points[barrier.cells][:, :, 2]
     return np.asarray(np.maximum(1.0, HEAVY * h / np.ptp(z, axis=1)) ** 2)
@@ -119,7 +128,7 @@ def assemble_masses(bodies: list[MeshedBody], layout: DofLayout) -> Array:
 
 
 def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
-    """Invert; nothing moves through the symmetry plane."""
+    """Return 1 / mass (size,), 1/kg; 0 where there is no mass and for motion through the symmetry plane."""
     inverse = np.divide(1.0, mass, out=np.zeros_like(mass), where=mass > 0)
     for body in bodies:
         inverse[body.places[np.abs(body.points[:, 1]) < 1e-12, 1]] = 0.0
@@ -127,7 +136,7 @@ def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
 
 
 class MeshedBodies:
-    """The meshed bodies of a plan, their masses and places; each part is made when asked for, and kept."""
+    """Meshes, numbering and masses of a plan's bodies; each part is made at its first use and cached."""
 
     def __init__(self, plan: Plan) -> None:
         self.plan, self.scene, self.spec = plan, plan.scene, plan.slots
@@ -141,7 +150,7 @@ class MeshedBodies:
 
     @cached_property
     def layout(self) -> DofLayout:
-        """Return the places of the unknowns."""
+        """Return the numbering of the unknowns."""
         return number(self.geometry.rod, self.geometry.barrier)
 
     @cached_property
@@ -154,7 +163,10 @@ class MeshedBodies:
 
     @cached_property
     def rod(self) -> MeshedBody:
-        """Return the meshed rod of true mass: its nose's cells get what flat faces cut off the round skin."""
+        """Return the meshed rod with its exact mass.
+
+        The mass that the flat faces of the mesh cut off the round skin is spread over the nose's cells.
+        """
         g, yields = self.geometry, self.geometry.may_yield["rod"] & (self.spec.rod_law is not None)
         steel, kind = self.scene.projectile.material, self.scene.accuracy.element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, kind)
@@ -192,17 +204,17 @@ class MeshedBodies:
 
     @cached_property
     def inverse_mass(self) -> Array:
-        """Return (size,), 1/kg, 0 where nothing may move."""
+        """Return the inverse lumped masses (size,), 1/kg, 0 where an unknown is fixed."""
         return invert(self.mass, self.bodies)
 
     @cached_property
     def drawn(self) -> MassPoints:
-        """Return where the rod's masses sit."""
+        """Return the mass points of the rod's slices."""
         return MassPoints.of_rod(self.geometry.rod, self.rod.mass, self.rod.material.rho)
 
     @cached_property
     def x(self) -> Array:
-        """Return the positions (size,) of the masses at time 0, m."""
+        """Return the positions (size,) of the mass points at time 0, m."""
         x = np.zeros(self.layout.size)
         x[self.layout.dummy] = dummy_element()
         for body in self.bodies:
@@ -211,18 +223,18 @@ class MeshedBodies:
         return x
 
     def move_rod(self, t: float, n: float) -> None:
-        """Move the rod at time 0 along t and n, m."""
+        """Shift the rod's start position by ``t`` and ``n``, m."""
         self.x[self.rod.places[:, [0, 2]]] += t, n
         self.geometry.rod_points[:, [0, 2]] += t, n
 
     @cached_property
     def free_nodes(self) -> Ints:
-        """Return the unknowns (k, 3) of the rod's nodes that do not hang."""
+        """Return the unknowns (k, 3) of the rod's free nodes, those that do not hang."""
         return self.rod.places[~self.rod.mesh.is_hanging]
 
     @cached_property
     def rod_stiffness(self) -> tuple[sp.csr_matrix, MassStiffness]:
-        """Return the stiffness of the nose's elastic cells, and that of the whole rod over its masses."""
+        """Return both stiffnesses of the rod, N/m, see `nose_and_whole`."""
         return nose_and_whole(self.rod, self.geometry.rod, self.drawn, self.layout)
 
     def rod_modes(self) -> RodModes:

@@ -6,7 +6,7 @@ rho c_d and rho c_s per area (Liu, Du, Du, Wang & Wu 2006, Earthquake Engineerin
 
 A contact lasts many passages of a wave through the block. Its boundary then stands in the near field and
 moves as under a static load, and plain dashpots take nearly twice the energy that a half-space radiates under
-a slow force (Lamb's problem), however large the block: `radiating_share` is what to leave of them.
+a slow force (Lamb's problem), however large the block. `radiating_share` is the factor that corrects them.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def spread_boundary(mesh: HexMesh, E: float, nu: float, rho: float) -> tuple[Arr
     spring = springs.assemble(basis, G=G) @ ones
     damping = dashpots.assemble(basis, rho=rho, c_d=c_d, c_s=c_s) @ ones
     totals = np.zeros((2, len(mesh.points), 3))
-    outer = np.unique(faces)  # on other nodes the faces' cells leave round-off
+    outer = np.unique(faces)  # nodes inside the cells of these faces have round-off only
     totals[:, outer] = np.stack([spring, damping]).reshape(2, -1, 3)[:, outer]
     return totals[0], totals[1]
 
@@ -49,30 +49,32 @@ def spread_boundary(mesh: HexMesh, E: float, nu: float, rho: float) -> tuple[Arr
 def radiating_share(
     K: sp.csr_matrix,
     damping: Array,
-    held: NDArray[np.bool_],
+    fixed: NDArray[np.bool_],
     loaded: int,
     material: tuple[float, float, float],
 ) -> float:
-    """Return the share of the plain dashpots that radiates as a half-space under a slow normal force.
+    """Return the factor of the plain dashpots with which the block radiates as a half-space does.
+
+    The load is a slow normal force at the contact.
 
     Parameters
     ----------
     K : (n, n) static stiffness of the half block with its springs, N/m; damping : (n,), N s/m
-    held : (n,) unknowns on the symmetry plane that cannot move
+    fixed : (n,) unknowns on the symmetry plane that cannot move
     loaded : the unknown along n at the contact; material : E, nu, rho
 
     Raises
     ------
     RunError
-        If the static solution is not found.
+        If the static solution does not converge.
     """
     E, nu, rho = material
     G = lame_constants(E, nu)[1]
     load = np.zeros(len(damping))
     load[loaded] = 0.5  # the half model's part of a unit force
-    freed = LinearOperator(K.shape, lambda u: np.where(held, 0.0, K @ u), dtype=np.float64)
-    moved, left = cg(freed, load, rtol=1e-4, M=sp.diags(1 / K.diagonal()))
-    if left:
+    constrained = LinearOperator(K.shape, lambda u: np.where(fixed, 0.0, K @ u), dtype=np.float64)
+    displacement, failed = cg(constrained, load, rtol=1e-4, M=sp.diags(1 / K.diagonal()))
+    if failed:
         raise RunError("The static solution of the barrier block was not found.")
-    taken = 2 * float(damping @ moved**2)
-    return float(np.polyval(RADIATION, nu)) / (2 * pi * G * sqrt(G / rho)) / taken
+    absorbed = 2 * float(damping @ displacement**2)  # of the whole block, W per (N/s)^2
+    return float(np.polyval(RADIATION, nu)) / (2 * pi * G * sqrt(G / rho)) / absorbed

@@ -1,4 +1,4 @@
-"""The stiffness of the rod over its masses, which do not stand at the nodes."""
+"""The rod's stiffness over its mass points, which do not lie at the nodes, and its elastic eigenmodes."""
 
 from __future__ import annotations
 
@@ -19,12 +19,14 @@ from fem_impact.arrays import Array
 
 @dataclass(frozen=True, slots=True)
 class MassStiffness:
-    """P^T K P, N/m. Its factors alone are kept: multiplied out, P fills the slices and doubles the memory.
+    """The stiffness P^T K P, N/m, over the mass points, stored as its factors.
+
+    The product would fill the slices' blocks and take twice the memory.
 
     Attributes
     ----------
-    parts : (n, n) each, K over the nodes as a sum that is never made, for it takes more memory than it holds
-    spread : (n, n) P, displacements of nodes from those of masses
+    parts : (n, n) each, terms of K over the nodes; they are not added up, which would take more memory
+    spread : (n, n) P, displacements of the nodes from those of the mass points
     """
 
     parts: tuple[sp.csr_matrix, ...]
@@ -36,12 +38,12 @@ class MassStiffness:
         return int(self.spread.shape[0]), int(self.spread.shape[1])
 
     def __matmul__(self, w: Array) -> Array:
-        """Return the forces on masses that moved by ``w``, (n,) or (n, k)."""
+        """Return the forces, N, on mass points displaced by ``w``, m, (n,) or (n, k)."""
         u = self.spread @ w
         return np.asarray(self.spread.T @ sum(part @ u for part in self.parts))
 
     def scaled(self, root: Array) -> sp.csc_matrix:
-        """Return the matrix with rows and columns times ``root`` where that is not zero, in float32."""
+        """Return the float32 matrix with rows and columns times ``root``, without those where it is 0."""
         P = (self.spread[:, np.flatnonzero(root)] @ sp.diags(root[root != 0])).astype(np.float32)
         return sp.csc_matrix(sum(P.T @ (part.astype(np.float32) @ P) for part in self.parts))
 
@@ -51,9 +53,9 @@ Product = Callable[[Array], Array]
 DEFAULT_COUNT = 40
 RIGID = 3  # two translations and one turn in the symmetry plane
 SHIFT = 1e-5  # of the largest diagonal entry: closer to zero, float32 would keep too few digits of the factor
-ROUGH = 1e-6  # of the eigenvalues of the inverse, which has no more digits
-CORRECTIONS = 2  # bring frequencies to 1e-11 and residual forces to 1e-6; one: 1e-8 and 1e-4
-RELEASED, MOST = 1e-5, 300  # residual force, of the force that an energy is asked for; steps (20 are common)
+ROUGH = 1e-6  # relative tolerance of the eigenvalues: the float32 inverse has no more digits
+CORRECTIONS = 2  # two bring frequencies to 1e-11 and residual forces to 1e-6, one to 1e-8 and 1e-4
+RELEASED, MOST = 1e-5, 300  # relative residual and most steps of `RodModes.released` (20 are common)
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +67,9 @@ class RodModes:
     omega : (k,) circular frequencies, rad/s, ascending
     shape : (n, k) over the rod's free unknowns, half-model mass-normalised: shape.T M shape = 1
     mass : (n,) lumped masses of the half rod, kg
-    released : from internal forces (n,), N, of a free rod the strain energy, J, that the whole rod releases
-        until they are gone, rigid acceleration apart: of all shapes that the mesh has, not of these modes;
-        None if it is not found
+    released : maps internal forces (n,), N, of a free rod to the strain energy, J, that the whole rod
+        releases until they vanish, without the part that is rigid acceleration. It counts all shapes of the
+        mesh, not these modes only; None where the iteration does not converge
     """
 
     omega: Array
@@ -87,14 +89,14 @@ def no_modes(mass: Array) -> RodModes:
 
 
 _LAST: dict[str, RodModes] = {}
-"""The modes that this process found last: material damping asks for them beside the run, and runs that differ
-in their barrier alone have them in common."""
+"""Cache of the last modes computed in this process: the run and its material damping use the same modes, and
+so do runs that differ in their barrier only."""
 
 
 def rod_modes(
     stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int = DEFAULT_COUNT
 ) -> RodModes:
-    """Return the lowest elastic modes, the same again to whoever asks for those found last.
+    """Return the lowest elastic modes; the last ones computed are cached.
 
     Parameters
     ----------
@@ -105,14 +107,14 @@ def rod_modes(
     Raises
     ------
     ValueError
-        If the body is not free: more or fewer than three rigid motions were found.
+        If the body is not free: the number of rigid motions is not three.
     """
     matrices = (stiffness.spread, *stiffness.parts)
     arrays = [array for A in matrices for array in (A.indptr, A.indices, A.data)]
     mark = _mark([*arrays, mass, fixed], count)
     if mark not in _LAST:
         _LAST.clear()
-        _LAST[mark] = _found(stiffness, mass, fixed, count)
+        _LAST[mark] = _solve(stiffness, mass, fixed, count)
     return _LAST[mark]
 
 
@@ -123,26 +125,26 @@ def _mark(arrays: Iterable[NDArray[Any]], count: int) -> str:
     return digest.hexdigest()
 
 
-def _found(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int) -> RodModes:
-    """Search for what `rod_modes` returns."""
+def _solve(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], count: int) -> RodModes:
+    """Solve the eigenvalue problem of `rod_modes`, without the cache."""
     root = np.where(fixed, 0.0, 1 / np.sqrt(mass))
-    roughly, shift = _rough_inverse(stiffness, root)
+    approximate_inverse, shift = _approximate_inverse(stiffness, root)
     scale = sp.diags(root)
 
     def times(x: Array) -> Array:
         return np.asarray(scale @ (stiffness @ (scale @ x)))
 
-    inverse = _operator(roughly, mass)
-    start = roughly(np.random.default_rng(0).normal(size=len(mass)))
-    # with the inverse at hand the solver takes only the shape of its first argument
+    inverse = _operator(approximate_inverse, mass)
+    start = approximate_inverse(np.random.default_rng(0).normal(size=len(mass)))
+    # with OPinv given, eigsh uses only the shape of its first argument
     vector = eigsh(inverse, count + RIGID, sigma=shift, v0=start, OPinv=inverse, tol=ROUGH)[1]
     for _ in range(CORRECTIONS):
         vector = np.linalg.qr(vector)[0]
-        # beside the shift the lowest squares are small: Rayleigh-Ritz gives their digits back
-        value, mix = np.linalg.eigh(vector.T @ times(vector))
-        vector = vector @ mix
-        rest = roughly(times(vector) - vector * value)  # what few digits left in the highest frequencies
-        vector -= rest - vector @ (vector.T @ rest)
+        # Rayleigh-Ritz: the lowest squares are small beside the shift and have lost digits
+        value, rotation = np.linalg.eigh(vector.T @ times(vector))
+        vector = vector @ rotation
+        change = approximate_inverse(times(vector) - vector * value)  # corrects the highest frequencies
+        vector -= change - vector @ (vector.T @ change)
     if not abs(value[RIGID - 1]) < 1e-3 * value[RIGID]:
         raise ValueError(
             f"A free rod has three rigid motions in its symmetry plane; the lowest squares are {value[:4]}."
@@ -154,22 +156,23 @@ def _found(stiffness: MassStiffness, mass: Array, fixed: NDArray[np.bool_], coun
 def _released(
     stiffness: LinearOperator, inverse: LinearOperator, root: Array, rigid: Array, force: Array
 ) -> float | None:
-    """Return what `RodModes` tells of ``released``, by conjugate gradients with the rough inverse at hand."""
+    """Return `RodModes.released` by conjugate gradients, preconditioned by the approximate inverse."""
     pull = root * force
-    least = RELEASED**2 * float(np.linalg.norm(pull))  # what rounding leaves of a rigid acceleration
+    least = RELEASED**2 * float(np.linalg.norm(pull))  # round-off of a force that is all rigid acceleration
     pull -= rigid @ (rigid.T @ pull)
-    given, failed = cg(stiffness, pull, rtol=RELEASED, atol=least, maxiter=MOST, M=inverse)
-    return None if failed else float(pull @ given)
+    displacement, failed = cg(stiffness, pull, rtol=RELEASED, atol=least, maxiter=MOST, M=inverse)
+    return None if failed else float(pull @ displacement)
 
 
 def _operator(product: Product, vector: Array) -> LinearOperator:
     return LinearOperator((len(vector), len(vector)), product, dtype=np.float64)
 
 
-def _rough_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product, float]:
-    """Return the inverse, good to a few digits, of stiffness over mass less a shift, and the shift, 1/s2.
+def _approximate_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product, float]:
+    """Return the inverse of M^-1/2 K M^-1/2 - shift to a few digits, and the shift, 1/s2.
 
-    ``root`` is 1 / sqrt(mass). The factor is by far the largest thing in memory, and float32 halves it.
+    ``root`` (n,) is 1 / sqrt(mass), 0 where fixed. The factor is by far the largest array of a run; float32
+    halves it.
     """
     free, shifted = np.flatnonzero(root), stiffness.scaled(root)
     # a shift below zero keeps the factor definite although rigid motions have no stiffness

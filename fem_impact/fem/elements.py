@@ -13,7 +13,7 @@ from fem_impact.fem import forms
 
 Kind = Literal["full", "bbar", "incompatible"]
 
-BATCH = 125  # elements made at once: their functions at all points stay in the processor's cache
+BATCH = 125  # elements computed at once: their shape functions at all points fit the processor's cache
 FORMS: dict[Kind, tuple[Any, Any]] = {
     "full": (forms.stiffness, ElementVector(ElementHex1())),
     "bbar": (forms.mean_dilatation_stiffness, ElementVector(ElementHex1())),

@@ -1,4 +1,4 @@
-"""Splitting a motion into a rigid and a vibrating part, and flying it on exactly."""
+"""Split of the rod's motion into a rigid and a vibrating part, and its exact free flight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fem_impact.fem.eigen import RodModes
 
 @dataclass(frozen=True, slots=True)
 class RigidMotion:
-    """Rigid part of the whole rod's motion, from sums of momentum and angular momentum.
+    """Rigid part of the whole rod's motion, from its momentum and angular momentum.
 
     Attributes
     ----------
@@ -43,7 +43,10 @@ class RigidMotion:
 
 
 def rigid_motion(x: Array, v: Array, mass: Array) -> RigidMotion:
-    """Return the rigid part of nodes x, v (n, 3) in (t, b, n) with half-model masses (n,)."""
+    """Return the rigid motion of nodes at x, m, with velocities v, m/s, both (n, 3) in (t, b, n).
+
+    ``mass`` (n,), kg, is that of the half model.
+    """
     half = float(mass.sum())
     centre, V = mass @ x / half, mass @ v / half
     arm, relative = x - centre, v - V
@@ -56,7 +59,7 @@ def rigid_motion(x: Array, v: Array, mass: Array) -> RigidMotion:
 class FreeVibration:
     """Vibration of the rod in free flight: q_i(t) = a_i cos(omega_i t) + b_i sin(omega_i t).
 
-    ``a`` and ``b`` are (k,), sqrt(kg) m, about the rest shape with its locked-in stress.
+    ``a`` and ``b`` are (k,), sqrt(kg) m, about the rest shape, which may have residual stress.
     """
 
     modes: RodModes
@@ -79,21 +82,21 @@ class FreeVibration:
         return float((self.modes.omega**2 * self.a**2).sum())
 
     def amplitude(self, rows: NDArray[np.int64]) -> Array:
-        """Return bounds (m,), m, of the displacements of some unknowns for all times."""
+        """Return bounds (m,), m, on the displacements of unknowns ``rows`` (m,) at any time."""
         return np.asarray(np.abs(self.modes.shape[rows]) @ np.hypot(self.a, self.b))
 
     def displacement(self, rows: NDArray[np.int64], t: Array) -> Array:
-        """Return displacements (m, times), m, of some unknowns at times (s) after the start."""
+        """Return displacements (m, times), m, of unknowns ``rows`` (m,) at times ``t`` from the start, s."""
         phase = np.outer(self.modes.omega, t)
         q = self.a[:, None] * np.cos(phase) + self.b[:, None] * np.sin(phase)
         return np.asarray(self.modes.shape[rows] @ q)
 
 
 def flight(modes: RodModes, v: Array, force: Array) -> FreeVibration:
-    """Return the free flight from velocities and internal forces (n,) in the rod's frame.
+    """Return the free vibration from velocities, m/s, and internal forces, N, both (n,), in the rod's frame.
 
     The displacement amplitudes come from the forces, a = -shape . f / omega^2, not from positions:
-    stress that yielding locked in is in balance with itself and does not count as vibration.
+    residual stress after yielding is in equilibrium with itself and is no vibration.
     """
     q_rate = modes.shape.T @ (modes.mass * v)
     pull = modes.shape.T @ force

@@ -52,8 +52,8 @@ def stiffness(u, v, w):  # type: ignore[no-untyped-def]
 def mean_dilatation_stiffness(u, v, w):  # type: ignore[no-untyped-def]
     """Hooke's law with the mean of div u over each cell instead of div u (B-bar, Hughes 1980).
 
-    The pressure sees the mean volume change, the deviator the strain at the point. ``dx`` are the weights of
-    the points, m3.
+    The pressure follows from the cell's mean volume change, the deviator from the strain at the point. ``dx``
+    (cells, points) are the weights of the Gauss points, m3.
     """
     bulk = w.lame + 2 * w.G / 3
     deviators = ddot(sym_grad(u), sym_grad(v)) - div(u) * div(v) / 3
@@ -62,14 +62,14 @@ def mean_dilatation_stiffness(u, v, w):  # type: ignore[no-untyped-def]
 
 @BilinearForm
 def springs(u, v, w):  # type: ignore[no-untyped-def]
-    """Springs of a half-space loaded at the origin, r m from the middle of the face; ``G``, Pa."""
+    """Springs of a half-space loaded at the origin; r, m, is the distance to the face's centre; ``G``, Pa."""
     r = np.linalg.norm(w.x.mean(axis=-1, keepdims=True), axis=0)
     return w.G / r * along_and_across(u, v, w.n, NORMAL_SPRING, TANGENTIAL_SPRING)
 
 
 @BilinearForm
 def dashpots(u, v, w):  # type: ignore[no-untyped-def]
-    """Dashpots rho c_d and rho c_s, which take plane waves out; ``rho``, kg/m3; ``c_d`` and ``c_s``, m/s."""
+    """Dashpots rho c_d and rho c_s, which absorb plane waves; ``rho``, kg/m3; ``c_d`` and ``c_s``, m/s."""
     return w.rho * along_and_across(u, v, w.n, w.c_d, w.c_s)
 
 
@@ -118,8 +118,9 @@ class ElementHexModes(ElementHex1):  # type: ignore[misc]
         return (DiscreteField(np.broadcast_to(1 - (2 * X[axis] - 1) ** 2, scale.shape), grad),)
 
 
-# scikit-fem's number of each corner in VTK order, which the meshes have. scikit-fem's own list comes with an
-# import of all that reads meshes. Numbers of nodes are the same, and so is the unknown 3 node + component.
+# scikit-fem's number of each corner, listed in the VTK order that the meshes use. It stands here because
+# scikit-fem's own list is in the module that imports all mesh readers. Node numbers and the index of an
+# unknown, 3 node + component, are the same in both.
 HEX_MAPPING = (0, 3, 6, 2, 1, 5, 7, 4)
 
 
@@ -138,12 +139,12 @@ def face_basis(mesh: MeshHex, quads: Ints) -> FacetBasis:
 def element_matrices(form: BilinearForm, mesh: MeshHex, element: Any = None, **parameters: float) -> Array:
     """Return the symmetric element matrices (m, 8 k, 8 k) of a form, node-major in VTK order.
 
-    ``element`` (default: `ElementHex1` in three components) has k unknowns at each node. Those inside a cell,
-    which carry no load, are condensed.
+    ``element`` (default: `ElementHex1` in three components) has k unknowns at each node. Unknowns inside a
+    cell, which carry no load, are condensed.
     """
     basis = Basis(mesh, element or ElementVector(ElementHex1()), intorder=2, disable_doflocs=True)
     trials, w = [field for (field,) in basis.basis], SimpleNamespace(dx=basis.dx, **parameters)
-    # all test functions side by side, for a call of the form takes far longer than its arithmetic
+    # one call of the form for all test functions: a call takes far longer than its arithmetic
     v = DiscreteField(np.stack(trials, axis=-3), np.stack([u.grad for u in trials], axis=-3))
     K = np.stack([np.einsum("imp,mp->mi", form.form(u, v, w), basis.dx) for u in trials], axis=1)
     k = basis.elem.nodal_dofs

@@ -1,4 +1,4 @@
-"""Meshes of a scene in the barrier frame: where the fine zones lie and how large they are."""
+"""Meshes of a scene in the barrier frame, with their fine zones."""
 
 from __future__ import annotations
 
@@ -20,14 +20,15 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-POINTS = 2  # that stand for the cylinder behind the nose
-MOST_CELLS = 3e5  # of a block before it is refined: about a gigabyte
-# in the corners of that box cells stay elastic: those may yield that an ellipsoid reaches, so many times as
-# large as the one in the box. In the 13 sets on 0.59 mm, and four on 0.30 mm, strains above 1e-3 ended at .93
-# of the latter, above 1e-5 at 1.13
+POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
+MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
+# size of the ellipsoid in which cells may yield, over that of the ellipsoid inscribed in the fine
+# zone's box; cells in the corners of the box stay elastic. In the 13 sets on 0.59 mm, and four on 0.30 mm,
+# plastic strains above 1e-3 ended at .93 of the inscribed one, above 1e-5 at 1.13
 ROUND = 1.1
-# a row is as heavy as if it were so high, in cells, so that thin ones do not set the step. At 0.8 that took
-# .001 from e of t5b on 0.59 and 0.30 mm, and closing rose to 4e-4 and 1.2e-4 of E_0; both go with the square
+# height, over the cell size, of the row whose stable step lower rows get by added mass, so that thin rows do
+# not set the run's step. With 0.8, e of t5b fell by .001 on 0.59 and 0.30 mm and the closing loss rose to
+# 4e-4 and 1.2e-4 of E_0; both grow with the square
 HEAVY = 0.65
 
 
@@ -37,13 +38,14 @@ class Geometry:
 
     Attributes
     ----------
-    rod : RodMesh; rod_points : (n, 3) float64, m, lowest point at t = 0, n = gap: that of the round surface
-        over a conforming barrier, else that of the nodes
+    rod : RodMesh
+    rod_points : (n, 3) float64, m; the rod's lowest point lies at t = 0, n = gap: that of the round
+        surface over a conforming barrier, else the lowest node
     barrier : HexMesh or None
     tip_size : finest cell edge, m; in the barrier along t and b
-    conforming : the barrier flows under all of the contact, see `SurfaceContact`
-    skin_rows : thin rows of cells at the top of the barrier
-    may_yield : (m,) cells of ``rod`` and ``barrier`` that yield if the material does
+    conforming : whether the barrier flows under the whole contact, see `SurfaceContact`
+    skin_rows : number of thin rows of cells at the top of the barrier
+    may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
     """
 
     rod: RodMesh
@@ -61,7 +63,7 @@ def to_barrier_frame(alpha: float) -> Array:
 
 
 def tail_corners(scene: Scene) -> Array:
-    """Return the highest and lowest point (2, 3) of the rod's tail at the start, m, the gap apart."""
+    """Return both corners (2, 3), m, of the rod's tail in the symmetry plane at the start; gap 0."""
     body = projectile(scene)
     corners = np.array([[x * body.diameter / 2, 0.0, body.length] for x in (-1, 1)])
     return np.asarray((corners - lowest_point(scene)) @ to_barrier_frame(scene.impact.angle).T)
@@ -88,7 +90,10 @@ def build_geometry(
 
 
 def rest_points(start: float, length: float, diameter: float) -> Array:
-    """Return the points (2, 3), m, at the radius of inertia on both sides of the cylinder's centre."""
+    """Return the two axis points (2, 3), m, that replace the cylinder behind the nose.
+
+    They lie at its radius of gyration on either side of its centre.
+    """
     behind = length - start
     radius = sqrt(behind**2 / 12 + diameter**2 / 16)
     centre = start + behind / 2
@@ -101,7 +106,7 @@ def rest_mass(start: float, length: float, diameter: float, rho: float) -> float
 
 
 def _rod(scene: Scene, zone: Zone, levels: int) -> RodMesh:
-    """Return the mesh of the rod; SceneError where it has no room for its cells."""
+    """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
     body = projectile(scene)
     try:
         return meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
@@ -111,7 +116,7 @@ def _rod(scene: Scene, zone: Zone, levels: int) -> RodMesh:
 
 
 def _require_tip_first(points: Array, base: float) -> None:
-    """Refuse a rod that lies so flat that its side, a polygon, comes down before its tip at the origin."""
+    """Raise SceneError where the side of an inclined rod, a polygon in the mesh, lies lower than its tip."""
     tip = np.hypot(points[:, 0], points[:, 1]) < 1.5 * base
     ahead = float(points[tip, 2].min() - points[:, 2].min())
     if ahead > 1e-6 * base:
@@ -123,18 +128,21 @@ def _require_tip_first(points: Array, base: float) -> None:
 
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
-    """Return which of the finest cells (m,) reach into an ellipsoid about the contact, drawn out along -t."""
+    """Return the mask (m,) of the finest cells that reach into an ellipsoid about the contact.
+
+    The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
+    """
     core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
     away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
     return np.asarray(mesh.finest & (away < ROUND))
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:
-    """Return the block: its fine zone goes on down the slope, under the way of the rod."""
+    """Return the barrier block; its fine zone extends towards -t under the path of the rod."""
     h, base, (t, b, n) = zones.tip_size, zones.base, zones.half
     n += meshes.thin_skin_rise(zones.skin_rows) * h
     box = Zone(np.zeros(3), np.eye(3), np.array([-t - zones.along, 0.0, -n]), np.array([t, b, 0.0]))
-    margin = scene.accuracy.block_margin  # the springs of the boundary stand for the rest
+    margin = scene.accuracy.block_margin  # springs replace the half-space beyond
     low = np.array([-t - zones.along - margin, 0.0, -n - margin])
     high = np.array([t + margin, b + margin, 0.0])
     count = float(np.prod((high - low) / base))

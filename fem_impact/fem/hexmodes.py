@@ -1,4 +1,4 @@
-"""The trilinear hexahedron in its seven straining modes, for blocks of elements side by side.
+"""The trilinear hexahedron in its seven non-translational modes, for blocks of ``LANES`` elements.
 
 x(xi) = a0 + a1 xi + a2 eta + a3 zeta + a4 eta zeta + a5 zeta xi + a6 xi eta + a7 xi eta zeta.
 Working with the modes a1..a7 instead of eight nodes halves the arithmetic of an element. A scratch row
@@ -18,26 +18,26 @@ SIGNS = np.array(
 )
 # its Gauss points, xi fastest
 CORNERS = np.array([(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]) / np.sqrt(3.0)
-LANES = 16
-DUMMY_EDGE = 2e-3  # m
+LANES = 16  # elements of a block
+DUMMY_EDGE = 2e-3  # m, of the element that fills up the last block
 THIRD = 1.0 / 3.0
 
 
 def reference_gradients(at: Array) -> Array:
-    """Return dN/dxi (points, 8 nodes, 3) of the trilinear hexahedron at places (points, 3) in [-1, 1]^3."""
+    """Return dN/dxi (points, 8 nodes, 3) of the trilinear hexahedron at points (points, 3) in [-1, 1]^3."""
     factor = 1 + SIGNS[None] * at[:, None]
     product = [factor[..., j] * factor[..., k] for j, k in ((1, 2), (0, 2), (0, 1))]
     return np.asarray(SIGNS[None] * np.stack(product, axis=-1) / 8)
 
 
 def dummy_element() -> Array:
-    """Return the positions (8, 3) of what fills up the last block: a cube that never moves."""
+    """Return the node positions (8, 3), m, of the fixed cube that fills up the last block."""
     return 0.5 * DUMMY_EDGE * SIGNS
 
 
 @inlined
 def node_modes(a0, a1, a2, a3, a4, a5, a6, a7):  # type: ignore[no-untyped-def]
-    """Return modes 1..7 of eight nodal values in VTK order."""
+    """Return the modes a1..a7 of eight nodal values in VTK order."""
     s01, d01, s23, d23 = a0 + a1, a1 - a0, a3 + a2, a2 - a3
     s45, d45, s67, d67 = a4 + a5, a5 - a4, a7 + a6, a6 - a7
     low, low_x, low_y, low_xy = s01 + s23, d01 + d23, s23 - s01, d23 - d01
@@ -102,7 +102,7 @@ def triple(w, p, q, r):  # type: ignore[no-untyped-def]
 
 @inlined
 def hex_volume(w, row, l):  # type: ignore[no-untyped-def]
-    """Return the exact volume of the trilinear hexahedron, from its modes."""
+    """Return the exact volume, m3, of the trilinear hexahedron, from its modes."""
     a1 = row * LANES + l
     a2, a3, a4, a5, a6 = a1 + 3 * LANES, a1 + 6 * LANES, a1 + 9 * LANES, a1 + 12 * LANES, a1 + 15 * LANES
     bent = triple(w, a6, a2, a4) + triple(w, a5, a4, a3) + triple(w, a1, a6, a5)

@@ -1,4 +1,4 @@
-"""Compiler settings shared by the compiled kernels, and where their machine code is kept."""
+"""Decorators and intrinsics of the compiled kernels, and the cache of their machine code."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
 
 # Contraction and reciprocals are allowed; reordering of sums is not, so results do not depend on the
-# vector width of the machine. NaN stays visible, because a diverging run must be seen.
+# vector width of the machine. NaN is not assumed away: a diverging run must be detected.
 FAST = {"contract", "arcp", "nsz"}
-KEPT = {"cache": True}
-COUNTLESS = {"_nrt": False}
+KEPT = {"cache": True}  # on disk, across runs
+COUNTLESS = {"_nrt": False}  # no reference counts of arrays
 
 
 def _cache_folder() -> Path:
-    """Return a folder named after all sources of the solver that hold compiled code.
+    """Return the cache folder, named after a digest of all sources with compiled code.
 
-    The compiler's own check looks at one file at a time: a kernel would keep an outdated copy of a
-    helper that it took from another file.
+    numba checks one source file per kernel only: a kernel would keep an outdated copy of a helper inlined
+    from another file.
     """
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.rglob("*.py")):
@@ -40,19 +40,14 @@ def _cache_folder() -> Path:
     return Path(__file__).parent / "__pycache__" / f"kernels-{digest.hexdigest()[:16]}"
 
 
-def _keep_compiled_code() -> None:
-    folder = _cache_folder()
-    if "NUMBA_CACHE_DIR" not in os.environ and os.access(Path(__file__).parent, os.W_OK):
-        SETTINGS.CACHE_DIR = str(folder)
-
-
-_keep_compiled_code()
+if "NUMBA_CACHE_DIR" not in os.environ and os.access(Path(__file__).parent, os.W_OK):
+    SETTINGS.CACHE_DIR = str(_cache_folder())
 
 
 def _use_whole_registers() -> None:
-    """Let loops have 512 bits where the machine has them; by itself the compiler takes half of them.
+    """Compile loops to 512-bit registers where the processor has AVX-512 VBMI2; the default is 256 bits.
 
-    Older machines than those with AVX-512 VBMI2 (2019) run slower while they do. No bit of a result changes.
+    Processors with AVX-512 but without VBMI2 (before 2019) run slower with 512 bits. Results do not change.
     """
     features = get_host_cpu_features().flatten()
     if SETTINGS.CPU_FEATURES is None and "+avx512vbmi2" in features.split(","):
@@ -63,25 +58,25 @@ _use_whole_registers()
 
 
 def compiled_before(name: str = "yielding_kernel.update") -> bool:
-    """Return whether a kernel that an earlier run of these sources compiled lies in the cache."""
+    """Return whether the cache has a kernel ``name`` compiled by an earlier run of the same sources."""
     return any(Path(SETTINGS.CACHE_DIR or _cache_folder()).rglob(f"{name}-*.nbi"))
 
 
 class _Compiling(event.Listener):
-    """Wall and processor time of all compilations so far, s; one within another counts once."""
+    """Wall and processor time of all compilations so far, s; nested ones count once."""
 
     def __init__(self) -> None:
         self.wall, self.cpu = 0.0, 0.0
         self._depth = 0
 
     def on_start(self, _: object) -> None:
-        """Begin to measure."""
+        """Start the clock at the outermost compilation."""
         if self._depth == 0:
             self._begun = time.perf_counter(), time.process_time()
         self._depth += 1
 
     def on_end(self, _: object) -> None:
-        """Add what has passed."""
+        """Add the time of the outermost compilation."""
         self._depth -= 1
         if self._depth == 0:
             wall, cpu = self._begun
@@ -94,21 +89,20 @@ event.register("numba:compile", COMPILING)
 
 
 def kernel(function: F) -> F:
-    """Compile a hot loop, cached on disk across runs.
+    """Compile a loop that allocates no arrays, cached on disk across runs.
 
-    It makes no arrays. So it needs no counts of references to them, which in short loops over views cost as
-    much as the arithmetic.
+    Reference counting of arrays is off: in short loops over views it costs as much as the arithmetic.
     """
     return _compiled(function, **KEPT, **COUNTLESS)
 
 
 def allocating_kernel(function: F) -> F:
-    """Compile a loop that makes arrays."""
+    """Compile a loop that allocates arrays: as `kernel`, with reference counting."""
     return _compiled(function, **KEPT)
 
 
 def inlined(function: F) -> F:
-    """Compile a helper that every caller absorbs."""
+    """Compile a helper that is inlined into every caller."""
     return _compiled(function, forceinline=True, **COUNTLESS)
 
 
@@ -118,11 +112,11 @@ def _compiled(function: F, **options: Any) -> F:
 
 VECTOR, LANE = ir.VectorType(ir.DoubleType(), 4), ir.IntType(32)
 intrinsic: Any = extending.intrinsic  # its callers leave out the first argument
-NUMBER = 8  # bytes: places need not be multiples of four
+NUMBER = 8  # alignment, bytes: the index of a load or store need not be a multiple of four
 
 
 class Four(types.Type):
-    """Four float64."""
+    """The numba type of four float64 in one vector register."""
 
     def __init__(self) -> None:
         super().__init__(name="Four")
@@ -138,14 +132,14 @@ class _Register(models.PrimitiveModel):
 
 
 def _place(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-    """Return the address of four numbers of an array from a place on."""
+    """Return the address of the four numbers of an array from an index on."""
     array = context.make_array(signature.args[0])(context, builder, arguments[0])
     return builder.bitcast(builder.gep(array.data, [arguments[1]]), VECTOR.as_pointer())
 
 
 @intrinsic
 def load(typing, values, place):  # type: ignore[no-untyped-def]
-    """Return four numbers of a contiguous array, counted over all its axes, from ``place`` on."""
+    """Return four numbers of a contiguous array from the flat index ``place`` on."""
 
     def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         return builder.load(_place(context, builder, signature, arguments), align=NUMBER)
@@ -155,7 +149,7 @@ def load(typing, values, place):  # type: ignore[no-untyped-def]
 
 @intrinsic
 def store(typing, values, place, lanes):  # type: ignore[no-untyped-def]
-    """Put four numbers into a contiguous array, counted as for `load`."""
+    """Store four numbers in a contiguous array from the flat index ``place`` on."""
 
     def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         builder.store(arguments[2], _place(context, builder, signature, arguments), align=NUMBER)
@@ -166,7 +160,7 @@ def store(typing, values, place, lanes):  # type: ignore[no-untyped-def]
 
 @intrinsic
 def spread(typing, number):  # type: ignore[no-untyped-def]
-    """Return a number four times."""
+    """Return a vector of four times the same number."""
 
     def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         none = ir.Constant(VECTOR, ir.Undefined)

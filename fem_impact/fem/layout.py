@@ -1,4 +1,4 @@
-"""Numbering of the unknowns: every vector of the march is flat, and this is who stands where."""
+"""Numbering of the unknowns in the flat vectors of the time loop, and the mass points of the rod's slices."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ from meshes import HexMesh, RodMesh
 
 @dataclass(frozen=True, slots=True)
 class DofLayout:
-    """Places of all degrees of freedom in one flat vector.
+    """Indices of all degrees of freedom in one flat vector.
 
     Order: rod slices as (component, section node, layer) so that a layer's neighbours are contiguous,
     free nose nodes, free barrier nodes, hanging nodes, one dummy element that fills up blocks.
 
     Attributes
     ----------
-    rod : (n, 3) int64, places of every rod mesh node
-    barrier : (n, 3) int64, places of every barrier mesh node (no rows on a rigid barrier)
-    body_shape : rows (3 * section nodes) and layers of the slices
+    rod : (n, 3) int64, indices of the unknowns of all rod nodes
+    barrier : (n, 3) int64, those of all barrier nodes (no rows for a rigid barrier)
+    body_shape : number of rows (3 * section nodes) and of layers of the slices
     rod_size, free_size, size : ends of the rod's free part, of all free parts, of the vector
-    dummy : (8, 3) int64
+    dummy : (8, 3) int64, indices of the dummy element's unknowns
     """
 
     rod: Ints
@@ -50,20 +50,16 @@ class DofLayout:
 
 
 def _triples(start: int, count: int) -> Ints:
+    """Return the indices (count, 3) of ``count`` nodes numbered one after the other from ``start`` on."""
     return start + np.arange(3 * count, dtype=np.int64).reshape(count, 3)
-
-
-def _body_places(n_section: int, n_layers: int) -> Ints:
-    """Return (n_section, n_layers, 3) places of the slice nodes."""
-    grid = np.arange(3 * n_section * n_layers, dtype=np.int64)
-    return grid.reshape(3, n_section, n_layers).transpose(1, 2, 0)
 
 
 def number(rod: RodMesh, barrier: HexMesh | None) -> DofLayout:
     """Return the numbering of a rod and, if meshed, its barrier."""
     n_section, n_layers = rod.body_nodes.shape
     places = np.full((len(rod.mesh.points), 3), -1, dtype=np.int64)
-    places[rod.body_nodes] = _body_places(n_section, n_layers)
+    grid = np.arange(3 * n_section * n_layers, dtype=np.int64).reshape(3, n_section, n_layers)
+    places[rod.body_nodes] = grid.transpose(1, 2, 0)
     rest = (places[:, 0] < 0) & ~rod.mesh.is_hanging
     places[rest] = _triples(3 * n_section * n_layers, int(rest.sum()))
     rod_size = int(places.max()) + 1
@@ -79,20 +75,23 @@ def number(rod: RodMesh, barrier: HexMesh | None) -> DofLayout:
     return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8))
 
 
-# linear over the half section: motions that mirror in the plane b = 0, as the solver's do, and the others
+# section coordinate, x (0) or y (1), in which motions along t, b, n are linear: motions symmetric about the
+# plane b = 0, as the solver's are, and antisymmetric ones
 MIRRORED, TWISTING = (0, 1, 0), (1, 0, 1)
 
 
 @dataclass(frozen=True, slots=True)
 class MassPoints:
-    """Mass points of all layers of slices but the first, whose nodes belong to the nose or may touch.
+    """Mass points of the slices, in all layers but the first, whose nodes belong to the nose or may touch.
+
+    Each mass lies closer to the axis than its node, so that a section has the polar moment of a circle.
 
     Attributes
     ----------
     lever, weight : (3 n,) over (component, section node): section coordinate l / sqrt(J) and m l / sqrt(J)
         of t, b, n, where J = sum(m l^2), so that the linear part of w is lever (weight . w)
-    inward : (3,) c, place of a mass over place of its node, 1 where there are no slices
-    room : (layers,) for the sums over a section
+    inward : (3,) section coordinate of a mass over that of its node, 1 where there are no slices
+    room : (layers,) work space for sums over a section
     """
 
     lever: Array
@@ -123,24 +122,24 @@ class MassPoints:
         return cls(lever, weight, np.sqrt(round_moment / moment), np.zeros(rod.body_nodes.shape[1]))
 
     def draw_in(self, rows: Array) -> None:
-        """Turn places of nodes, (3 n, layers), into places of masses."""
+        """Convert, in place, positions of nodes (3 n, layers) into positions of mass points."""
         add_linear(self.lever, self.weight, self.inward - 1, self.room, rows)
 
     def spread(self, rows: Array) -> None:
-        """Turn places, displacements or velocities of masses, (3 n, layers), into those of nodes."""
+        """Convert, in place, positions or velocities of mass points (3 n, layers) to the nodes'."""
         add_linear(self.lever, self.weight, 1 / self.inward - 1, self.room, rows)
 
     def gather(self, rows: Array) -> None:
-        """Turn forces on nodes, (3 n, layers), into forces on masses: the transpose of `spread`."""
+        """Convert, in place, forces on nodes (3 n, layers) to mass points: `spread` transposed."""
         add_linear(self.weight, self.lever, 1 / self.inward - 1, self.room, rows)
 
     def section(self) -> sp.csr_matrix:
-        """Return P (3 n, 3 n) of one layer."""
+        """Return the matrix P (3 n, 3 n) of `spread` for one layer."""
         blocks = zip(self.lever.reshape(3, -1), self.weight.reshape(3, -1), 1 / self.inward - 1, strict=True)
         return sp.csr_matrix(sp.block_diag([np.eye(len(l)) + g * np.outer(l, w) for l, w, g in blocks]))
 
     def matrix(self, layers: int, size: int) -> sp.csr_matrix:
-        """Return P (size, size) over a flat vector that begins with the slices' rows."""
+        """Return the matrix P (size, size) of `spread` over a flat vector; the slices' rows come first."""
         if not len(self.lever):
             return sp.identity(size, format="csr")
         inside = sp.diags(np.arange(layers) > 0, dtype=np.float64)
@@ -149,7 +148,7 @@ class MassPoints:
         return sp.csr_matrix(sp.block_diag([slices, sp.csr_matrix((rest, rest))]) + sp.identity(size))
 
     def reduced(self, parts: tuple[sp.csr_matrix, ...], layers: int) -> MassStiffness:
-        """Return P^T K P, N/m, over the masses; the sum of ``parts`` (size, size) is K over the nodes."""
+        """Return P^T K P, N/m, over the mass points; the sum of ``parts`` (size, size) is K."""
         return MassStiffness(parts, self.matrix(layers, parts[0].shape[0]))
 
 

@@ -1,8 +1,8 @@
 """One section operator for a body of identical slices, applied as a banded stencil along the rod.
 
 A slice couples its lower and upper section nodes through A = [[A11, A12], [A21, A22]]. Every interior
-layer therefore sees A21 below, A11 + A22 on itself and A12 above, whatever its number: three values an
-entry instead of three values an entry and layer.
+layer therefore has A21 to the layer below, A11 + A22 on itself and A12 to the layer above. These three blocks
+are the same for all layers and stored once.
 """
 
 from __future__ import annotations
@@ -21,7 +21,8 @@ from meshes import RodMesh
 class SliceOperator:
     """Stiffness of the slices, N/m, in compressed rows over (component, section node).
 
-    ``own`` is ``lower`` and ``upper`` together, what an inner layer sees of itself.
+    ``below``, ``own`` and ``above`` (entries,) couple an inner layer to the layer below, to itself and to the
+    layer above. The end layers have ``lower`` (first) or ``upper`` (last) instead of their sum ``own``.
     """
 
     start: Ints
@@ -33,7 +34,7 @@ class SliceOperator:
     own: Array
 
     def apply(self, d: Array, y: Array) -> None:
-        """Set ``y`` to the product with ``d``, both (rows, layers)."""
+        """Set ``y``, N, to the product with ``d``, m, both (rows, layers)."""
         ends = self.lower, self.upper
         apply_slices(self.start, self.columns, self.below, self.own, self.above, ends, d, y)
 
@@ -70,23 +71,25 @@ class SliceOperator:
 
 
 def _in_threes(rows: Ints, columns: Ints, size: int) -> tuple[Ints, Ints, Ints]:
-    """Return starts, rows and columns of a pattern whose rows are filled up to multiples of three places.
+    """Return starts, rows and columns of the pattern with each row's length padded to a multiple of three.
 
-    The places that fill up are columns which the row lacks: their values are zero.
+    The added entries are at columns that the row does not have; their values are zero.
     """
     full = [columns[rows == i] for i in range(size)]
-    spare = [np.setdiff1d(np.arange(size), own)[: -len(own) % 3] for own in full]
-    full = [np.sort(np.concatenate(both)) for both in zip(full, spare, strict=True)]
-    counts = [len(own) for own in full]
+    padding = [np.setdiff1d(np.arange(size), row)[: -len(row) % 3] for row in full]
+    full = [np.sort(np.concatenate(pair)) for pair in zip(full, padding, strict=True)]
+    counts = [len(row) for row in full]
     start = np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     return start, np.repeat(np.arange(size), counts), np.concatenate(full).astype(np.int64)
 
 
 def _places(nodes: Ints, n: int) -> Ints:
+    """Return the component-major unknowns (m, 12) of quads ``nodes`` (m, 4) of a section with ``n`` nodes."""
     return np.concatenate([nodes + component * n for component in range(3)], axis=1)
 
 
 def _gather(K: Array, rows: Ints, cols: Ints, row_place: Ints, col_place: Ints, size: int) -> sp.csr_matrix:
+    """Return the sum (size, size) of the element blocks K[:, rows, cols] at the given places."""
     block = K[:, rows][:, :, cols]
     i = np.repeat(row_place, len(cols), axis=1).ravel()
     j = np.tile(col_place, (1, len(rows))).ravel()
@@ -108,7 +111,7 @@ def _add_inner(out, p, own, above, below, a, b, c):  # type: ignore[no-untyped-d
 
 @kernel
 def apply_slices(start, columns, below, own, above, ends, d, y):  # type: ignore[no-untyped-def]
-    """Set y (rows, layers) to the slice operator times d; the end layers belong to one slice only."""
+    """Set y (rows, layers), N, to the slice operator times d, m; the end layers belong to one slice only."""
     last = d.shape[1] - 1
     lower, upper = ends
     for i in range(len(start) - 1):

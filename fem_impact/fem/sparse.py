@@ -1,4 +1,4 @@
-"""Sparse operators over free unknowns: assembly through ties, and the compiled product."""
+"""Sparse operators over the free unknowns: assembly with hanging nodes, and compiled products."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Counts = NDArray[np.uint32]
 
 
 CHUNK = 500  # elements assembled at once: their entries take a few MB
-# of the largest number: what numbers that come by sums in different orders may differ by, and places of nodes
+# differences, over the largest number, below which stiffness blocks and node positions count as equal
 ROUNDING, PLACES = 1e-13, 1e-12
 
 
@@ -30,13 +30,14 @@ def tie_operator(tie: sp.csr_matrix, places: Ints, size: int) -> sp.csr_matrix:
 
 
 def distinct(rows: Array, rounding: float) -> tuple[Ints, Ints]:
-    """Return the number (m,) of each row (m, k) among the distinct ones as they come, and where these come.
+    """Return the number (m,) of each row (m, k) among the distinct rows, and the first index of each.
 
-    Rows are alike that differ by less than ``rounding`` times the largest number.
+    Distinct rows are numbered in their order. Rows are equal that differ by less than ``rounding`` times the
+    largest number.
     """
     unit = rounding * float(np.abs(rows).max(initial=1e-300))
     rounded = np.ascontiguousarray(np.round(rows / unit)) + 0.0
-    # rows as single items of bytes: far faster to sort
+    # each row as one item of bytes, which sorts far faster
     items = rounded.view(np.dtype((np.void, rounded.itemsize * rounded.shape[1]))).ravel()
     _, first, number = np.unique(items, return_index=True, return_inverse=True)
     order = np.argsort(first)
@@ -48,7 +49,7 @@ def element_batches(
 ) -> Iterator[tuple[Ints, Array]]:
     """Yield cells (k, 8) and their matrices (k, 24, 24), N/m, as in `element_stiffness`, for all cells.
 
-    Cells that are translates of each other have one matrix, which is made once.
+    The matrix of cells that are translates of each other is computed once.
     """
     corners = points[cells]
     shape, first = distinct((corners - corners[:, :1]).reshape(-1, 24), PLACES)
@@ -64,7 +65,7 @@ def assemble(
 ) -> sp.csr_matrix:
     """Return the assembled T^T K T (size, size), N/m, of elements as in `element_stiffness`.
 
-    Their matrices, by far larger than what they add up to, never exist all at once.
+    The element matrices together are far larger than their sum and are never stored all at once.
     """
     total = sp.csr_matrix((T.shape[1], T.shape[1]))
     for some, K in element_batches(points, cells, lame, kind):
@@ -87,12 +88,12 @@ class NodeProduct:
 
     Attributes
     ----------
-    places : (k, 3), unknowns of the nodes; unsigned, so that no reading tests for a negative place
+    places : (k, 3), unknowns of the nodes; unsigned, so that numba does not test for negative indices
     start, columns : (k + 1,), (entries,) compressed rows over nodes, each from its diagonal on
     kinds : (entries,) number of each entry's block; blocks : (kinds + 1, 9), N/m, row-major, the last of
-        zeros. Equal cells have equal blocks, so that a regular mesh reads few numbers from memory
-    origin : (k, 3) values of the nodes, m, that make no force
-    moved, product : (k, 4) displacements, m, and forces, N, of the nodes, and one number without meaning
+        zeros. Equal cells have equal blocks, so a regular mesh reads few numbers from memory
+    origin : (k, 3) positions of the nodes without force, m
+    moved, product : (k, 4) displacements, m, and forces, N, of the nodes; the fourth column is padding
     """
 
     places: Counts
@@ -106,9 +107,9 @@ class NodeProduct:
 
     @classmethod
     def of(cls, matrix: sp.csr_matrix, places: Ints, origin: Array | None = None) -> NodeProduct:
-        """Keep the nodes, out of the free ones in ``places`` (n, 3), whose rows hold anything.
+        """Build from a stiffness (size, size), N/m, and the unknowns (n, 3) of the free nodes.
 
-        ``origin`` (size,) makes no force (default: zeros).
+        Nodes whose rows are empty are left out. ``origin`` (size,), m: positions without force (default 0).
         """
         filled = np.diff(matrix.indptr) > 0
         used = places[filled[places].any(axis=1)]
@@ -127,7 +128,7 @@ class NodeProduct:
         return cls(used.astype(np.uint32), zero, *numbers, blocks, *room)
 
     def multiply(self, x: Array) -> None:
-        """Set ``product`` to the product with ``x`` less the origin."""
+        """Set ``product``, N, to the stiffness times (``x`` - origin), m."""
         rows = self.start, self.columns, self.kinds, self.blocks
         multiply_nodes(self.places, self.origin, x, *rows, self.moved, self.product)
 
@@ -143,9 +144,9 @@ class NodeProduct:
 
 @inlined
 def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
-    """Add row i, whose entries are given, and beyond its diagonal the transpose.
+    """Add the product with row i, given by its entries, and with the transpose of its off-diagonal blocks.
 
-    The rows k, l, m of a block and a node's values are handled as fours, whose fourth is of no account.
+    The rows k, l, m of a block and a node's values are loaded as four numbers; the fourth is padding.
     """
     own, p = load(d, 4 * i), 9 * kinds[0]
     t, b, n = spread(d[i, 0]), spread(d[i, 1]), spread(d[i, 2])
@@ -167,7 +168,7 @@ def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
 
 @kernel
 def multiply_nodes(places, origin, x, start, columns, kinds, blocks, d, f):  # type: ignore[no-untyped-def]
-    """Set d to the values of the nodes less their origin, f to a symmetric block-sparse product with d."""
+    """Set d, m, to the node values less their origin and f, N, to the block-sparse product with d."""
     for i in range(len(places)):
         for c in range(3):
             d[i, c] = x[places[i, c]] - origin[i, c]
@@ -179,7 +180,7 @@ def multiply_nodes(places, origin, x, start, columns, kinds, blocks, d, f):  # t
 
 @kernel
 def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
-    """Add a share of the nodes' values."""
+    """Add ``share`` times the nodes' values ``f`` (k, 4) to the flat vector ``y``."""
     for i in range(len(places)):
         for c in range(3):
             y[places[i, c]] += share * f[i, c]
@@ -187,7 +188,7 @@ def add_nodes(places, share, f, y):  # type: ignore[no-untyped-def]
 
 @dataclass(frozen=True, slots=True)
 class Hanging:
-    """Values of hanging nodes from their masters, and their forces back to them.
+    """Constraints of hanging nodes: their values from their masters, their forces to their masters.
 
     Both ways use the same weights, so the tie does no work: (T v) . f = v . (T^T f).
 
@@ -204,12 +205,12 @@ class Hanging:
 
     @classmethod
     def of(cls, parts: list[tuple[sp.csr_matrix, Ints]]) -> Hanging:
-        """Collect the ties of meshes given as (tie, places of nodes)."""
+        """Build from the meshes' (tie, unknowns (n, 3) of all nodes)."""
         slaves, counts, masters, weights = [], [], [], []
         for tie, places in parts:
-            hung = np.flatnonzero(tie.diagonal() == 0)
-            rows = tie[hung]
-            slaves.append(places[hung].astype(np.uint32))
+            hanging = np.flatnonzero(tie.diagonal() == 0)
+            rows = tie[hanging]
+            slaves.append(places[hanging].astype(np.uint32))
             counts.append(np.diff(rows.indptr))
             masters.append(places[rows.indices].astype(np.uint32))
             weights.append(rows.data)
@@ -221,13 +222,13 @@ class Hanging:
         expand_ties(self.slaves, self.start, self.masters, self.weights, x)
 
     def collect(self, force: Array) -> None:
-        """Hand the hanging forces to the masters and clear them."""
+        """Add the forces of hanging nodes to their masters' and set them to zero."""
         gather_ties(self.slaves, self.start, self.masters, self.weights, force)
 
 
 @kernel
 def expand_ties(slaves, start, masters, weights, x):  # type: ignore[no-untyped-def]
-    """Set the hanging values to those between their masters."""
+    """Set the values of hanging nodes to the weighted sums of their masters'."""
     for i in range(len(slaves)):
         t, b, n = 0.0, 0.0, 0.0
         for p in range(start[i], start[i + 1]):
@@ -239,7 +240,7 @@ def expand_ties(slaves, start, masters, weights, x):  # type: ignore[no-untyped-
 
 @kernel
 def gather_ties(slaves, start, masters, weights, force):  # type: ignore[no-untyped-def]
-    """Add the hanging forces to those of their masters, and clear them."""
+    """Add the forces of hanging nodes to their masters' and set them to zero."""
     for i in range(len(slaves)):
         t, b, n = force[slaves[i, 0]], force[slaves[i, 1]], force[slaves[i, 2]]
         for p in range(start[i], start[i + 1]):

@@ -1,4 +1,4 @@
-"""The largest stable step of an assembled body, and how it shrinks with a deforming element."""
+"""The stable step of an assembled body, and a measure of how a deforming element lowers it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from fem_impact.fem.hexmodes import CORNERS, cofactors, reference_gradients
 from fem_impact.fem.kernels import kernel
 
 SAFETY = 0.9  # of the stable step
-ACCURACY = 1e-3  # of the largest eigenvalue; it lies far inside the safety factor
+ACCURACY = 1e-3  # relative, of the largest eigenvalue: much smaller than the safety margin
 REFERENCE = np.ascontiguousarray(reference_gradients(CORNERS))
 GRAM = np.einsum("qai,qaj->qij", REFERENCE, REFERENCE)
 
@@ -28,8 +28,8 @@ def stable_step(K: sp.csr_matrix | MassStiffness, inverse_mass: Array, share: fl
 
     Notes
     -----
-    The largest frequency is that of the assembly (Lanczos). The bound of the single elements is up to
-    1.5 times higher here, because its modes do not fit together in neighbouring elements.
+    The largest frequency is that of the assembly (Lanczos). The largest of the single elements is an upper
+    bound, here up to 1.5 times higher, because the modes of neighbouring elements do not fit together.
     """
     root = np.sqrt(inverse_mass)
     scaled = LinearOperator(K.shape, matvec=lambda u: root * (K @ (root * u)), dtype=np.float64)
@@ -39,7 +39,9 @@ def stable_step(K: sp.csr_matrix | MassStiffness, inverse_mass: Array, share: fl
 
 
 def gradient_squares(x: Array, places: NDArray[np.int64]) -> Array:
-    """Return max over Gauss points of sum |grad N|^2 (m,), 1/m2, of elements (m, 8, 3); nan if folded.
+    """Return the largest sum |grad N|^2 (m,), 1/m2, over an element's Gauss points; nan if it is folded.
+
+    ``x`` (size,), m, are the positions, ``places`` (m, 8, 3) the unknowns of the elements' nodes.
 
     An element's largest frequency grows like the square root of this number.
     """

@@ -1,6 +1,6 @@
-"""From a scene and its filled slots to a model: meshes, operators, masses, items, step.
+"""Build the model of a plan: meshes, operators, masses, items, stable steps.
 
-What only some effects need is imported where it is built.
+Modules that only some effects need are imported where they are used.
 """
 
 from __future__ import annotations
@@ -42,13 +42,13 @@ if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
 
 
-START_GAP = 1e-10  # m: the first step touches, so that neither gravity nor spin has time before
-PLAY, BAND = 0.05, 0.02  # of the contact, over the tip size, see SurfaceContact
+START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
+PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`
 
 
 @dataclass(frozen=True, slots=True)
 class ElasticBlockParts:
-    """A meshed barrier and the half-space around it.
+    """Operators of a meshed barrier and of the half-space around it.
 
     Attributes
     ----------
@@ -83,21 +83,21 @@ def elastic_block(
 
 
 def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
-    """Return the radiating boundary of a block."""
+    """Return the dashpots of a block's boundary, which take the radiated energy."""
     from fem_impact.fem.boundary import radiating_share
 
     place, m = layout.barrier_slice, body.material
     nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
     loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
-    held, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
-    damping = block.pots * radiating_share(K, block.pots, held, loaded, (m.E, m.nu, m.rho))
+    fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
+    damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))
     places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
     return Dashpots(places, damping[places - place.start], inverse_mass[places])
 
 
 def yielding_zone(body: MeshedBody, law: Hardening, layout: DofLayout) -> YieldingZone:
-    """Return the cells that may yield as one item."""
+    """Return the item of a body's cells that may yield."""
     from fem_impact.solid.yielding import YieldingZone
 
     cells, m = body.mesh.cells[body.yields], body.material
@@ -113,8 +113,8 @@ def facing_skin(body: MeshedBody) -> Ints:
     facing = steep < -STEEP if body.name == "rod" else steep > STEEP
     finest = np.isin(quads, body.mesh.cells[body.mesh.finest]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
-    found = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
-    return np.asarray(found[:, ::-1] if body.name == "rod" else found)
+    chosen = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
+    return np.asarray(chosen[:, ::-1] if body.name == "rod" else chosen)
 
 
 def surface_contact(
@@ -128,16 +128,16 @@ def surface_contact(
 
 
 class Builder:
-    """The parts of a plan's model; each is made when it is first asked for, from others, and kept."""
+    """The parts of a plan's model; each is made at its first use and cached."""
 
     def __init__(self, plan: Plan, gap: float) -> None:
         self.scene, self.spec, self.meshed = plan.scene, plan.slots, MeshedBodies(plan)
         self.meshed.move_rod(*self.way_to(gap))
 
     def way_to(self, gap: float) -> tuple[float, float]:
-        """Return how far along t and n, m, the rod flies, not turning, until the skins are a ``gap`` apart.
+        """Return the rod's shift along t and n, m, without rotation, until the skins are a ``gap``, m, apart.
 
-        One that comes down so flat that it would slide by more than a cell meanwhile slides by one.
+        The shift along t is limited to one cell, for rods that come down almost tangentially.
         """
         height, h = self.contact.clearance(self.meshed.x) - gap, self.meshed.geometry.tip_size
         slid = sliding(self.scene) * height / approach(self.scene)
@@ -145,7 +145,7 @@ class Builder:
 
     @cached_property
     def v(self) -> Array:
-        """Return the velocities (size,) of the masses at time 0, m/s; omega turns n towards t."""
+        """Return the velocities (size,) of the mass points at time 0, m/s; omega is positive from n to t."""
         v, impact = np.zeros(self.meshed.layout.size), self.scene.impact
         arm = self.meshed.x[self.meshed.rod.places] - mass_centre(
             self.meshed.mass, self.meshed.x, self.meshed.rod.places
@@ -166,7 +166,7 @@ class Builder:
 
     @cached_property
     def elastic_rod(self) -> tuple[ElasticRod | ElasticNose, MassStiffness]:
-        """Return the rod's linear part, and its elastic stiffness over its masses."""
+        """Return the rod's linear part, and its elastic stiffness over its mass points, N/m."""
         n, mesh = self.meshed.layout.rod_size, self.meshed.geometry.rod
         nose, whole = self.meshed.rod_stiffness
         product, d, y = NodeProduct.of(nose, self.meshed.free_nodes), np.zeros(n), np.zeros(n)
@@ -179,7 +179,7 @@ class Builder:
 
     @cached_property
     def block(self) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
-        """Return the items of a meshed barrier and its stable step, s, by its name; nothing without one."""
+        """Return the items of a meshed barrier and its stable step, s, under its name; empty without one."""
         if self.meshed.barrier is None:
             return [], [], {}
         effect = "barrier-elastoplastic" if self.spec.barrier_law else "barrier-elastic"
@@ -194,7 +194,7 @@ class Builder:
     @cached_property
     def steps(self) -> dict[str, float]:
         """Return the stable step of each body with its safety factor, s."""
-        # the block first: what its assembly takes for a while, the rod's, which stays, takes up again
+        # the block first: the memory that its assembly frees is used again for the rod's stiffness
         _, _, steps = self.block
         _, stiffness = self.elastic_rod
         inverse = self.meshed.inverse_mass[: self.meshed.layout.rod_size]
@@ -209,7 +209,7 @@ class Builder:
 
     @cached_property
     def contact(self) -> PlaneContact | SurfaceContact:
-        """Return the contact; a rigid section behind the nose takes none."""
+        """Return the contact; the rigid section behind the nose of a rigid rod has no part in it."""
         g, f = self.meshed.geometry, self.spec.friction or 0.0
         if self.meshed.barrier:
             return surface_contact(
@@ -221,7 +221,7 @@ class Builder:
         return PlaneContact(self.meshed.rod.places[skin], self.meshed.inverse_mass, f)
 
     def weight(self, gravity: float) -> Weight:
-        """Return gravity on the rod, m/s2."""
+        """Return the rod's weight under the acceleration ``gravity``, m/s2."""
         n, alpha = self.meshed.layout.rod_size, self.scene.impact.angle
         down = np.zeros((len(self.meshed.rod.places), 3))
         down[:, 0], down[:, 2] = -np.sin(alpha), -np.cos(alpha)
@@ -230,7 +230,7 @@ class Builder:
         return Weight(gravity * self.meshed.mass[:n] * direction[:n], self.meshed.x[:n].copy())
 
     def damping(self, loss: float) -> ModalDamping:
-        """Return the damping of the rod's modes with a loss factor."""
+        """Return the damping of the rod's modes with the loss factor ``loss``."""
         from fem_impact.solid.elastic import ModalDamping
 
         _, K = self.elastic_rod
@@ -247,13 +247,13 @@ class Builder:
         return RigidRest(places, self.meshed.mass[places[:, 0]])
 
     def forces(self) -> list[Force]:
-        """Return what pushes, in the order in which forces are added."""
+        """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
         return [linear, *weight, *block, *self.zones]
 
     def impulses(self) -> list[Impulse]:
-        """Return what changes velocities, in the order of a step: the contact has the last word."""
+        """Return the items that change velocities, in their order; the contact is the last."""
         (_, pots, _), loss = self.block, self.spec.loss_factor
         rest = [] if self.spec.vibrating else [self.rigid_rest()]
         damping = [] if loss is None else [self.damping(loss)]

@@ -1,7 +1,7 @@
-"""What moves in a run: every holder names it, and one place takes it out and puts it back.
+"""Checkpoints: the changing state of a run, written to a file and restored from it.
 
 An item or observer declares ``moving``, the names of its attributes that a run changes and that later steps
-read. What each step sets anew before it is read (work space) is left out.
+read. Work space, which each step sets before it reads it, is left out.
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ from fem_impact.solid.state import State
 
 
 class Moving(Protocol):
-    """Anything whose moving part can be stored; () when nothing moves.
+    """An object with state to be stored; ``moving`` is () where there is none.
 
-    A name may be dotted (``book.friction``) and stands for an array, a number, or a property that takes what
-    it gave.
+    A name may be dotted (``book.friction``). It is that of an array, a number, or a property whose setter
+    takes what its getter returns.
     """
 
     moving: ClassVar[tuple[str, ...]]
 
 
 def take_out(holders: Mapping[str, Moving]) -> dict[str, np.ndarray]:
-    """Return copies of everything that moves, by holder and name."""
+    """Return copies of all attributes named in ``moving``, by holder and name."""
     return {
         f"{key}/{name}": np.array(attrgetter(name)(holder))
         for key, holder in holders.items()
@@ -44,7 +44,7 @@ def take_out(holders: Mapping[str, Moving]) -> dict[str, np.ndarray]:
 
 
 def put_back(holders: Mapping[str, Moving], stored: Mapping[str, np.ndarray]) -> None:
-    """Set everything that moves.
+    """Set all attributes named in ``moving`` from ``stored``.
 
     Raises
     ------
@@ -61,6 +61,7 @@ def put_back(holders: Mapping[str, Moving], stored: Mapping[str, np.ndarray]) ->
 
 
 def _set(owner: Any, name: str, value: np.ndarray) -> None:
+    """Set a property, number or array (in place); raise ValueError for another shape or type."""
     now = getattr(owner, name)
     if isinstance(getattr(type(owner), name, None), property):
         setattr(owner, name, value)
@@ -75,9 +76,9 @@ def _set(owner: Any, name: str, value: np.ndarray) -> None:
 _MARK = b"fem-ckp1"
 _START = len(_MARK) + hashlib.sha256().digest_size
 _STAMP = "stamp"
-_ROOM = 2**28  # bytes a checkpoint may be larger than that of a new run: tables grow
+_ROOM = 2**28  # bytes by which a checkpoint may exceed that of a new run: tables grow
 
-# what an archive of arrays can raise when its bytes are not one
+# errors of reading an archive of arrays from other or damaged bytes
 _BROKEN = (
     ValueError,
     TypeError,
@@ -93,15 +94,15 @@ _BROKEN = (
 
 @dataclass(slots=True)
 class Checkpoint:
-    """Writes a checkpoint when so many seconds have passed; stands last among the observers.
+    """Observer that writes a checkpoint every ``interval`` seconds; it is the last observer.
 
     Attributes
     ----------
-    path : the file, replaced as a whole
-    stamp : scene and sources that a run must have to go on from it
-    holders : everything that moves, by name
+    path : the file, always replaced as a whole
+    stamp : scene and sources, which a run that resumes must have in common
+    holders : all objects with state, by name
     interval : s of wall time
-    over : whether an observer before this one has ended the run
+    over : returns whether an earlier observer has ended the run
     """
 
     path: Path
@@ -123,14 +124,14 @@ class Checkpoint:
         return False
 
     def save(self) -> None:
-        """Write now. Raises OutputPathError."""
+        """Write the checkpoint now. Raises OutputPathError."""
         archive = BytesIO()
         np.savez(archive, **{_STAMP: np.array(self.stamp)}, **take_out(self.holders))  # type: ignore[arg-type]
         data = archive.getvalue()
         write_bytes(self.path, _MARK + hashlib.sha256(data).digest() + data)
 
     def restore(self) -> None:
-        """Put the file's contents back.
+        """Restore the state from the file.
 
         Raises
         ------
@@ -147,6 +148,7 @@ class Checkpoint:
 
 
 def _read(path: Path, largest: int) -> dict[str, np.ndarray]:
+    """Return the arrays of a checkpoint of at most ``largest`` bytes, after a check of its digest."""
     with path.open("rb") as file:
         data = file.read(largest + 1)
     body = data[_START:]
@@ -156,8 +158,9 @@ def _read(path: Path, largest: int) -> dict[str, np.ndarray]:
         return {name: archive[name] for name in archive.files}
 
 
-def _check_stamp(found: str, wanted: str) -> None:
-    other = [line.partition(" ")[0] for line in wanted.splitlines() if line not in found.splitlines()]
+def _check_stamp(stored: str, wanted: str) -> None:
+    """Raise ValueError, with the names of the lines that differ, for a stamp of another scene or program."""
+    other = [line.partition(" ")[0] for line in wanted.splitlines() if line not in stored.splitlines()]
     if other:
         raise ValueError(
             f"was written with another {' and other '.join(other)}; the run cannot go on from it."

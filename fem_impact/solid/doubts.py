@@ -1,7 +1,8 @@
-"""Plastic work in the uppermost layer of the barrier, which slip at the contact cannot be told from.
+"""Warnings of a run (skin outside the contact, yielding at a zone's edge), plastic work at the surface.
 
-Under a sticking tip the plate shears in a layer for whose thickness its material has no length: finer meshes
-move work from friction into plastic work right below.
+Plastic work in the uppermost layer of the barrier is hard to separate from friction: under a sticking tip the
+plate shears in a layer whose thickness follows from the mesh, as the material law has no length scale. Finer
+meshes move work from friction into plastic work right below the surface.
 """
 
 from __future__ import annotations
@@ -22,12 +23,12 @@ if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
 
 
-DEPTH = 0.1e-3  # m
+DEPTH = 0.1e-3  # m, thickness of the uppermost layer
 SHAPES = np.prod(1 + SIGNS[None] * CORNERS[:, None], axis=2) / 8  # (points, nodes)
 
 
 def skin_share(model: Model) -> float:
-    """Return the share of the barrier's plastic work that is spent above `DEPTH`; 0 where it cannot yield."""
+    """Return the share of the barrier's plastic work done above `DEPTH`; 0 where it cannot yield."""
     for zone in model.zones:
         if zone.body == "barrier":
             return _share_above(zone, -model.start[0][zone.places()][:, :, 2])
@@ -50,15 +51,15 @@ def _share_above(zone: YieldingZone, nodes: Array) -> float:
     return float(parts @ work / work.sum()) if work.any() else 0.0
 
 
-DEEP = 0.25  # of the tip size
+DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
 class SkinWatch:
-    """Watches the rod's skin outside the contact patch: it must never come down to a meshed barrier.
+    """Observer of the rod's skin outside the contact patch, which must not reach a meshed barrier.
 
-    A little, as the barrier's surface sinks around the contact, is doubted; more than `DEEP` of the tip size
-    stops the run, for nothing holds the rod there.
+    Skin a little below the barrier's plane, which sinks around the contact, gives a warning. More than `DEEP`
+    of the tip size stops the run: no contact force acts there.
     """
 
     every = 100
@@ -75,7 +76,7 @@ class SkinWatch:
         self.reason = ""
 
     def observe(self, state: State) -> bool:
-        """Keep the lowest height so far; stop when it is deep."""
+        """Record the lowest height so far; stop the run when it is too deep."""
         heights = state.x[self.rows]
         self.lowest = min(self.lowest, float(np.min(heights, initial=np.inf)))
         if self.lowest >= self.deepest:
@@ -88,7 +89,7 @@ class SkinWatch:
         return True
 
     def doubt(self) -> str:
-        """Return a sentence when skin went below the barrier's surface."""
+        """Return a warning if skin went below the barrier's surface, else an empty string."""
         if self.lowest >= 0:
             return ""
         return (
@@ -98,14 +99,14 @@ class SkinWatch:
 
 
 def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:
-    """Return sentences on contact and yielding that left the fine zones."""
-    found = [watch.doubt(), *(_at_border(model, zone) for zone in model.zones)]
+    """Return warnings on contact and yielding that left the fine zones."""
+    warnings = [watch.doubt(), *(_at_border(model, zone) for zone in model.zones)]
     if model.book.outside:
-        found.append(
+        warnings.append(
             f"{model.book.outside} rod nodes left the fine zone of the barrier while below its surface: "
             "friction and indentation there are missing."
         )
-    return tuple(sentence for sentence in found if sentence)
+    return tuple(warning for warning in warnings if warning)
 
 
 def border_strain(model: Model, zone: YieldingZone) -> float:
@@ -118,6 +119,7 @@ def border_strain(model: Model, zone: YieldingZone) -> float:
 
 
 def _at_border(model: Model, zone: YieldingZone) -> str:
+    """Return a warning if yielding reached the edge of the fine zone, else an empty string."""
     strain = border_strain(model, zone)
     if strain <= PROOF_STRAIN:
         return ""

@@ -1,4 +1,4 @@
-"""Linear bodies: the rod in its frame, and the barrier block on its springs."""
+"""Linear items: the elastic rod in its frame, the barrier block, dashpots, weight and modal damping."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from fem_impact.solid.state import State
 
 @dataclass(slots=True)
 class ElasticRod:
-    """Slices by stencil, the linear part of the nose by sparse rows, both in one frame."""
+    """The rod's linear part: slices by stencil and elastic nose cells by sparse rows, both in one frame."""
 
     body: ClassVar[str] = "rod"
     effect: ClassVar[str] = "vibration"
@@ -53,7 +53,7 @@ class ElasticRod:
 
 @dataclass(slots=True)
 class ElasticBlock:
-    """The barrier's linear part at ``place`` of the flat vector; ``effect`` is the barrier's."""
+    """The barrier's linear part, at ``place`` of the flat vectors; ``effect`` is the barrier's."""
 
     body: ClassVar[str] = "barrier"
     accounts: ClassVar[tuple[str, ...]] = ("strain_barrier",)
@@ -74,7 +74,10 @@ class ElasticBlock:
 
 @dataclass(slots=True)
 class Dashpots:
-    """Viscous boundary: takes radiated waves out, implicitly, so that it never limits the step."""
+    """Viscous boundary that absorbs radiated waves; implicit in time, so it does not limit the step.
+
+    ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg.
+    """
 
     effect: ClassVar[str] = "radiation"
     accounts: ClassVar[tuple[str, ...]] = ("radiated",)
@@ -104,7 +107,7 @@ class Dashpots:
 class Weight:
     """Gravity on the rod.
 
-    ``weight`` is m g per unknown, N (zero where there is none).
+    ``weight`` (n,), N, is the weight along each unknown, ``reference`` (n,), m, the start position.
     """
 
     body: ClassVar[str] = "rod"
@@ -123,14 +126,14 @@ class Weight:
         return (-float(self.weight @ (state.x[: len(self.weight)] - self.reference)),)
 
 
-PHASE = 0.3  # of the highest mode between two applications, rad
+PHASE = 0.3  # rad, largest phase of the highest mode between two applications
 
 
 @dataclass(slots=True)
 class ModalDamping:
-    """Takes from each mode's velocity what damping with the loss factor takes: q' falls by exp(-eta omega t).
+    """Damping with a loss factor eta: each modal velocity q' is multiplied by exp(-eta omega t).
 
-    A mode's energy then decays like exp(-eta omega t). Rigid motion is no mode and keeps its momentum.
+    A mode's energy then decays like exp(-eta omega t). Rigid motion is not damped and keeps its momentum.
 
     Attributes
     ----------
@@ -138,7 +141,7 @@ class ModalDamping:
     frame : of the rod's linear part, for its angle
     places : (k, 3) int64, unknowns of the rod's free nodes
     loss : loss factor eta; every : steps between two applications
-    taken : energy, J, of the half model; last : time of the last application, s
+    taken : damped energy of the half model so far, J; last : time of the last application, s
     """
 
     effect: ClassVar[str] = "material-damping"
@@ -164,13 +167,13 @@ class ModalDamping:
         loss: float,
         step: float,
     ) -> ModalDamping:
-        """Apply often enough for the highest mode, at steps of ``step``, s."""
+        """Build with the interval of applications, in steps of ``step`` s, that the highest mode allows."""
         every = max(1, int(PHASE / modes.omega[-1] / step))
         weighted = np.ascontiguousarray(modes.shape.T * modes.mass)
         return cls(modes, weighted, frame, inverse_mass, places, loss, every)
 
     def resolve(self, state: State) -> None:
-        """Damp and book the work with the mean of old and new velocity."""
+        """Damp and add the work done, from the mean of old and new velocity."""
         n = len(self.modes.mass)
         kicked = self._turned(state.v[:n], -self.frame.angle)
         pushed = self._turned(self.inverse_mass * state.force[:n], -self.frame.angle)
@@ -182,7 +185,7 @@ class ModalDamping:
         state.v[:n] -= self._turned(self.modes.shape @ lost, self.frame.angle)
 
     def energies(self, state: State) -> tuple[float, ...]:
-        """Return the energy taken so far."""
+        """Return the damped energy so far."""
         return (self.taken,)
 
     def _turned(self, v: Array, angle: float) -> Array:

@@ -1,11 +1,11 @@
-"""The frame in which a linear rod is linear: it turns with the rod, or stands still.
+"""The frame in which the elastic rod is linear: turning with the rod, or fixed.
 
 Turning frame: with phi the mass-weighted best-fit angle (n from t) of the positions x to the reference X,
 d = R^T x - X and U = d . K d / 2. The force is the full gradient of U, including that of phi,
 
     f = R (-y + (tau / rho) m (-X_n, X_t)),   y = K d,   tau = sum(d x y),   rho = |sum m X (R^T x)|,
 
-so linear and angular momentum and energy are all conserved, and a free spin costs nothing.
+so linear and angular momentum and energy are all conserved, and a free rotation makes no force.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def mass_centre(mass: Array, x: Array, places: Ints) -> Array:
 
 @dataclass(slots=True)
 class FixedFrame:
-    """Small rotations: displacements are differences of positions; it never turns."""
+    """Frame for small rotations: displacements are differences of positions, the angle is 0."""
 
     reference: Array
     angle: ClassVar[float] = 0.0
@@ -49,13 +49,14 @@ class FixedFrame:
 
 @dataclass(slots=True)
 class TurningFrame:
-    """Large rotations in the t-n plane.
+    """Frame for large rotations in the t-n plane.
 
     Attributes
     ----------
     reference : (size,) float64, m, about the mass centre
     mass : (size,) float64, kg
-    t, b, n : (nodes,) places of the three components
+    t, b, n : (nodes,) unknowns of the three components
+    work : (2,) rho cos(phi) and rho sin(phi) at the last positions, kg m2
     """
 
     reference: Array
@@ -102,7 +103,7 @@ def _localise(x, X, mass, t, b, n, d, work):  # type: ignore[no-untyped-def]
     c, s = along / rho, across / rho
     centre_t /= total
     centre_n /= total
-    # from the mass centre: a common offset would do no work, but cost digits
+    # relative to the mass centre: a common offset does no work but loses digits
     for i in range(len(t)):
         p, q = t[i], n[i]
         d[p] = c * (x[p] - centre_t) + s * (x[q] - centre_n) - X[p]

@@ -1,4 +1,4 @@
-"""Watches the friction power and the true contact patch of a run."""
+"""Observer of the friction power and the loaded contact area of a run."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
 
-WINDOW = 0.5e-6  # s over which powers and patches are means: nodes come and go within steps
+WINDOW = 0.5e-6  # s, of the means of power and patch: single nodes open and close from step to step
 
 
 def tributary_areas(x: Array, places: Ints, quads: Ints) -> Array:
-    """Return the area (k,), m2, of a quarter of each quad (m, 4) around each node with ``places`` (k, 3)."""
+    """Return the areas (k,), m2, of nodes with unknowns (k, 3): a quarter of each adjacent quad (m, 4)."""
     corners = x[places[quads]]
     area = 0.5 * np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     share = np.repeat(0.25 * np.linalg.norm(area, axis=1), 4)
@@ -27,19 +27,21 @@ def tributary_areas(x: Array, places: Ints, quads: Ints) -> Array:
 
 
 def loaded_area(p: Array, area: Array) -> float:
-    """Return (sum p)^2 / sum(p^2 / area), m2: the area of an even pressure, 8/9 of Hertz' ellipse."""
+    """Return (sum p)^2 / sum(p^2 / area), m2: that of a uniform pressure, 8/9 of Hertz' ellipse."""
     squares = float((p * p / area).sum())
     return float(p.sum()) ** 2 / squares if squares > 0 else 0.0
 
 
 @dataclass(slots=True)
 class HeatWatch:
-    """Means over windows of the whole contact: friction power, patch and sliding speed.
+    """Means over time windows, for the whole contact, of friction power, patch and sliding speed.
 
     Attributes
     ----------
-    t : ends of the windows, s, after the first their start
-    power, patch, speed : W, m2, m/s
+    t : start of the first window and ends of all windows, s
+    power, patch, speed : friction power, W, loaded area, m2, and sliding speed, m/s, of each window
+    taken : friction heat of the half model at the end of the last window, J
+    pushed : tangential impulse of the half model in the open window, N s
     """
 
     moving: ClassVar[tuple[str, ...]] = ("table", "taken", "pushed", "surface.window")
@@ -79,7 +81,7 @@ class HeatWatch:
         if span >= WINDOW:
             heat, self.taken = book.friction - self.taken, book.friction
             self.power.append(2 * heat / span)
-            # without friction round-off may be below zero, and a speed is not
+            # without friction the heat is round-off and may be negative
             self.speed.append(max(heat, 0.0) / self.pushed if self.pushed > 0 else 0.0)
             self.patch.append(2 * self.surface.close())
             self.t.append(state.time)
@@ -88,7 +90,7 @@ class HeatWatch:
 
 
 class PlaneSurface:
-    """The patch on a rigid plane: the skin that stands on it, mean of a window's steps."""
+    """The patch on a rigid plane: area of the skin nodes on it, mean over a window's steps."""
 
     def __init__(self, contact: PlaneContact, model: Model) -> None:
         g = model.geometry
@@ -147,7 +149,7 @@ class PairSurface:
         """Return the patch of the window, m2, and begin the next."""
         parts = np.split(np.maximum(self.load, 0.0), [len(self.areas[0])])
         loads = [float(p.sum()) for p in parts]
-        found = [loaded_area(p, a) for p, a in zip(parts, self.areas, strict=True)]
+        patches = [loaded_area(p, a) for p, a in zip(parts, self.areas, strict=True)]
         self.load[:] = 0.0
         total = sum(loads)
-        return sum(w * a for w, a in zip(loads, found, strict=True)) / total if total > 0 else 0.0
+        return sum(w * a for w, a in zip(loads, patches, strict=True)) / total if total > 0 else 0.0

@@ -1,6 +1,6 @@
-"""What the time loop knows: items that push, items that act on velocities, and their accounts.
+"""Interfaces of the model's items: those that add forces, those that change velocities, and their accounts.
 
-The loop holds two lists of these, and observers, and nothing else. An effect that is off has no item.
+The time loop knows two lists of items, and observers. An effect that is off has no item.
 """
 
 from __future__ import annotations
@@ -11,21 +11,21 @@ from fem_impact.solid.state import State
 
 
 class Item(Protocol):
-    """A part of the model that may hold energy or take it away.
+    """A part of the model that may store or dissipate energy.
 
-    ``moving`` names what a checkpoint must keep, see :mod:`~fem_impact.solid.checkpoint`.
+    ``moving`` names the attributes that a checkpoint stores, see :mod:`~fem_impact.solid.checkpoint`.
     """
 
     moving: ClassVar[tuple[str, ...]]
 
     @property
     def effect(self) -> str:
-        """Return the effect whose run time it counts to, or ``nose`` or ``contact``, which are no effects."""
+        """Return the effect that its run time counts to, or ``nose`` or ``contact``, which are no effects."""
         ...
 
     @property
     def accounts(self) -> tuple[str, ...]:
-        """Return the ledger's accounts that it books in; a name that no other item has is a new account."""
+        """Return the names of the ledger's accounts that it adds to; a new name makes a new account."""
         ...
 
     def energies(self, state: State) -> tuple[float, ...]:
@@ -51,9 +51,9 @@ class Impulse(Item, Protocol):
 
     @property
     def every(self) -> int:
-        """Return at every how many steps it acts."""
+        """Return the number of steps between two applications."""
         ...
 
     def resolve(self, state: State) -> None:
-        """Change ``state.v`` and book the work done with the mean of old and new velocity."""
+        """Change ``state.v`` and record the work done, from the mean of old and new velocity."""
         ...

@@ -1,4 +1,4 @@
-"""The energy ledger: one module owns the accounts, half-to-whole and the residual.
+"""The energy ledger: accounts, their doubling from the half to the whole model, and the residual.
 
 At a sample, positions stand at time n and velocities half a step before, so the kinetic energy that
 belongs to the positions is v . M v / 2 + dt v . f / 2: for a linear model leapfrog keeps its sum with
@@ -16,7 +16,7 @@ from fem_impact.arrays import Array
 from fem_impact.solid.items import Item
 from fem_impact.solid.state import State
 
-# the accounts of every ledger, 0 where the effect is off; own items may add others
+# the accounts of all ledgers, 0 where the effect is off; items may add others
 ACCOUNTS = (
     "kinetic_rod",
     "strain_rod",
@@ -30,7 +30,7 @@ ACCOUNTS = (
     "damping",
     "gravity",
 )
-HALVES = 2.0  # the mesh is half of a symmetric whole
+HALVES = 2.0  # the mesh is half of the symmetric model
 
 
 @dataclass(slots=True)
@@ -41,8 +41,8 @@ class Ledger:
     ----------
     mass : (size,) lumped masses, kg, of the half model (0 where nothing may move)
     rod : the rod's part of the flat vectors
-    items : everything with accounts
-    names : all accounts, the usual ones first
+    items : all items, with their accounts
+    names : names of all accounts, those of `ACCOUNTS` first
     start : E_0, J; worst : largest residual so far, J
     """
 
@@ -75,8 +75,7 @@ class Ledger:
         return totals
 
     def _kinetic(self, state: State, part: slice) -> float:
-        v = state.v[part]
-        return 0.5 * float(v @ (self.mass[part] * v)) + 0.5 * state.dt * float(v @ self._pushed(state, part))
-
-    def _pushed(self, state: State, part: slice) -> Array:
-        return np.where(self.mass[part] > 0, state.force[part], 0.0)
+        """Return the kinetic energy, J, of a part of the half model at the time of the positions."""
+        v, mass = state.v[part], self.mass[part]
+        force = np.where(mass > 0, state.force[part], 0.0)
+        return 0.5 * float(v @ (mass * v)) + 0.5 * state.dt * float(v @ force)

@@ -1,4 +1,4 @@
-"""The time loop: leapfrog with contact impulses. It knows lists of items and observers, nothing else."""
+"""The time loop: leapfrog with contact impulses, over lists of items and observers."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from fem_impact.solid.state import State
 
 
 class Observer(Protocol):
-    """Looks at the state after the forces are known and before the kick; may stop the run."""
+    """Sees the state every ``every`` steps, after the forces are computed and before the kick."""
 
     every: int
 
@@ -21,7 +21,7 @@ class Observer(Protocol):
 
 
 def evaluate(model: Model, state: State) -> None:
-    """Set the forces of the present positions."""
+    """Set the forces at the present positions."""
     state.force[:] = 0.0
     for force in model.forces:
         force.add(state)
@@ -43,7 +43,7 @@ def advance(model: Model, state: State) -> None:
 
 
 def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
-    """Step until an observer says stop.
+    """Step until an observer stops the run.
 
     Velocities stand half a step behind positions, so the first kick from the given start velocity is
     a half one (no step has led to the start).
@@ -57,13 +57,13 @@ def march(model: Model, state: State, observers: Sequence[Observer]) -> None:
 
 @kernel
 def kick(v, span, inverse_mass, force):  # type: ignore[no-untyped-def]
-    """Add to velocities (m/s) what forces (N) change of them in ``span`` (s), in one pass."""
+    """Add to velocities, m/s, the change by forces, N, in the time ``span``, s, in one pass."""
     for i in range(len(v)):
         v[i] += span * inverse_mass[i] * force[i]
 
 
 @kernel
 def drift(x, step, v):  # type: ignore[no-untyped-def]
-    """Add to positions (m) what velocities (m/s) do in ``step`` (s), in one pass."""
+    """Add to positions, m, the motion with velocities, m/s, in the time ``step``, s, in one pass."""
     for i in range(len(x)):
         x[i] += step * v[i]

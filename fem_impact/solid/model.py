@@ -1,4 +1,4 @@
-"""The constant side of a run: numbering, masses, and the lists of items that the time loop walks."""
+"""The constant data of a run: numbering, masses, and the items of the time loop."""
 
 from __future__ import annotations
 
@@ -34,14 +34,14 @@ class Model:
     ----------
     geometry : meshes
     layout : places of the unknowns
-    mass, inverse_mass : (size,) of the half model; inverse 0 where nothing may move
-    drawn : where the rod's masses sit
+    mass, inverse_mass : (size,), kg and 1/kg, of the half model; the inverse is 0 where an unknown is fixed
+    drawn : mass points of the rod's slices
     forces, impulses : items in the order in which they act
     rod : the rod's linear part, one of the forces
     zones : the yielding zones among the forces
-    contact : one of the impulses, or None where nothing touches
+    contact : one of the impulses, or None without contact
     hanging : ties of the locally refined meshes
-    rod_stiffness : elastic stiffness of the whole half rod over its masses, N/m; None for a rod that cannot
+    rod_stiffness : elastic stiffness of the half rod over its mass points, N/m; None for a rod that cannot
         vibrate
     steps : stable step of each body with its safety factor, s
     start : (size,) positions and (size,) velocities at time 0
@@ -64,7 +64,7 @@ class Model:
 
     @property
     def step(self) -> float:
-        """Return the step, s, that no body forbids."""
+        """Return the smallest stable step of the bodies, s."""
         return min(self.steps.values())
 
     @property
@@ -73,7 +73,7 @@ class Model:
         return self.contact.book if self.contact else ContactBook()
 
     def nodes(self, vector: Array) -> Array:
-        """Return displacements or velocities of the nodes from those of the masses, a flat vector."""
+        """Return displacements or velocities of the nodes from those of the mass points, both (size,)."""
         spread = vector.copy()
         self.drawn.spread(self.layout.slices_of(spread))
         return spread
@@ -86,7 +86,7 @@ class Model:
         return state
 
     def coasting(self) -> Model:
-        """Return the rod alone, for free flight after the last contact."""
+        """Return the model of the rod alone, for free flight after the last contact."""
         rod_forces = [f for f in self.forces if f.body == "rod"]
         return replace(self, forces=rod_forces, impulses=())
 
