@@ -1,4 +1,4 @@
-"""Observers of a run: histories, frames, progress, and the watch over the ledger."""
+"""Observers of a run: energy ledger, history, field frames, progress and peak force."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.state import State
 from fem_impact.tables.growing import HistoryWriter
 
-GROWTH = 1e-2  # of E_0, made from nothing: the run is unstable and stops
+GROWTH = 1e-2  # of E_0, growth of the total energy at which a run stops as unstable
 
 TAKEN = {"friction", "closing", "radiated", "damping"}
 
@@ -33,9 +33,9 @@ def history_column(account: str) -> str:
 
 @dataclass(slots=True)
 class Watch:
-    """Samples the ledger; keeps the last accounts; stops a run that makes energy.
+    """Observer that samples the ledger, stores the last accounts and stops a run whose energy grows.
 
-    The one place where energies are computed in a run.
+    Energies are computed here only.
     """
 
     moving: ClassVar[tuple[str, ...]] = ("ledger.start", "ledger.worst", "sampled")
@@ -54,7 +54,7 @@ class Watch:
         self.accounts = dict(zip((*self.ledger.names, "residual"), map(float, values), strict=True))
 
     def observe(self, state: State) -> bool:
-        """Sample."""
+        """Sample the ledger; stop if the energy has grown by more than `GROWTH`."""
         self.accounts = self.ledger.sample(state)
         if self.drift >= -GROWTH:
             return False
@@ -72,7 +72,7 @@ class Watch:
 
 @dataclass(slots=True)
 class History:
-    """Writes energies, contact force and rigid motion; stands after the watch and shares its rhythm."""
+    """Observer that writes history.csv; it follows `Watch` and has the same interval."""
 
     moving: ClassVar[tuple[str, ...]] = ("last_time", "last_impulse", "writer.size")
     model: Model
@@ -104,7 +104,7 @@ class History:
 
 @dataclass(slots=True)
 class Frames:
-    """Appends a frame of the fields at even times."""
+    """Observer that writes a frame of the fields every ``interval``, s."""
 
     moving: ClassVar[tuple[str, ...]] = ("due", "writer.frames")
     fields: FieldSampler
@@ -123,7 +123,7 @@ class Frames:
 
 @dataclass(slots=True)
 class ProgressObserver:
-    """Tells how far the run is; the end is not known beforehand, so it gives the latest time."""
+    """Observer that reports progress towards ``end``, s, the latest time at which the run may end."""
 
     moving: ClassVar[tuple[str, ...]] = ()
     show: Callable[[Progress], None]
@@ -135,27 +135,27 @@ class ProgressObserver:
     begun: tuple[float, float] | None = None
 
     def observe(self, state: State) -> bool:
-        """Report."""
+        """Report the progress."""
         eta = self._eta(state.time)
         nodes = int(self.model.book.step[ACTIVE])
-        words = f"{nodes} nodes touch" if nodes else "no contact"
-        self.show(Progress(state.time, self.end, state.step, self.watch.drift, words, eta, self.note))
+        contact = f"{nodes} nodes touch" if nodes else "no contact"
+        self.show(Progress(state.time, self.end, state.step, self.watch.drift, contact, eta, self.note))
         return False
 
     def _eta(self, time: float) -> float | None:
-        """Return s of wall time to the latest time; None until it can be told."""
-        # a resumed run begins late
+        """Return the wall time, s, to the latest end; None in the first 2 % of the run."""
+        # a resumed run does not begin at time 0
         self.begun = self.begun or (clock.monotonic(), time)
         spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
         return spent * (self.end - time) / done if done > 0.02 * self.end else None
 
 
-WINDOW = 2e-6  # s: nodes close one by one, and the impulse of a single step is noise
+WINDOW = 2e-6  # s, of mean forces: nodes close one by one, so the impulse of a single step is noise
 
 
 @dataclass(slots=True)
 class PeakForce:
-    """Follows the normal force on the whole rod.
+    """Observer of the largest normal force on the whole rod.
 
     ``largest`` is its largest mean over `WINDOW`, N, and ``nodes`` how many nodes of the half model were
     pressed at once in that window.

@@ -1,4 +1,4 @@
-"""A rod that cannot vibrate: its nose deforms, all that is behind the nose moves as one rigid body.
+"""A rod that cannot vibrate: its nose deforms, the cylinder behind it moves as one rigid body.
 
 The rigid rest is the nose's last section and two points on the axis, which have the mass, mass centre and
 moment of inertia of the cylinder behind it. After every kick their velocities are replaced by the rigid
@@ -47,7 +47,7 @@ class ElasticNose:
 
 @dataclass(slots=True)
 class RigidRest:
-    """Holds nodes together as one rigid body.
+    """Constraint of nodes to the motion of one rigid body in the t-n plane.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""The rod's share of the flat vectors, as nodes, in the barrier frame or turned back with the rod."""
+"""The rod's motion and the fields, read from a state in the barrier frame or in the rod's own frame."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def modes_of(model: Model, count: int = DEFAULT_COUNT) -> RodModes:
 
 @dataclass(frozen=True, slots=True)
 class RodState:
-    """Reads the rod out of a state.
+    """Reads the rod's motion from a state.
 
     Attributes
     ----------
@@ -71,9 +71,9 @@ class RodState:
         return result
 
     def present(self, state: State, model: Model) -> Array:
-        """Return velocities (size,), m/s, at the time of the positions, half a step after the state's own.
+        """Return velocities (size,), m/s, at the time of the positions; the state's are half a step older.
 
-        Those of the state would change the vibration energy by up to .0014 of itself.
+        The latter would change the vibration energy by up to .0014 of itself.
         """
         n = self.size
         return np.asarray(state.v[:n] + 0.5 * state.dt * model.inverse_mass[:n] * state.force[:n])
@@ -86,9 +86,9 @@ class RodState:
     def vibration(self, state: State, model: Model) -> tuple[float, float] | None:
         """Return kinetic and strain energy, J, of all vibration; forces must be those of a free rod.
 
-        Kinetic energy beyond the rigid motion, and what the internal forces release, of all shapes that the
-        mesh has: no mode has part in it, so it checks the projection and tells what lies above its highest
-        mode. None if that is not found.
+        These are the kinetic energy beyond the rigid motion, and the strain energy that the internal forces
+        release, of all shapes of the mesh. No modes are used, so this checks the projection on modes and
+        includes the energy above the highest mode. None if the iteration does not converge.
         """
         v = self.present(state, model)[self.places]
         kinetic = float(self.mass @ (v**2).sum(axis=1)) - self.rigid(state).kinetic

@@ -1,9 +1,10 @@
-"""One run of the explicit model, from scene to the state after the last separation."""
+"""One run of the explicit model, from its plan to the state after the last separation."""
 
 from __future__ import annotations
 
 import resource
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.plan.plan import Plan
-from fem_impact.progress import compiling
+from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.doubts import doubts, skin_share
@@ -30,9 +31,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LoopCost:
-    """What a run took.
+    """Run time, memory and smallest step, s, of a run.
 
-    ``wall`` and ``cpu`` are s in its time loop, ``setup_wall`` and ``setup_cpu`` around it, compiling apart.
+    ``wall`` and ``cpu`` are the times, s, of the time loop, ``setup_wall`` and ``setup_cpu`` those before and
+    after it, all without compilation.
     """
 
     wall: float
@@ -53,7 +55,7 @@ class SolidResult:
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
-    skin_share : share of the barrier's plastic work that lies right under its surface
+    skin_share : share of the barrier's plastic work done right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     peak_nodes : nodes of the half model that were pressed at once then
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
@@ -88,8 +90,9 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
 
     Parameters
     ----------
-    plan, options : what is computed, and how the run is kept
-    model : a prepared model of the scene instead of a built one
+    plan : scene and choices
+    options : output directory, progress, checkpoints
+    model : a prepared model of the plan (default: built here)
 
     Raises
     ------
@@ -102,20 +105,18 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     model, out = model or build(plan), options.out
     view = RodState.of(model)
     state = model.initial_state()
-    looking = Watchers.of(plan, model, view, out, options.resume)
-    observers: list[Observer] = [*looking.all]
+    watchers = Watchers.of(plan, model, view, out, options.resume)
+    observers: list[Observer] = [*watchers.all]
     if options.progress is not None:
-        scene = plan.scene
-        if not compiled_before():
-            options.progress(compiling(scene.accuracy.max_time, 20))
-        end = scene.accuracy.max_time
-        observers.append(ProgressObserver(options.progress, looking.watch, model, end, scene.id))
-    evaluate(model, model.initial_state())  # kernels compile on a throw-away state, not in the times
+        observers.append(_progress_observer(plan, model, watchers, options.progress))
+    evaluate(
+        model, model.initial_state()
+    )  # compiles the kernels, on a state of its own, before the time loop
     clock = Stopwatch()
     if out is not None:
-        holders = looking.holders(model, state, clock)
+        holders = watchers.holders(model, state, clock)
         place, every = out / CHECKPOINT, options.checkpoint_s
-        saved = Checkpoint(place, options.stamp, holders, every, lambda: bool(looking.reason))
+        saved = Checkpoint(place, options.stamp, holders, every, lambda: bool(watchers.reason))
         observers.append(saved)
         if options.resume:
             saved.restore()
@@ -124,16 +125,26 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     try:
         march(model, state, observers)
     finally:
-        looking.flush()
+        watchers.flush()
     loop, here = clock.read(), marching.read()
-    looking.watch.observe(state)
-    free = looking.stop.finished and model.rod_stiffness is not None
+    watchers.watch.observe(state)
+    free = watchers.stop.finished and model.rod_stiffness is not None
     check = view.vibration(state, model) if free else None
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
-    cost = LoopCost(*loop, wall, cpu, _peak_memory(), looking.guard.smallest)
-    result = _result(plan, model, view, state, looking, check, cost)
+    cost = LoopCost(*loop, wall, cpu, _peak_memory(), watchers.guard.smallest)
+    result = _result(plan, model, view, state, watchers, check, cost)
     step_time = result.cost.cpu / max(result.steps, 1)
-    return replace(result, shares=run_time_shares(model, state, step_time, looking.heat))
+    return replace(result, shares=run_time_shares(model, state, step_time, watchers.heat))
+
+
+def _progress_observer(
+    plan: Plan, model: Model, watchers: Watchers, show: Callable[[Progress], None]
+) -> ProgressObserver:
+    """Return the observer that reports progress; report a first compilation at once."""
+    end = plan.scene.accuracy.max_time
+    if not compiled_before():
+        show(compiling(end, 20))
+    return ProgressObserver(show, watchers.watch, model, end, plan.scene.id)
 
 
 def _result(
@@ -141,34 +152,36 @@ def _result(
     model: Model,
     view: RodState,
     state: State,
-    looking: Watchers,
+    watchers: Watchers,
     check: tuple[float, float] | None,
     cost: LoopCost,
 ) -> SolidResult:
-    ledger, stop = looking.watch.ledger, looking.stop
+    """Return the result at ``state``, without the shares of the run time."""
+    ledger, stop = watchers.watch.ledger, watchers.stop
     return SolidResult(
         plan=plan,
         model=model,
         view=view,
         time=state.time,
         steps=state.step,
-        accounts=looking.watch.accounts,
+        accounts=watchers.watch.accounts,
         E_0=ledger.start,
         worst=ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
         skin_share=skin_share(model),
-        peak_force=looking.peak.largest,
-        peak_nodes=looking.peak.nodes,
+        peak_force=watchers.peak.largest,
+        peak_nodes=watchers.peak.nodes,
         vibration_check=check,
         finished=stop.finished,
-        reason=looking.reason,
+        reason=watchers.reason,
         cost=cost,
-        warnings=tuple(w for f in looking.frames for w in f.writer.warnings) + doubts(model, looking.skin),
-        heat=looking.heat,
+        warnings=tuple(w for f in watchers.frames for w in f.writer.warnings) + doubts(model, watchers.skin),
+        heat=watchers.heat,
     )
 
 
 def _peak_memory() -> float:
+    """Return the process's largest resident memory so far, MB."""
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak / 1e6 if sys.platform == "darwin" else peak * 1024 / 1e6

@@ -1,9 +1,9 @@
-"""When is the impact over? When nothing in the exact free flight to come can touch again."""
+"""The end of the impact: the rod's exact free flight has no further contact."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +16,17 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
-if TYPE_CHECKING:
-    pass
-
-
-SAMPLE = 2e-6  # s
-QUIET = 20e-6  # s without touch before it is worth asking: waves cross the block a few times
+SAMPLE = 2e-6  # s, interval at which the free flight is evaluated
+QUIET = 20e-6  # s without contact before the flight is evaluated: waves cross the block a few times
 
 
 @dataclass(slots=True)
 class Separation:
-    """Stops the run at the last separation.
+    """Observer that stops the run at the last separation.
 
     The free flight, rigid drift plus all modes, must keep the rod above the barrier for the ``horizon``, s.
-    As long as its surface may be lower than the barrier's highest node, the flown tip is held against the
-    barrier's surface, crater and all, node by node. Where only the tip can touch in the model, ``tail``
+    As long as its surface may be lower than the barrier's highest node, the tip in flight is compared with
+    the barrier's surface, with its crater, node by node. Where only the tip can touch in the model, ``tail``
     (k, 3), m, holds the corners of the other end at the start: if they strike first, the run ends there.
     """
 
@@ -70,7 +66,7 @@ class Separation:
         return True
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
-        """Return when the tail comes down to the barrier, s from now, infinite if it does not."""
+        """Return the time, s from now, until the tail reaches the barrier; infinite if it does not."""
         if not len(self.tail):
             return np.inf
         start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
@@ -80,13 +76,14 @@ class Separation:
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
+        """Return whether the flight of the next ``until``, s, has no contact."""
         ahead, contact = self.view.flight(state, self.model), self.model.contact
         t = np.arange(0.0, until, SAMPLE)
         lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
         if not isinstance(contact, SurfaceContact):
             return bool(lowest.min() > 0.0)
         surface = contact.barrier.places[:, 2]
-        # the barrier may go on for a while at its present speed
+        # allows the barrier to move on for the time QUIET at its present speed
         margin = QUIET * float(np.abs(state.v[surface]).max())
         deep = t[lowest <= max(0.0, float(state.x[surface].max())) + margin + contact.rod.sag]
         return all(

@@ -1,4 +1,4 @@
-"""What each effect costs: the items of a model timed by themselves after the run."""
+"""Run time of each effect: the items of a model are timed one by one after the run."""
 
 from __future__ import annotations
 
@@ -45,14 +45,15 @@ def run_time_shares(
 
 
 def _count(seconds: dict[str, float], effect: str, time: float) -> None:
+    """Add a time, s, to an effect's sum."""
     seconds[effect] = seconds.get(effect, 0.0) + time
 
 
 def _turning(model: Model, still: State) -> float:
     """Return the time, s, that the rod's frame takes in a step for turning."""
     rod, n = model.rod, len(model.rod.d)
-    there = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
-    return there + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
+    localising = _shortest(lambda: rod.frame.localise(still.x[:n], rod.d))
+    return localising + _shortest(lambda: rod.frame.add_force(rod.d, rod.y, still.force[:n]))
 
 
 def _shortest(act: Callable[[], object]) -> float:

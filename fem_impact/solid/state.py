@@ -1,4 +1,4 @@
-"""What moves: positions, velocities, forces, and the clock."""
+"""The state of a run: positions, velocities, forces, and time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 
 @dataclass(slots=True)
 class State:
-    """Moving part of a run; all vectors are flat and numbered by :class:`~fem_impact.fem.layout.Layout`.
+    """State of a run; all vectors are flat and numbered by :class:`~fem_impact.fem.layout.DofLayout`.
 
     Attributes
     ----------

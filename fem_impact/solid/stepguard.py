@@ -1,4 +1,4 @@
-"""The stable step of a yielding zone in its present shape, from the forces of its own kernel."""
+"""The stable step of a yielding zone in its deformed shape, from the forces of its kernel."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from fem_impact.solid.yielding import YieldingZone
 
 
-TINY = 1e-6  # of the height of the thinnest cell: motion from whose forces the stiffness is taken
+TINY = 1e-6  # displacement of the stiffness' difference quotient, over the height of the thinnest cell
 
 
 def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
@@ -56,7 +56,7 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
 
 
 def _trial(zone: YieldingZone) -> YieldingZone:
-    """Return a zone of the same cells, which never flow, to be moved about."""
+    """Return a copy of the zone with an infinite flow stress and work arrays of its own."""
     old = zone.blocks
     own = {name: np.empty_like(getattr(old, name)) for name in ("stress", "pressure", "nodal")}
     blocks = old._replace(flow=np.full_like(old.flow, np.inf), **own)
@@ -64,7 +64,7 @@ def _trial(zone: YieldingZone) -> YieldingZone:
 
 
 SMALLEST = 0.02  # of the first step: below it the elements are crushed beyond use
-RENEW = 0.95  # of a zone's last step found: it is found anew where single elements might ask for less
+RENEW = 0.95  # of a zone's last computed step: below it, by the elements' bound, it is computed anew
 REMEDY = "Use a coarser accuracy.tip_size or a lower speed."
 
 
@@ -132,13 +132,13 @@ class StepGuard:
 
     def _find(self, x: Array, now: Array) -> float:
         """Return the stable step, s, where the elements' gradient numbers are ``now``."""
-        # no element alone does worse than a zone all squeezed like it
+        # lower bound: as if all elements of the zone had deformed like the worst one
         steps = self.steps * np.minimum.reduceat(np.sqrt(self.square / now), self.starts)
         due = steps < RENEW * np.minimum(self.steps, self.model.step)
         for i, zone in enumerate(self.model.zones):
             if due[i]:
-                found = zone_step(zone, self.model, x) / self.first[i]
-                self.steps[i] = steps[i] = self.model.steps[zone.body] * found
+                ratio = zone_step(zone, self.model, x) / self.first[i]
+                self.steps[i] = steps[i] = self.model.steps[zone.body] * ratio
                 own = slice(self.starts[i], self.starts[i] + zone.count)
                 self.square[own] = now[own]
         return float(steps.min())
@@ -155,6 +155,6 @@ class StepGuard:
 
 
 def when_and_where(state: State, place: Array) -> str:
-    """Return words for the present time and a place (t, b, n), m."""
+    """Return a phrase that gives the present time, step and a point (t, b, n), m."""
     t, b, n = place * 1e3
     return f"at {state.time * 1e6:.2f} us, step {state.step}, near t, b, n = {t:.2f}, {b:.2f}, {n:.2f} mm."

@@ -1,4 +1,4 @@
-"""The observers of one run, and the files that they write."""
+"""The observers of one run, their output files, and its stopwatch."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def _cpu() -> float:
 
 @dataclass(slots=True)
 class Stopwatch:
-    """Wall and processor time of a part of a run, s, compiling apart; what a checkpoint brings is added."""
+    """Wall and processor time of a part of a run, s, without compilation; a checkpoint's times are added."""
 
     moving: ClassVar[tuple[str, ...]] = ("wall", "cpu")
     begun_wall: float = field(default_factory=_wall)
@@ -81,7 +81,7 @@ class Stopwatch:
 
 @dataclass(frozen=True, slots=True)
 class Watchers:
-    """Everything that looks at a run and is kept in its checkpoints."""
+    """All observers of a run whose state its checkpoints store."""
 
     guard: StepGuard
     watch: Watch
@@ -94,7 +94,7 @@ class Watchers:
 
     @classmethod
     def of(cls, plan: Plan, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
-        """Make them; ``go_on`` keeps the files of the part of the run that a checkpoint ended."""
+        """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
         scene = plan.scene
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames = [], []
@@ -111,7 +111,7 @@ class Watchers:
 
     @property
     def all(self) -> list[Saved]:
-        """Return them in the order in which they look."""
+        """Observers in calling order, step guard to stop rule."""
         heat = [self.heat] if self.heat else []
         first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames]
         return [*first, self.skin, self.peak, *heat, self.stop]
@@ -122,12 +122,12 @@ class Watchers:
         return self.guard.reason or self.watch.reason or self.skin.reason or self.stop.reason
 
     def flush(self) -> None:
-        """Write what still waits."""
+        """Write the buffered rows of the history."""
         for h in self.history:
             h.writer.flush()
 
     def holders(self, model: Model, state: State, clock: Stopwatch) -> dict[str, Moving]:
-        """Return everything that moves, by a name that the scene alone decides."""
+        """Return all objects with state, by names that depend on the scene only."""
         parts: list[Moving] = [state, clock, *model.forces, *model.impulses, *self.all]
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
 

@@ -1,4 +1,4 @@
-"""What contact has done so far: works, impulses and the intervals of touch."""
+"""Record of the contact of a run: work, impulses and contact intervals."""
 
 from __future__ import annotations
 

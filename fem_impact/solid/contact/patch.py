@@ -1,4 +1,4 @@
-"""Where a point stands over a deformed surface: compiled walks over quads in the (t, b) plane."""
+"""Contact surfaces of quads and the search for the quad under a point, in the (t, b) plane."""
 
 from __future__ import annotations
 
@@ -200,7 +200,10 @@ def edge_neighbours(quads: Ints) -> Ints:
 
 
 def _sag(corners: Array, normals: Array, bend: Array) -> float:
-    """Return half of what bending adds at other corners, at most: above the rise of an arc over its chord."""
+    """Bound of a rounded quad's bulge, m.
+
+    Half of `bend` times the largest height of a corner's tangent plane over another corner.
+    """
     apart = corners[:, None, :, :] - corners[:, :, None, :]
     share = np.divide(bend, normals[:, :, 2], out=np.zeros_like(bend), where=bend > 0)
     return float(0.5 * np.max(share[:, :, None] * np.abs(np.einsum("qabi,qai->qab", apart, normals))))

@@ -1,4 +1,4 @@
-"""The point contacts of one step: collected from two surfaces, and their work booked."""
+"""The point contacts of one step: their search on both surfaces and the record of their work."""
 
 from __future__ import annotations
 

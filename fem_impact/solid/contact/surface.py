@@ -91,8 +91,8 @@ class SurfaceContact:
         record[:] = 0.0
         self._turn_normals(state.x)
         last, normals, band = self.last, self.normals, self.band
-        held = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
-        count = rod_over_barrier(held, rod, barrier, normals, last, self.play, band, motion, c, record)
+        under = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
+        count = rod_over_barrier(under, rod, barrier, normals, last, self.play, band, motion, c, record)
         if count:
             record[SWEEPS] = solve(
                 count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
