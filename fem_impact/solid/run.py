@@ -6,6 +6,7 @@ import resource
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.fem.flight import FreeVibration, RigidMotion
@@ -103,24 +104,15 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     """
     whole = Stopwatch()
     model, out = model or build(plan), options.out
-    view = RodState.of(model)
-    state = model.initial_state()
+    view, state = RodState.of(model), model.initial_state()
     watchers = Watchers.of(plan, model, view, out, options.resume)
     observers: list[Observer] = [*watchers.all]
     if options.progress is not None:
         observers.append(_progress_observer(plan, model, watchers, options.progress))
-    evaluate(
-        model, model.initial_state()
-    )  # compiles the kernels, on a state of its own, before the time loop
+    evaluate(model, model.initial_state())  # compiles the kernels before the time loop
     clock = Stopwatch()
     if out is not None:
-        holders = watchers.holders(model, state, clock)
-        place, every = out / CHECKPOINT, options.checkpoint_s
-        saved = Checkpoint(place, options.stamp, holders, every, lambda: bool(watchers.reason))
-        observers.append(saved)
-        if options.resume:
-            saved.restore()
-            advance(model, state)  # the forces of the checkpoint's step are known
+        observers.append(_checkpoint(model, state, watchers, clock, options, out))
     marching = Stopwatch()
     try:
         march(model, state, observers)
@@ -133,8 +125,7 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
     cost = LoopCost(*loop, wall, cpu, _peak_memory(), watchers.guard.smallest)
     result = _result(plan, model, view, state, watchers, check, cost)
-    step_time = result.cost.cpu / max(result.steps, 1)
-    return replace(result, shares=run_time_shares(model, state, step_time, watchers.heat))
+    return replace(result, shares=run_time_shares(model, state, cost.cpu / max(state.step, 1), watchers.heat))
 
 
 def _progress_observer(
@@ -145,6 +136,18 @@ def _progress_observer(
     if not compiled_before():
         show(compiling(end, 20))
     return ProgressObserver(show, watchers.watch, model, end, plan.scene.id)
+
+
+def _checkpoint(
+    model: Model, state: State, watchers: Watchers, clock: Stopwatch, options: RunOptions, out: Path
+) -> Checkpoint:
+    """Return the observer that writes checkpoints; on resuming, restore the state and go one step on."""
+    holders, interval = watchers.holders(model, state, clock), options.checkpoint_s
+    checkpoint = Checkpoint(out / CHECKPOINT, options.stamp, holders, interval, lambda: bool(watchers.reason))
+    if options.resume:
+        checkpoint.restore()
+        advance(model, state)  # the checkpoint's forces are up to date
+    return checkpoint
 
 
 def _result(
