@@ -1,4 +1,4 @@
-"""Whole-or-nothing files: write beside the target, sync, then put in place in one step."""
+"""Atomic files: written beside the target, synced, then renamed to it in one step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from fem_impact.errors import OutputPathError, ResultError
 
 @contextmanager
 def atomic_path(path: str | Path) -> Iterator[Path]:
-    """Lend a temporary file in the target's folder; it becomes ``path`` only if the block succeeds.
+    """Yield a temporary file in the target's folder; it becomes ``path`` only if the block succeeds.
 
     The suffix of ``path`` is kept, since encoders choose the format by it.
 
@@ -98,7 +98,7 @@ def _settle(draft: Path, target: Path) -> None:
 
 
 def unwritable(path: Path, error: OSError) -> OutputPathError:
-    """Return the error of the user for one of the operating system."""
+    """Return the OutputPathError for an error of the operating system."""
     full = "free some space or " if error.errno in (errno.ENOSPC, errno.EDQUOT) else ""
     why = error.strerror or str(error)
     return OutputPathError(f"{path}: cannot be written ({why}); {full}choose another place with --out.")

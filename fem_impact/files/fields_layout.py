@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 VTK_HEXAHEDRON = 12
 STEP_ROWS = ("PartOffsets", "PointOffsets", "CellOffsets", "ConnectivityIdOffsets", "NumberOfParts")
 _CHUNK_STEPS = 256
-# Frames in a piece of the file. The index of pieces grows by adding to one node until it holds 64 of them,
-# and is split in several writes then: up to 1024 frames a writer killed at any moment leaves all earlier ones
-# readable.
+# Frames per HDF5 chunk. The B-tree node that indexes chunks holds 64 of them and is split in several writes
+# when it is full. Up to 64 * 16 = 1024 frames, a writer killed at any moment leaves all
+# earlier frames readable.
 _CHUNK_FRAMES = 16
 
 
@@ -57,7 +57,7 @@ def write_mesh(path: Path, points: np.ndarray, cells: np.ndarray, static: Mappin
 def add_frame(
     root: h5py.Group, time: float, point_data: Mapping[str, np.ndarray], cell_data: Mapping[str, np.ndarray]
 ) -> None:
-    """Add one time; the count of steps goes up last, so an interrupted frame does not exist.
+    """Append one frame; the count of steps is raised last, so an interrupted frame is not counted.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Fields over time, read back for pictures and checks."""
+"""Reader of field files (temporal VTKHDF) for pictures and checks."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _WAITS = (0.02, 0.1, 0.5, 0.0)  # s before each further try while a writer has t
 
 @dataclass(frozen=True, slots=True)
 class FieldFile:
-    """What a field file holds; frames are read on demand.
+    """Contents of a field file; the data of frames are read on demand.
 
     Parameters
     ----------

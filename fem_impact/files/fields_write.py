@@ -1,4 +1,4 @@
-"""Fields over time, appended frame by frame and readable all the while."""
+"""Writer of fields over time: frames are appended one by one to a file that others can read meanwhile."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class FieldWriter:
     cell_data : mapping of str to (m,) arrays, optional
         Cell data that do not change, such as ``body``.
     go_on : bool
-        Keep the frames of an older file; `frames` then cuts it to what a checkpoint knew.
+        Keep the frames of an older file; set `frames` to drop those written after a checkpoint.
 
     Raises
     ------
@@ -76,15 +76,15 @@ class FieldWriter:
         return len(read_fields(self.path).times)
 
     @frames.setter
-    def frames(self, known: int) -> None:
+    def frames(self, count: int) -> None:
         """Drop the frames after a checkpoint. Raises ResultError, or ValueError when some are missing."""
         present = self.frames
-        if present < known:
-            raise ValueError(f"{self.path.name} holds {present} frames of the {int(known)} written before.")
+        if present < count:
+            raise ValueError(f"{self.path.name} holds {present} frames of the {int(count)} written before.")
         import h5py
 
         with h5py.File(self.path, "r+") as file:
-            file["VTKHDF"]["Steps"].attrs["NSteps"] = int(known)
+            file["VTKHDF"]["Steps"].attrs["NSteps"] = int(count)
 
     def append(
         self,
@@ -124,7 +124,7 @@ class FieldWriter:
 
         size = sum(np.asarray(values).size for values in (*points.values(), *cells.values())) * 4
         try:
-            # a full disk can leave an HDF5 file beyond repair, so the room is asked for beforehand
+            # a full disk can damage an HDF5 file for good, so the free space is checked first
             if shutil.disk_usage(self.path.parent).free < 2 * size + 2**20:
                 return "the disk is full"
             with self._place() as place, h5py.File(place, "r+") as file:
@@ -136,7 +136,7 @@ class FieldWriter:
 
     @contextmanager
     def _place(self) -> Iterator[Path]:
-        """Lend the file, or for the first frame, which makes the places of all others, a copy of it."""
+        """Yield the file; for the first frame, which creates the data sets, a copy that replaces it."""
         if self._begun:
             yield self.path
             return

@@ -1,4 +1,4 @@
-"""A lock on a result directory: one process, and in it one thread, writes there at a time."""
+"""A lock on a result directory: one thread of one process writes there at a time."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ _thread = threading.local()  # its attribute `directories`: those that this thre
 def directory_lock(out: Path) -> Iterator[None]:
     """Make a directory and keep every other process and thread from writing results to it.
 
-    The lock is the operating system's, on the file `LOCK`, which names its owner. It ends with its process,
-    however that ends: the file of a killed process locks nothing. A thread may lock a directory twice. On a
-    file system without locks nothing is locked.
+    The operating system locks the file `LOCK`, which names the owner, and releases it when the process ends,
+    also when it is killed. A thread may lock a directory twice. On a file system without locks nothing is
+    locked.
 
     Raises
     ------
@@ -51,7 +51,8 @@ def _locked_file(path: Path) -> int:
     """Return the handle of the lock file, locked and with its owner written into it."""
     try:
         handle = _opened(path)
-        while not _is_at(handle, path):  # the owner before removed it between our opening and locking it
+        # the previous owner may remove the file between its opening and its locking here
+        while not (path.exists() and os.path.samestat(os.fstat(handle), path.stat())):
             os.close(handle)
             handle = _opened(path)
         os.truncate(handle, 0)
@@ -78,7 +79,3 @@ def _opened(path: Path) -> int:
             os.close(handle)
             raise
     return handle
-
-
-def _is_at(handle: int, path: Path) -> bool:
-    return path.exists() and os.path.samestat(os.fstat(handle), path.stat())

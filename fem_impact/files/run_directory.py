@@ -10,18 +10,18 @@ from fem_impact.files.atomic import make_directory
 CHECKPOINT = "run.checkpoint"
 COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
 """Files that a run computes."""
-MADE_OF_IT = ("scene.toml", "row.json", "report.html", "figures", "film*")
+DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""
 
 
 def set_aside(out: Path) -> Path | None:
-    """Move an older run, and all that was made of it, to a directory within ``out``; return that."""
+    """Move the files of an older run, and those made from them, to a directory in ``out``; return it."""
     computed = [out / name for name in COMPUTED if (out / name).exists()]
     if not computed:
         return None
     place = _free(out, max(path.stat().st_mtime for path in computed))
     make_directory(place)
-    for path in [*computed, *(path for name in MADE_OF_IT for path in out.glob(name))]:
+    for path in [*computed, *(path for name in DERIVED for path in out.glob(name))]:
         path.rename(place / path.name)
     return place
 

@@ -1,4 +1,4 @@
-"""What a record must hold: its JSON Schema, and what that cannot say; complaints name file, key and value."""
+"""Checks of a record: its JSON Schema and further rules; error messages name file, key and value."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from fem_impact.outcome.keys import Key, Kind
 SCHEMA_VERSION = 3
 """Raised whenever a key is renamed, removed, added or changes its meaning."""
 
-# JSON Schema of a value by its kind, and what a complaint says of it
+# JSON Schema of a value by its kind, and the text of the error message
 SHAPES: Mapping[Kind, tuple[Mapping[str, Any], str]] = {
     "number": ({"type": "number"}, "must be a number"),
     "count": ({"type": "integer", "minimum": 0}, "must be a whole number, zero or more"),
@@ -44,7 +44,7 @@ def json_schema(keys: Iterable[Key]) -> dict[str, Any]:
 
 
 def check_record(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) -> None:
-    """Refuse a record that breaks the schema of its keys, or what a schema cannot say.
+    """Refuse a record that breaks the schema of its keys or a rule that a schema cannot state.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ def _validator(keys: tuple[Key, ...]) -> Callable[[Any], Any]:
 
 
 def _check_shapes(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) -> None:
-    """Refuse what the schema refuses, in the words of the key."""
+    """Refuse values that break the schema, with the message for the kind of the key."""
     try:
         _validator(keys)(dict(values))
     except fastjsonschema.JsonSchemaValueException as error:
@@ -109,7 +109,7 @@ def _check_shapes(values: Mapping[str, Any], keys: tuple[Key, ...], source: str)
 
 
 def _shape_complaint(key: Key, value: Any, inner: list[str]) -> str:
-    """Return what is wrong with a value, or with the part of it that ``inner`` leads to."""
+    """Return the fault of a value, or of the part of it at the path ``inner``."""
     if value is None:
         return "must not be null"
     if key.kind != "entries":

@@ -1,6 +1,6 @@
-"""A field of an outcome declares its key once: name in the JSON file, unit and meaning.
+"""Keys of the outcome's JSON file, declared once with the fields of its groups: name, unit and meaning.
 
-The table of keys, the checks of a file, its text and the attributes in docstrings follow from it.
+The table of keys, the checks of a file, its text and the attributes in docstrings are made from these.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ class Unknown:
         raise self.error()
 
     def error(self) -> ResultError:
-        """Return what is raised where the value is asked for all the same."""
+        """Return the error that is raised where a value is required."""
         return ResultError(f"Not known: {self.reason.rstrip('.')}.")
 
 
@@ -80,7 +80,7 @@ class Key:
     name : str
         The key in the JSON file.
     kind : str
-        What its value is; a count is a whole number, zero or more.
+        Kind of its value; a count is a whole number, zero or more.
     unit : str
         SI unit; ``-`` for a pure number and the empty string where a unit makes no sense.
     meaning : str
@@ -90,11 +90,11 @@ class Key:
     banded : bool
         Whether two meshes give it a limit and a band.
     path : tuple of str
-        Attributes that lead from the outcome to the value.
+        Names of the attributes from the outcome down to the value.
     entries : tuple of Key
-        Of each entry, where the value is a list of entries.
+        Keys of each entry, where the value is a list of entries.
     entry : type
-        What makes such an entry.
+        Class of such an entry.
     """
 
     name: str
@@ -115,24 +115,25 @@ class Key:
 def key(name: str, unit: str, meaning: str, banded: bool = False) -> Any:
     """Declare a field with its key in the JSON file.
 
-    In a group that stands in an outcome more than once, ``{}`` in name and meaning is what `part` says.
+    ``{}`` in name and meaning is replaced by the name and meaning that `part` gives to a group which stands
+    in an outcome more than once.
     """
     return field(metadata={"key": (name, unit, meaning, banded)})
 
 
 def part(name: str, meaning: str) -> Any:
-    """Declare a field that holds a group of keys: what ``{}`` in their names and meanings stands for."""
+    """Declare a field that holds a group, with the texts for ``{}`` in the names and meanings of its keys."""
     return field(metadata={"part": (name, meaning)})
 
 
 @dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(key, part))
 def group(cls: type[T]) -> type[T]:
     """Make a frozen dataclass whose docstring names unit and meaning of every field."""
-    made = dataclass(frozen=True, slots=True, kw_only=True, repr=False)(cls)
-    made.__repr__ = _shown  # type: ignore[method-assign]
-    lines = [f"{key.path[-1]} : {key.unit or key.kind}\n    {key.meaning}" for key in _own_keys(made)]
-    made.__doc__ = "\n".join([f"{cls.__doc__}\n", "Attributes", "----------", *lines])
-    return made
+    frozen = dataclass(frozen=True, slots=True, kw_only=True, repr=False)(cls)
+    frozen.__repr__ = _group_repr  # type: ignore[method-assign]
+    lines = [f"{key.path[-1]} : {key.unit or key.kind}\n    {key.meaning}" for key in _own_keys(frozen)]
+    frozen.__doc__ = "\n".join([f"{cls.__doc__}\n", "Attributes", "----------", *lines])
+    return frozen
 
 
 def unknown(cls: type[T], reason: str) -> T:
@@ -180,18 +181,18 @@ def _key(
     )
 
 
-def _shown(held: Any) -> str:
-    """Return a group for the eye: numbers with unit, and the names of what is not known."""
-    values = {one.name: getattr(held, one.name) for one in fields(held)}
+def _group_repr(self: Any) -> str:
+    """Return the ``repr`` of a group: values with units, then the names of the unknown ones."""
+    values = {one.name: getattr(self, one.name) for one in fields(self)}
     units = {
-        key.path[-1]: f" {key.unit}" if key.unit not in ("", "-") else "" for key in _own_keys(type(held))
+        key.path[-1]: f" {key.unit}" if key.unit not in ("", "-") else "" for key in _own_keys(type(self))
     }
-    told = [
+    parts = [
         f"{name}={_text(v)}{units.get(name, '')}" for name, v in values.items() if not isinstance(v, Unknown)
     ]
     missing = [name for name, value in values.items() if isinstance(value, Unknown)]
-    told += [f"not known: {', '.join(missing)}"] if missing else []
-    return f"{type(held).__name__}({', '.join(told)})"
+    parts += [f"not known: {', '.join(missing)}"] if missing else []
+    return f"{type(self).__name__}({', '.join(parts)})"
 
 
 def _text(value: Any) -> str:
@@ -203,9 +204,8 @@ def _text(value: Any) -> str:
 def markdown_table(keys: Iterable[Key]) -> str:
     """Return a table of keys in Markdown: key, kind, unit, may be null, meaning."""
     head = "| key | kind | unit | null | meaning |\n|---|---|---|---|---|"
-    return "\n".join([head, *map(_row, keys)]) + "\n"
-
-
-def _row(key: Key) -> str:
-    null = "with a reason" if key.nullable else "never"
-    return f"| `{key.name}` | {key.kind} | {key.unit} | {null} | {key.meaning} |"
+    null = {True: "with a reason", False: "never"}
+    rows = [
+        f"| `{key.name}` | {key.kind} | {key.unit} | {null[key.nullable]} | {key.meaning} |" for key in keys
+    ]
+    return "\n".join([head, *rows]) + "\n"

@@ -1,4 +1,4 @@
-"""The record of a run, and its one written form: flat JSON with a checksum, read back strictly."""
+"""The record of a run, written as flat JSON with a checksum and read back with all checks."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 
 CHECKSUM = "checksum_sha256"
-"""Last key of the file: SHA-256 of everything else, so that a damaged file cannot pass for a result."""
+"""Last key of the file: SHA-256 of all other keys, by which a damaged or edited file is refused."""
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
 
@@ -74,7 +74,7 @@ class Outcome:
 
     def __repr__(self) -> str:
         numbers = self.restitution.edge.e, self.restitution.mu, self.energy.vibration
-        e, mu, vibration = map(_short, numbers)
+        e, mu, vibration = ("not known" if isinstance(v, Unknown) else f"{v:.4g}" for v in numbers)
         return (
             f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
             f"mu={mu}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
@@ -88,7 +88,7 @@ class Outcome:
 
     def estimate(self, key: Key) -> tuple[Num, float | None]:
         """Return limit and half-width that two meshes give a number, else its value in this run and None."""
-        limits, bands = (or_none(held) or {} for held in (self.validity.mesh_limit, self.validity.mesh_band))
+        limits, bands = (or_none(v) or {} for v in (self.validity.mesh_limit, self.validity.mesh_band))
         return (limits[key.name], bands[key.name]) if key.name in bands else (key.of(self), None)
 
     def to_dict(self) -> dict[str, Any]:
@@ -136,8 +136,8 @@ class Outcome:
             A key is unknown, missing, of the wrong kind, not finite, or null without a reason.
         """
         check_record(values, KEYS, source)
-        made: Outcome = _made(cls, {key.path: _typed(key, values) for key in KEYS})
-        return made
+        outcome: Outcome = _build(cls, {key.path: _field_value(key, values) for key in KEYS})
+        return outcome
 
 
 KEYS: tuple[Key, ...] = (
@@ -174,10 +174,6 @@ def _version(name: str) -> str:
         return "not installed"
 
 
-def _short(value: Num) -> str:
-    return "not known" if isinstance(value, Unknown) else f"{value:.4g}"
-
-
 def _plain(key: Key, value: Any) -> Any:
     """Return a value as plain JSON; NumPy's scalars are unpacked."""
     if isinstance(value, Unknown):
@@ -189,8 +185,8 @@ def _plain(key: Key, value: Any) -> Any:
     return value.tolist() if hasattr(value, "tolist") else value
 
 
-def _typed(key: Key, values: Mapping[str, Any]) -> Any:
-    """Return the value of a key as its field holds it."""
+def _field_value(key: Key, values: Mapping[str, Any]) -> Any:
+    """Return the value of a field of an outcome from plain JSON values."""
     value = values[key.name]
     if value is None:
         return Unknown(values["reasons"][key.name])
@@ -200,12 +196,12 @@ def _typed(key: Key, values: Mapping[str, Any]) -> Any:
     return tuple(value) if key.kind == "texts" else value
 
 
-def _made(cls: Any, values: Mapping[tuple[str, ...], Any], path: tuple[str, ...] = ()) -> Any:
-    """Return a group, and the groups in it, from the values by their paths."""
+def _build(cls: Any, values: Mapping[tuple[str, ...], Any], path: tuple[str, ...] = ()) -> Any:
+    """Return an instance of a group and of the groups in it; ``values`` are given by their paths."""
     places = {name: (*path, name) for name in _hints(cls)}
     return cls(
         **{
-            name: values[place] if place in values else _made(_hints(cls)[name], values, place)
+            name: values[place] if place in values else _build(_hints(cls)[name], values, place)
             for name, place in places.items()
         }
     )

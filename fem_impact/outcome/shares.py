@@ -1,4 +1,4 @@
-"""The shares of E_0 and the accounts of the ledger over time: names, colours, and where each is shown."""
+"""Shares of E_0 after an impact and accounts of the energy ledger over time, with labels and colours."""
 
 from __future__ import annotations
 
@@ -10,11 +10,8 @@ from fem_impact.outcome.keys import Key, Num
 from fem_impact.outcome.record import KEY_TABLE
 
 Place = Literal["terminal", "figure", "comparison", "report", "study"]
-"""Where shares are listed: the terminal, figures of one or many runs, model beside measurement, pages,
-the ledger of a study's runs and its families of meshes."""
-
-Group = Literal["motion", "contact", "flow", "outgoing"]
-"""Kinds of shares: left in the rod's motion, lost at the contact, to plastic flow, carried out or in."""
+"""Where shares are listed: the terminal, the figures of runs, the comparison of model and measurement, the
+HTML report, and the tables of a study."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,16 +20,14 @@ class EnergyShare:
 
     Attributes
     ----------
-    key : its value in an outcome, with unit and meaning
+    key : key of its value in an outcome, with unit and meaning
     label : name in tables and figures
-    group : its kind
-    colour : name in the palette of the figures
+    colour : name of a colour in the palette of the figures
     shown : the places that list it
     """
 
     key: Key
     label: str
-    group: Group
     colour: str
     shown: frozenset[Place]
 
@@ -47,26 +42,26 @@ class EnergyShare:
         return share
 
 
-def _share(name: str, label: str, group: Group, colour: str, *shown: Place) -> EnergyShare:
+def _share(name: str, label: str, colour: str, *shown: Place) -> EnergyShare:
     always: tuple[Place, ...] = ("terminal", "report")
-    return EnergyShare(KEY_TABLE[f"{name}_over_E_0"], label, group, colour, frozenset({*always, *shown}))
+    return EnergyShare(KEY_TABLE[f"{name}_over_E_0"], label, colour, frozenset({*always, *shown}))
 
 
 SHARES = (
-    _share("E_r", "rigid motion", "motion", "blue", "figure", "study"),
-    _share("E_vib", "vibration", "motion", "night", "figure", "comparison", "study"),
-    _share("W_friction", "friction", "contact", "green", "figure", "comparison", "study"),
-    _share("E_plastic_rod", "plastic rod", "flow", "purple", "figure", "comparison", "study"),
-    _share("E_plastic_barrier", "plastic barrier", "flow", "vermilion", "figure", "comparison", "study"),
-    _share("E_locked_rod", "locked in rod", "flow", "sky", "figure", "comparison"),
-    _share("E_locked_barrier", "locked in barrier", "flow", "orange", "figure", "comparison"),
-    _share("W_radiated", "radiated", "outgoing", "yellow", "figure", "comparison"),
-    _share("W_closing", "contact closing", "contact", "grey", "figure"),
-    _share("W_damping", "damping", "outgoing", "sand", "figure"),
-    _share("E_contact", "held by the contact", "contact", "grey"),
-    _share("W_gravity", "gravity", "outgoing", "grey"),
+    _share("E_r", "rigid motion", "blue", "figure", "study"),
+    _share("E_vib", "vibration", "night", "figure", "comparison", "study"),
+    _share("W_friction", "friction", "green", "figure", "comparison", "study"),
+    _share("E_plastic_rod", "plastic rod", "purple", "figure", "comparison", "study"),
+    _share("E_plastic_barrier", "plastic barrier", "vermilion", "figure", "comparison", "study"),
+    _share("E_locked_rod", "locked in rod", "sky", "figure", "comparison"),
+    _share("E_locked_barrier", "locked in barrier", "orange", "figure", "comparison"),
+    _share("W_radiated", "radiated", "yellow", "figure", "comparison"),
+    _share("W_closing", "contact closing", "grey", "figure"),
+    _share("W_damping", "damping", "sand", "figure"),
+    _share("E_contact", "held by the contact", "grey"),
+    _share("W_gravity", "gravity", "grey"),
 )
-"""Every share, in the order of tables and figures; what gravity adds is no part of E_0 and no area."""
+"""All shares, in the order of tables and figures. No figure has the work of gravity."""
 
 
 def shares(place: Place) -> tuple[EnergyShare, ...]:
@@ -76,7 +71,7 @@ def shares(place: Place) -> tuple[EnergyShare, ...]:
 
 @dataclass(frozen=True, slots=True)
 class LedgerAccount:
-    """An account of the ledger over time: its column of history.csv, J, its label, its colour's name."""
+    """One account of the energy ledger over time: column of history.csv (J), label, name of its colour."""
 
     column: str
     label: str
@@ -95,4 +90,4 @@ ACCOUNTS = (
     LedgerAccount("W_damping_J", "damping", "night"),
     LedgerAccount("W_closing_J", "contact closing", "grey"),
 )
-"""Accounts of history.csv from the bottom of a figure to its top; gravity and the residual are no areas."""
+"""Accounts of history.csv from bottom to top of the stacked figure, without gravity and the residual."""

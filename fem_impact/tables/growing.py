@@ -1,4 +1,4 @@
-"""A table that grows during a run, so that a killed run leaves what it had."""
+"""A CSV table that is appended to during a run, so that a killed run leaves the rows written so far."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class HistoryWriter:
     seconds : float
         Longest time a row is kept back, in s, looked at on each append.
     go_on : bool
-        Keep the rows of an older file; `size` then cuts it to what a checkpoint knew.
+        Keep the rows of an older file; set `size` to drop those written after a checkpoint.
 
     Raises
     ------
@@ -71,13 +71,13 @@ class HistoryWriter:
         return self.path.stat().st_size
 
     @size.setter
-    def size(self, known: int) -> None:
+    def size(self, wanted: int) -> None:
         """Drop what was written after a checkpoint. Raises ValueError when the file is shorter."""
         self._waiting = []
         size = self.path.stat().st_size if self.path.is_file() else 0
-        if size < known:
-            raise ValueError(f"{self.path.name} holds {size} bytes of the {int(known)} written before.")
-        _cut_back(self.path, int(known))
+        if size < wanted:
+            raise ValueError(f"{self.path.name} holds {size} bytes of the {int(wanted)} written before.")
+        _cut_back(self.path, int(wanted))
 
     def __enter__(self) -> Self:
         return self
@@ -94,7 +94,7 @@ def _append(path: Path, data: bytes) -> None:
         with path.open("ab", buffering=0) as file:
             written = file.write(data)
             if written != len(data):
-                # a short write means the disk filled up; asking again yields the cause
+                # a short write means a full disk; writing the rest raises the error
                 file.write(data[written:])
     except OSError as error:
         _cut_back(path, size)
