@@ -1,4 +1,4 @@
-"""The barrier, one choice: a rigid plane, an elastic block, or a block that yields.
+"""The three barriers, of which a model has one: a rigid plane, an elastic block, or a block that yields.
 
 The blocks stand on springs for the rest of a half-space (see `radiation` for the waves that leave).
 """
@@ -35,12 +35,12 @@ def yield_ratio(scene: Scene) -> float:
 
 
 def no_harm(scene: Scene) -> Harm:
-    """Return nothing: a meshed barrier can do all that a plane can."""
+    """Return no change: the meshed barrier that replaces the plane contains the rigid case."""
     return Harm(0.0, 0.0)
 
 
 def fill_rigid(scene: Scene, spec: ModelSpec) -> None:
-    """Leave the plane."""
+    """Change no slot: the rigid plane is the default."""
 
 
 def fill_elastic(scene: Scene, spec: ModelSpec) -> None:

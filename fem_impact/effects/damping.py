@@ -25,7 +25,7 @@ def number(scene: Scene) -> float:
 
 
 def harm(scene: Scene) -> Harm:
-    """Return the energy that should have been damped."""
+    """Return the vibration energy that damping would take, and the change of e by it."""
     damped = min(number(scene), 1.0) * quick_impact(scene).E_vib
     return Harm(min(damped / normal_share(bodies_of(scene)), 1.0), damped)
 

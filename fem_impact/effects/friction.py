@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return f: even an upright strike spreads under the tip, and friction holds that back."""
+    """Return f. It matters in an upright impact too: friction restrains the radial spread of the tip."""
     return scene.surface.friction
 
 

@@ -1,4 +1,4 @@
-"""Heating of the contact by friction: observed, never fed back."""
+"""Heating of the contact by friction, computed from the motion without acting on it."""
 
 from __future__ import annotations
 
@@ -12,17 +12,17 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return the expected flash rise over the rise to the temperature that must not be reached."""
+    """Return the expected flash temperature rise over the rise to the ignition temperature."""
     return expected_rise(bodies_of(scene)) / (scene.heating.ignition - scene.heating.ambient)
 
 
 def harm(scene: Scene) -> Harm:
-    """Return nothing: heat does not act on the motion."""
+    """Return no change: heat does not act on the motion."""
     return Harm(0.0, 0.0)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Have the contact's heat watched."""
+    """Turn on the record of the contact's heat."""
     spec.heat = True
 
 

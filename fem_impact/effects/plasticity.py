@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Material, Scene
 
 
-DEEP = 1.6  # peak pressure over yield stress at first yield, which is below the surface
+DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
 SOURCE = (
     "first yield of a Hertzian contact below the surface (Johnson 1985, eq 6.9) or, with friction, on it "
     "(sec 7.1); the other body's limit pressure 2.8 sigma_y caps the pressure"

@@ -12,18 +12,18 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return the share of the normal energy that an elastic strike sends into a half-space."""
+    """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter)."""
     plate = scene.barrier.material
     return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
 
 
 def harm(scene: Scene) -> Harm:
-    """Return the radiated energy as lost restitution; the rod's vibration does not feel it."""
+    """Return the radiated share as the change of e; the vibration of the rod does not change."""
     return Harm(number(scene), 0.0)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Let waves out."""
+    """Put dashpots on the outer boundary of the block."""
     spec.radiating = True
 
 

@@ -1,4 +1,4 @@
-"""Rate hardening: steel flows at a higher stress the faster it is strained.
+"""Rate hardening: the flow stress of steel grows with the strain rate.
 
 The flow stress is multiplied by 1 + C ln(rate / 1 per s) for plastic strain rates above 1 per s (Johnson &
 Cook 1985, doi:10.1016/0013-7944(85)90052-9, eq 1, no thermal softening). C = 0.022 is their value for the
@@ -14,7 +14,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
-from fem_impact.physics.hardening import SLOWEST, C, Hardening, RateFactor, rate_gain
+from fem_impact.physics.hardening import SLOWEST, C, RateFactor, rate_gain
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -27,11 +27,9 @@ def number(scene: Scene) -> float:
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
     """Give every material that yields its rate factor."""
-    spec.rod_law, spec.barrier_law = _hardened(spec.rod_law), _hardened(spec.barrier_law)
-
-
-def _hardened(law: Hardening | None) -> Hardening | None:
-    return replace(law, rate=RateFactor(C, SLOWEST)) if law else None
+    factor = RateFactor(C, SLOWEST)
+    spec.rod_law = replace(spec.rod_law, rate=factor) if spec.rod_law else None
+    spec.barrier_law = replace(spec.barrier_law, rate=factor) if spec.barrier_law else None
 
 
 EFFECT = Effect(

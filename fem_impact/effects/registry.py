@@ -48,7 +48,7 @@ _REMEDY = (
 
 
 def grounded(names: Sequence[str]) -> list[str]:
-    """Drop the effects that mean nothing without one that is not among them."""
+    """Drop effects whose prerequisite (`Effect.needs`) is absent."""
     return [name for name in names if not EFFECTS[name].needs or set(names) & set(EFFECTS[name].needs)]
 
 
@@ -70,10 +70,10 @@ def check_effects(names: Sequence[str]) -> None:
 
 
 def _check_known(name: str, auto: bool) -> None:
-    known = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
-    if name in known:
+    allowed = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
+    if name in allowed:
         return
-    hint = did_you_mean(name, known, _REMEDY)
+    hint = did_you_mean(name, allowed, _REMEDY)
     if not auto and name.removeprefix("-") in NAMES:
         hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
     if name.removeprefix("-") in BARRIERS:
@@ -93,11 +93,11 @@ def _check_barrier(names: Sequence[str], auto: bool) -> None:
 
 
 def _check_needs(names: Sequence[str]) -> None:
-    """Refuse a forced effect whose ground is named off, or not named in a list without auto."""
+    """Refuse a named effect whose prerequisites are switched off, or not named in a list without auto."""
     barrier = next((name for name in names if name in BARRIERS), None)
     for name, needs in ((effect.name, effect.needs) for effect in EFFECTS.values() if effect.needs):
-        gone = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
-        missing = gone if AUTO in names else [n for n in needs if n not in names]
+        excluded = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
+        missing = excluded if AUTO in names else [n for n in needs if n not in names]
         if name in names and len(missing) == len(needs):
             raise SceneError(
                 f'names "{name}", which means nothing without {" or ".join(needs)}.',

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return about the angle turned until the impact is over, rad: tau at the mean spin, T1 at the last one.
+    """Return the estimated angle turned during the impact, rad: tau at the mean spin, T1 at the last one.
 
     A second contact comes about a bending period after the first.
     """
@@ -23,13 +23,13 @@ def number(scene: Scene) -> float:
 
 
 def harm(scene: Scene) -> Harm:
-    """Return the vibration that turned forces would change, 2 theta of it, and its restitution."""
+    """Return the error of E_vib by the turned direction of forces, a share 2 theta of it, and that of e."""
     changed = min(2 * number(scene), 1.0) * quick_impact(scene).E_vib
     return Harm(min(changed / normal_share(bodies_of(scene)), 1.0), changed)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Take the turning frame."""
+    """Let the frame of the linear part turn with the rod."""
     spec.turning_frame = True
 
 

@@ -1,4 +1,4 @@
-"""The slots of a model that effects fill; an empty slot is a part that is never built."""
+"""The parts of a model that effects switch on (its slots), and what defines an effect."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 @dataclass(slots=True)
 class ModelSpec:
-    """What the model is made of, beyond a rod with an elastic nose on a rigid frictionless plane.
+    """Slots of the model; all defaults give a rigid rod with an elastic nose on a rigid frictionless plane.
 
     Attributes
     ----------
     vibrating : the body behind the nose is elastic
     friction : Coulomb coefficient f, or None for a frictionless contact
-    rod_law, barrier_law : hardening of what may yield
+    rod_law, barrier_law : hardening law of a body that may yield, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
     gravity : acceleration, m/s2, or None
     loss_factor : of the rod's vibration, or None
-    heat : the contact's heat is watched
+    heat : the contact's heat is computed
     turning_frame : the rod's linear part follows its rotation
     """
 
@@ -45,7 +45,7 @@ class ModelSpec:
 
 @dataclass(frozen=True, slots=True)
 class Harm:
-    """What leaving an effect out changes, about: e, and E_vib as a fraction of E_0."""
+    """Estimated change by leaving an effect out: of e, and of E_vib as a fraction of E_0."""
 
     e: float
     E_vib: float
@@ -53,7 +53,7 @@ class Harm:
 
 @dataclass(frozen=True, slots=True)
 class Effect:
-    """One effect: its name, what it does, the number that says whether it matters, how it enters.
+    """One effect: name, meaning, the number that decides whether it is needed, and the slots it fills.
 
     Attributes
     ----------
@@ -63,10 +63,10 @@ class Effect:
     measure : name of the dimensionless number
     threshold : number above which the effect is needed
     source : where the number and its threshold come from
-    number : computes it from a scene that lists its effects, none chosen by "auto"
-    fill : fills its slots
-    harm : what a scene loses without the effect, computed from the scene; None: told by two quick impacts
-    needs : the effect means nothing unless one of these is on; none: it stands alone
+    number : returns the number for a scene that lists its effects explicitly (no "auto")
+    fill : sets its slots in a specification
+    harm : returns the change by leaving the effect out; None: the difference of two quick impacts is taken
+    needs : prerequisites, of which at least one must be on; empty: none
     """
 
     name: str
@@ -94,7 +94,7 @@ def bodies_of(scene: Scene) -> ContactBodies:
 
 
 def quick_impact(scene: Scene) -> BeamImpact:
-    """Return about what an impact comes to, of a scene that lists the effects of its model."""
+    """Return the quick estimate of an impact for a scene that lists the effects of its model."""
     return strike(
         bodies_of(scene),
         vibrating="vibration" in scene.effects,

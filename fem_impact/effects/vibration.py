@@ -1,7 +1,7 @@
 """Elastic vibration of the rod: waves and bending.
 
-Off is the limit of a rod that is rigid but for its contact: the nose, about the first half diameter with the
-whole contact in it, deforms (and yields) as before, and the slices behind it become one rigid body.
+Without it the rod is rigid except for its nose: the nose, about the first half diameter with the whole
+contact in it, still deforms (and yields), and the slices behind it are one rigid body.
 """
 
 from __future__ import annotations
@@ -17,9 +17,11 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return the longest period that the blow can excite over the contact time."""
-    periods = [stretching_period(scene), *([bending_period(scene)] if scene.impact.angle > 0 else [])]
-    return max(periods) / contact_estimate(bodies_of(scene)).duration
+    """Return the longest period that the impact can excite over the contact time."""
+    longest = stretching_period(scene)
+    if scene.impact.angle > 0:
+        longest = max(longest, bending_period(scene))
+    return longest / contact_estimate(bodies_of(scene)).duration
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

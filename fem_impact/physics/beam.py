@@ -1,4 +1,8 @@
-"""The rod as a free beam: its periods, and its modes as the contact point sees them."""
+"""The rod as a free beam: periods, modes at the contact point, and its exact motion between impulses.
+
+Bending is Timoshenko's, stretching that of a bar. Between two impulses at the contact point the modes and the
+rigid motion have closed forms, which `BeamFlight` evaluates in steps of constant length.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +22,12 @@ if TYPE_CHECKING:
 
 ROOTS = np.array([4.730041, 7.853205, *((2 * np.arange(3, 31) + 1) * pi / 2)])  # cos cosh = 1
 SHEAR = 0.9  # shear coefficient of a round section, about 6 (1 + nu) / (7 + 6 nu) (Cowper 1966)
-STRETCHING = 20  # modes at most
+STRETCHING = 20  # largest number of longitudinal modes
+BLOCK = 2048  # steps of a flight that are evaluated together
+HORIZON = 4e-3  # s, least time that a free flight is looked ahead: the camera's window, 40 frames at 10 kHz
+PERIODS = 1.5  # of the rod's bending, that a free flight is looked ahead if they are longer
+
+AnyArray = NDArray[Any]
 
 
 class Beam(NamedTuple):
@@ -55,8 +64,8 @@ def stretching_period(scene: Scene) -> float:
 def beam(scene: Scene) -> Beam:
     """Return the modes of a rod at its contact point.
 
-    The end of a bending mode, 2 high for a unit mass, turns by w' (1 - (w/b)^2 rho/(kappa G)) (Timoshenko),
-    which takes its share of the modal mass.
+    The end of a bending mode, of amplitude 2 for a unit mass, rotates by w' (1 - (w/b)^2 rho/(kappa G))
+    (Timoshenko); its rotatory inertia is part of the modal mass.
     """
     body, alpha, r = projectile(scene), scene.impact.angle, scene.projectile.diameter / 4
     rho, z = (float(part) for part in body.contact_point(alpha))
@@ -68,9 +77,9 @@ def beam(scene: Scene) -> Beam:
     omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
     x = np.concatenate([height * (2 - turn * z), 0.0 * count])
     y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
-    kept = omega < section_frequency(scene)
+    below = omega < section_frequency(scene)
     along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
-    return Beam(omega[kept], along_t[kept], along_n[kept])
+    return Beam(omega[below], along_t[below], along_n[below])
 
 
 def _bar_speed(scene: Scene) -> float:
@@ -78,13 +87,8 @@ def _bar_speed(scene: Scene) -> float:
     return float((steel.E / steel.rho) ** 0.5)
 
 
-AnyArray = NDArray[Any]
-
-BLOCK = 2048  # steps that are looked at together
-
-
 class Rigid(NamedTuple):
-    """Rigid motion: m/s, m/s, rad/s, and the height, m, of the contact point that it gives."""
+    """Rigid motion: velocities, m/s; spin, rad/s; height, m, of the contact point by it."""
 
     V_n: float
     V_t: float
@@ -94,14 +98,14 @@ class Rigid(NamedTuple):
 
 @dataclass(slots=True)
 class BeamFlight:
-    """The motion between kicks, exactly, in steps ``dt``, s; ``swing`` is omega q + i dq/dt of each mode.
+    """Exact motion between impulses in steps ``dt``, s; ``swing`` (modes,) is omega q + i dq/dt of each mode.
 
     Attributes
     ----------
-    table : (modes, BLOCK + 1) turn of each mode after 0, 1, ... steps
-    give : (modes,) its height over ``swing``
-    g : (2,) what gravity takes from V_n and V_t in a step, m/s
-    longest : 1.5 periods of the slowest mode, s: a free rod that has not come back by then is gone
+    table : (modes, BLOCK + 1) complex factor of each mode after 0, 1, ... steps
+    give : (modes,) height of the contact point per unit of ``swing``
+    g : (2,) decrease of V_n and V_t by gravity in a step, m/s
+    longest : 1.5 periods of the slowest mode, s: a rod that does not touch for so long has left
     """
 
     modes: Beam
@@ -113,24 +117,23 @@ class BeamFlight:
     longest: float = field(init=False)
 
     def __post_init__(self) -> None:
-        """Tabulate."""
         omega = self.modes.omega
         self.table = np.exp(-1j * self.dt * np.outer(omega, np.arange(BLOCK + 1)))
         self.give = self.modes.along_n / omega
         self.longest = 3 * pi / float(omega.min(initial=inf)) + 2 * self.dt
 
     def depth(self, now: Rigid, swing: AnyArray) -> float:
-        """Return how deep the contact point is, m."""
+        """Return the depth of the contact point, m."""
         return -now.height - float(self.give @ swing.real)
 
     def free(self, now: Rigid, swing: AnyArray, crater: float) -> int:
-        """Return the steps, one at least and `BLOCK` at most, until the contact point is in its crater."""
+        """Return the steps, from 1 to `BLOCK`, until the contact point is below the depth of its crater."""
         n = np.arange(1, BLOCK + 1)
         below = self._height(now, n) + ((self.give * swing) @ self.table[:, 1:]).real < -crater
         return int(n[np.argmax(below)]) if below.any() else BLOCK
 
     def gone(self, now: Rigid, swing: AnyArray, crater: float) -> bool:
-        """Return whether no vibration brings the contact point back: what falls back strikes anew."""
+        """Return whether no vibration can bring the contact point back; a fall by gravity is not counted."""
         return self._away(now) > 0 and now.height + crater > float(np.abs(self.give) @ np.abs(swing))
 
     def fly(self, now: Rigid, swing: AnyArray, n: int) -> tuple[Rigid, AnyArray]:
@@ -147,9 +150,6 @@ class BeamFlight:
         return now.V_n + self.d_c * now.spin
 
 
-HORIZON, PERIODS = 4e-3, 1.5  # s, the camera's window: 40 frames at 10 kHz; of the rod's bending, if longer
-
-
 def horizon(scene: Scene) -> float:
-    """Return how far a free flight is looked ahead, s: a long rod's tip comes back with its bending."""
+    """Return the time, s, that a free flight is looked ahead for a further contact by the rod's bending."""
     return max(HORIZON, PERIODS * bending_period(scene))

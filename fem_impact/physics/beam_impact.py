@@ -1,10 +1,10 @@
-"""About what an impact comes to, in milliseconds: what leaving an effect out changes is told from it.
+"""Quick estimate of an impact (milliseconds): the change by leaving an effect out is a difference of two.
 
-A rod of beam modes strikes one point. The place of the contact on the rod and the directions do not change.
-The contact is Hertz' until its peak pressure is p; each further depth adds p over the area 2 pi R d that it
-uncovers, and it unloads like a Hertzian contact of the same area. p is 2.8 times the flow stress, the softer
-body's ultimate stress with its gain by the rate. The tangential force is Mindlin's spring up to Coulomb's
-limit; where the surface yields it bears less:
+A rod of beam modes strikes at one point. The place of the contact on the rod and the directions are fixed.
+The contact is Hertz' until its peak pressure is p; beyond, the force grows by p over the added area 2 pi R d
+of each depth increment, and it unloads like a Hertzian contact of the same area.
+p is 2.8 times the flow stress, the softer body's ultimate stress with its gain by the rate. The tangential
+force is Mindlin's spring up to Coulomb's limit; where the surface yields it is smaller:
 
     F_t <= F_n |v_t| / (3 |v_n|)      while it is pressed in: Levy-Mises flow of a layer between the bodies
     F_t <= F_max / (1 + pi/2)         a surface dragged at its shear strength k holds p = (1 + pi/2) k, as its
@@ -36,10 +36,11 @@ from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.hardening import rate_gain
 from rigid import GRAVITY
 
-STEPS, MOST_STEPS = 150, 6000  # over the estimated contact; with contact, in all
-LAYER = 3.0  # a shear stress counts three times squared beside a normal one (von Mises)
-DRAGGED = 1 / (1 + pi / 2)
-SLOWEST = 1e-6  # m/s
+STEPS = 150  # time steps over the estimated contact time
+MOST_STEPS = 6000  # impulses and flights together
+LAYER = 3.0  # factor of the squared shear stress beside the squared normal one (von Mises)
+DRAGGED = 1 / (1 + pi / 2)  # shear strength over pressure of a surface that is dragged (Hencky)
+SLOWEST = 1e-6  # m/s, least approach that the rebound is divided by
 
 
 class BeamImpact(NamedTuple):
@@ -80,7 +81,7 @@ class Touch:
 
     @property
     def crater(self) -> float:
-        """Depth, m, that stays: there is no force above it."""
+        """Permanent depth, m; the force is zero above it."""
         return self.peak - self._back()
 
     def _normal(self, depth: float) -> float:
@@ -91,7 +92,7 @@ class Touch:
         return float(self.most * (max(depth - self.peak + back, 0.0) / back) ** 1.5)
 
     def _back(self) -> float:
-        """Return what unloading gives back of the largest depth, m."""
+        """Return the elastic recovery of the largest depth, m."""
         if not self._yielded():
             return self.peak
         area = self.law.R * (2 * self.peak - self.law.yield_depth)  # over pi
@@ -109,13 +110,13 @@ class Touch:
 
 @cache
 def strike(bodies: ContactBodies, vibrating: bool, rate: bool, gravity: bool) -> BeamImpact:
-    """Return about what an impact comes to.
+    """Return the quick estimate of an impact.
 
     Parameters
     ----------
-    vibrating : the rod has its beam modes, or none
-    rate : flow stresses gain by the strain rate
-    gravity : it acts
+    vibrating : whether the rod has its beam modes
+    rate : whether flow stresses grow with the strain rate
+    gravity : whether gravity acts
     """
     modes = beam(bodies.scene)
     if not vibrating:
@@ -124,7 +125,7 @@ def strike(bodies: ContactBodies, vibrating: bool, rate: bool, gravity: bool) ->
 
 
 def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> BeamImpact:
-    """Kick by the contact's force, fly exactly, until the rod is gone."""
+    """March in time, impulse of the contact force and exact flight in turn, until the rod has left."""
     scene = bodies.scene
     rod, impact, (d_c, d_d) = projectile(scene), scene.impact, arms(scene)
     dt, inertia = contact_estimate(bodies).duration / STEPS, rod.mass * rod.k2
@@ -144,13 +145,13 @@ def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> B
             break
         n = 1 if p_n > 0 else flight.free(now, swing, touch.crater)
         (now, swing), steps = flight.fly(now, swing, n), steps + n
-    left = now.V_n + flight.g[0] * steps + d_c * now.spin
+    rebound = now.V_n + flight.g[0] * steps + d_c * now.spin
     E_vib = float(np.sum(np.abs(swing) ** 2)) / 2 / start_energy(scene)
-    return BeamImpact(left / max(approach(scene), SLOWEST), E_vib, now.spin)
+    return BeamImpact(rebound / max(approach(scene), SLOWEST), E_vib, now.spin)
 
 
 def _law(bodies: ContactBodies, rate: bool) -> ContactLaw:
-    """Return the contact law that yields at the flow stress, over the geometric area."""
+    """Return the contact law whose limit pressure is that of the flow stress, on the area 2 pi R d."""
     law = contact_law(bodies)
     flow = min((material.ultimate_stress for material in bodies.yielding), default=inf)
     if flow == inf:

@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
-SECTION = 1.8412  # first zero of J1': where the round section begins to shear by itself
-FLATTEST = 0.2  # R2 of a contact on the flat face is infinite: cap, m
+SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
+FLATTEST = 0.2  # m, upper limit of R2, which is infinite for a contact on a flat face
 
 
 @dataclass(frozen=True, slots=True)
 class ContactBodies:
-    """The rod and the barrier as they touch: a scene, and what of its bodies takes part.
+    """Rod and barrier at the contact: a scene, and which of its properties the effects in force use.
 
     Attributes
     ----------
-    rod_yields, barrier_yields : the material may flow
-    compliant : the barrier deforms
+    rod_yields, barrier_yields : whether the material may yield
+    compliant : whether the barrier deforms
     f : Coulomb coefficient in force, 0 without friction
     """
 
@@ -113,7 +113,7 @@ def fall(gravity: float | None, time: float, intervals: Array) -> float:
     Parameters
     ----------
     time : s since first contact at which the rod's motion is taken
-    intervals : (k, 2) start and end of each contact, s; what it fell in flights between them stays with it
+    intervals : (k, 2) start and end of each contact, s; speed gained in flights between them is not included
     """
     between = (intervals[1:, 0] - intervals[:-1, 1]).sum()
     return float((gravity or 0.0) * (time - between))
@@ -128,7 +128,7 @@ def shear_speed(scene: Scene) -> float:
 def section_frequency(scene: Scene) -> float:
     """Return the circular frequency, rad/s, above which the rod's modes deform the section.
 
-    Such modes are local: what they yield to a point load is the business of the contact law.
+    Such modes are local; their compliance under a point load is part of the contact law.
     """
     return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
 
@@ -175,6 +175,6 @@ def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
 
 
 def barrier_conforms(bodies: ContactBodies) -> bool:
-    """Return whether the barrier flows under all of the contact, so that its surface takes the rod's form."""
+    """Return whether the barrier yields under the whole contact, so that it takes the rod's shape."""
     flows = contact_estimate(bodies).pressure >= LIMIT_PRESSURE * bodies.scene.barrier.material.yield_stress
     return flows and bodies.barrier_yields

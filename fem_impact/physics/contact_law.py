@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Material
 
 
-# releases shorter than this are one contact: a few passages of a wave across the tip
+# s: contacts with a shorter gap count as one; a few passages of a wave across the tip
 MERGE_GAP = 10e-6
-# below this share of the largest impulse of a step, a touch neither starts nor prolongs a contact
+# least impulse of a step, over the largest of the run, that counts as contact
 FAINT = 1e-3
 
 

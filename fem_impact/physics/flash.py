@@ -6,11 +6,11 @@ A patch of radius a takes the flux q for a short time. Three closed forms bound 
     steady, resting source                     T = q a / k
     steady, moving at V                        T = 2 q a / (k sqrt(pi (1.273 + Pe))),  Pe = V a / (2 kappa)
 
-(Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed, 2.9 and 10.5; Jaeger 1942; Tian & Kennedy 1994,
-doi:10.1115/1.2927035, which fits the last between both limits.) A source that rests heats most, and heat
-that spreads sideways only cools, so the least of them is an upper estimate for the patch. Heat is shared so
-that both surfaces are equally hot where they touch (Blok), 1/T = 1/T_rod + 1/T_barrier with T_i for all heat
-in body i. Nothing here feeds back on the motion.
+(Carslaw & Jaeger, Conduction of Heat in Solids, 2nd ed, 2.9 and 10.5; Jaeger 1942; the last is the fit of
+Tian & Kennedy 1994, doi:10.1115/1.2927035, between slow and fast sources.) A resting source gives the largest
+rise and lateral conduction only lowers it, so the least of the three is an upper estimate for the patch. The
+heat is divided so that both surfaces have the same temperature (Blok), 1/T = 1/T_rod + 1/T_barrier with T_i
+for all heat in body i. The motion does not depend on the heat.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-HARDNESS = 3.0  # of the ultimate stress: mean pressure that no asperity of the softer body exceeds
+HARDNESS = 3.0  # hardness over ultimate stress: largest mean pressure on an asperity of the softer body
 ASSUMPTIONS = (
     "every touching spot carries the hardness of the softer body, three times its ultimate stress",
     "it slides at the sum of the tip's tangential speed and its normal speed for three contact times",
@@ -103,7 +103,7 @@ def flash(t: Array, q: Array, a: Array, V: Array, rod: Half, barrier: Half) -> F
 
 
 def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
-    """Return the lower of the short and the steady rise; heat that has been put in stays for a while."""
+    """Return the lower of the short-time rise and the largest steady rise so far, K, at times t (n,)."""
     steady = np.maximum.accumulate(moving_rise(q, a, V, body))
     return np.asarray(np.minimum(short_rise(t, q, body), np.concatenate([[0.0], steady])))
 

@@ -66,8 +66,8 @@ def _nominal_strength_ratio(n: float, stiffness: float) -> float:
 def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Hardening:
     """Return the power law through yield point, elastic slope and nominal ultimate stress.
 
-    sigma = sigma_y (1 + E eps_p / sigma_y)^n; the only free number n follows from the ultimate stress
-    at the onset of necking (Considere's construction), so nothing is chosen by hand.
+    sigma = sigma_y (1 + E eps_p / sigma_y)^n; its only parameter n follows from the ultimate stress at the
+    onset of necking (Considere's construction).
 
     Raises
     ------
@@ -84,8 +84,7 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
     if not 1 <= ratio <= _nominal_strength_ratio(high, stiffness):
         raise ValueError(
             f"Ultimate stress {ultimate_stress:g} Pa must lie between the yield stress {yield_stress:g} Pa "
-            "and "
-            f"{_nominal_strength_ratio(high, stiffness):.2f} times it."
+            f"and {_nominal_strength_ratio(high, stiffness):.2f} times it."
         )
     n = _necking_strain(stiffness, ratio, high) if ratio > 1 else 0.0
     return Hardening(yield_stress, stiffness if n else 0.0, n)
@@ -94,8 +93,8 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
 def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
     """Return the n below ``high`` that gives a strength ratio, by Newton's method on its logarithm.
 
-    That is convex and grows with n from 1/stiffness on, where the necking strain leaves the elastic range, so
-    that the steps from above come down to the root and stop there.
+    The logarithm is convex and increases with n above 1/stiffness, where the necking strain exceeds the
+    elastic range, so that Newton's steps from above decrease to the root.
     """
     n = high
     while (step := np.log(_nominal_strength_ratio(n, stiffness) / ratio) / np.log(stiffness * n)) > 0:
