@@ -18,8 +18,8 @@ from fem_impact.errors import MissingLibraryError, UsageError
 P = ParamSpec("P")
 T = TypeVar("T")
 
-TRIES = 2  # a process may be killed for memory that others took; a job that kills two is at fault
-GRACE = 3.0  # s that a process has to remove its drafts before it is killed
+TRIES = 2  # a process may be killed for memory that others use; a job whose process dies twice fails
+GRACE = 3.0  # s from SIGTERM to SIGKILL, in which a process removes its drafts
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 SCHEDULER_PATIENCE = 20  # s to wait for the scheduler and its first worker
 
@@ -101,7 +101,7 @@ class LocalProcesses(Executor):
 
 
 class _DiedError(Exception):
-    """The process at the other end of a pipe is gone."""
+    """The process at the other end of a pipe has ended."""
 
 
 class _Worker:
@@ -169,7 +169,7 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def on_scheduler(address: str) -> Iterator[Executor]:
-    """Lend the workers of a scheduler; a job whose worker dies is given to another one by the scheduler.
+    """Yield an executor on the workers of a dask scheduler, which repeats a job whose worker dies.
 
     Workers need this package in the same version and one thread each (``dask worker --nthreads 1``).
 

@@ -17,14 +17,14 @@ if TYPE_CHECKING:
 
 
 WORKERS = (1, 2, 10, 100, 1000)  # numbers of workers that a time is forecast for
-SAMPLE = 8  # jobs of a fidelity that are computed, and kept, when none was measured yet
+SAMPLE = 8  # jobs of a fidelity that are computed (and stored) when none was measured yet
 
 
 @dataclass(frozen=True, slots=True)
 class WorkForecast:
-    """Jobs in all and already stored; of the others the work, s, the longest, s, and the time by workers, s.
+    """Numbers of all and of stored jobs; of the others total time, longest job and wall time by workers, s.
 
-    ``kinds`` has one row a kind of job: fidelity, tip size, jobs to do, median cost, measured jobs behind it.
+    ``kinds`` has one row per kind of job: fidelity, tip size, jobs to do, expected cost, measured jobs.
     """
 
     jobs: int
@@ -49,11 +49,11 @@ def estimate(
     run_jobs(_samples(wanted, measured), store, progress, executor)
     with Store.open(store) as base:
         costs, done = base.costs(), stored_results(base, wanted, progress)
-    left = [job for job in wanted if job.name not in done]
-    expected = expected_costs(left, costs)
+    remaining = [job for job in wanted if job.name not in done]
+    expected = expected_costs(remaining, costs)
     wall = {n: makespan(expected.values(), n) for n in WORKERS}
     longest = max(expected.values(), default=0.0)
-    kinds = _kinds(left, expected, costs)
+    kinds = _kinds(remaining, expected, costs)
     return WorkForecast(len(wanted), len(done), sum(expected.values()), longest, wall, kinds)
 
 

@@ -1,4 +1,4 @@
-"""One job of a study: a scene and a fidelity, computed once; and what a worker hands back."""
+"""One job of a study, a scene and a fidelity, and the answer that a worker returns."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Job:
 
     @property
     def kind(self) -> Kind:
-        """What jobs of about the same cost share: fidelity and tip size, m, which is 0 without a mesh."""
+        """Fidelity and tip size, m (0 without a mesh): jobs of one kind cost about the same."""
         return self.fidelity, self.scene.accuracy.tip_size if self.fidelity == "solid" else 0.0
 
 
@@ -65,7 +65,7 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a worker hands back: the outcome as text or the reason of a failure.
+    """Answer of a worker: the outcome as text or the reason of a failure.
 
     Attributes
     ----------
@@ -76,7 +76,7 @@ class Answer:
     reason : str
         Empty when it did not.
     lasting : bool
-        Whether the same program would fail again, so that nobody need try.
+        Whether the same program would fail again, so that the failure is stored.
     wall_s : float
         Wall time, s.
     """
@@ -133,5 +133,5 @@ def read_outcome(job: Job, text: str) -> Outcome:
 
 
 def _run_of(outcome: Outcome) -> tuple[str, str, object]:
-    """Return what tells one run from another: scene, date and wall time."""
+    """Return the identity of a run: scene digest, date and wall time."""
     return outcome.provenance.scene_digest, outcome.provenance.created_utc, outcome.cost.wall

@@ -1,4 +1,4 @@
-"""Run jobs through an executor, keep their answers in a store, and say how long the others will take."""
+"""Run jobs on an executor, store their answers, and estimate the time of the remaining ones."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
-"""s a job, for the order and the ETA until one of its fidelity was measured."""
+"""Assumed time of a job, s, until one of its fidelity was measured."""
 
 STEEPNESS = 3.0
 """A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm (README)."""
@@ -69,13 +69,13 @@ def makespan(costs: Iterable[float], workers: int) -> float:
 
 @dataclass(slots=True)
 class Eta:
-    """Tells a meter after every job how much time all jobs still need: time so far over work so far."""
+    """Reports the time, s, until all jobs are done: expected costs, scaled by time so far over work done."""
 
     costs: dict[str, float]
     total: int
     meter: ProgressMeter
     begun: float
-    left: float
+    remaining: float
     done: float = 0.0
 
     @classmethod
@@ -86,8 +86,8 @@ class Eta:
     def __call__(self, name: str, count: int) -> None:
         """Report that ``name`` is done, ``count`` jobs in all."""
         self.done += self.costs[name]
-        self.left -= self.costs[name]
-        eta = (time.monotonic() - self.begun) * max(self.left, 0.0) / self.done
+        self.remaining -= self.costs[name]
+        eta = (time.monotonic() - self.begun) * max(self.remaining, 0.0) / self.done
         self.meter(CaseProgress(name, count, self.total, eta))
 
 
@@ -128,7 +128,7 @@ def run_jobs(
 
 
 def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> Results:
-    """Return the stored results of jobs by name; an answer that is not of its job is told and left out."""
+    """Return the stored results of jobs by name; answers not of their job are reported and left out."""
     results: Results = {}
     for job in jobs:
         try:
@@ -156,7 +156,7 @@ def _compute(waiting: list[Job], base: Store, executor: Executor, results: Resul
 
 
 def _result(job: Job, answer: Answer) -> Outcome | Failure:
-    """Return what a worker has handed back, read as the store would be."""
+    """Return the result of a worker's answer, checked like a stored one."""
     if answer.reason:
         return Failure(job.name, answer.reason)
     try:

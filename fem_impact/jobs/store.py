@@ -1,4 +1,4 @@
-"""Answers of jobs by content address in one SQLite file, written by the process of the study only."""
+"""Store of answers by the key of the job, in one SQLite file that only the process of the study writes."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ SELECT fidelity, tip_size_m, wall_s FROM answers
 WHERE reason = '' AND typeof(tip_size_m) = 'real' AND typeof(wall_s) = 'real' AND wall_s > 0
 """
 PATIENCE = 30.0  # s to wait while another process reads or writes
-# faults of the place, by SQLite's primary result code, with what helps; any other is a damaged file
+# remedies for faults of the place by SQLite's primary result code; any other fault is a damaged file
 _PLACE = {
     sqlite3.SQLITE_FULL: "Free some space.",
     sqlite3.SQLITE_BUSY: "Close the program that uses it.",
@@ -52,9 +52,9 @@ class Store:
         Raises
         ------
         OutputPathError
-            It cannot be made.
+            The file cannot be made.
         ResultError
-            It is no store, or damaged.
+            The file is no store, or damaged.
         """
         make_directory(path.parent)
         try:
@@ -77,7 +77,7 @@ class Store:
         Raises
         ------
         ResultError
-            What is stored under the key of the job is not what was stored there.
+            The stored answer does not match its checksum.
         """
         key = job.key
         with _named(self._path):
@@ -106,7 +106,7 @@ class Store:
 
 
 def _checksum(key: str, outcome: object, reason: object) -> str:
-    """Return a digest that binds an answer to the key of its job; of whatever type a spoiled row holds."""
+    """Return the SHA-256 of key and answer; a damaged row may hold values of any type."""
     return hashlib.sha256(json.dumps([key, outcome, reason], default=repr).encode()).hexdigest()
 
 

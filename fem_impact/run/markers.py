@@ -1,9 +1,9 @@
 """The camera's measurement replayed: two markers, mean velocity over 40 frames at 10 kHz.
 
-A mean over frames of a tracked position telescopes to its difference over the window, so a vibrating
-marker adds (u(T) - u(0)) / T. The lower marker's lever from the mass centre was found by regression on
-the published velocities (52, 32 mm for the 0.12 and 0.08 m rods); for the 0.24 m rod the regression
-gives 124 mm, beyond the tip, so there the marker is taken at the tip.
+The mean velocity of a tracked position is its difference over the window T, divided by T, so vibration of
+a marker by u adds (u(T) - u(0)) / T. The lever of the lower marker from the mass centre is from a regression
+on the published velocities (52 and 32 mm for the rods of 0.12 and 0.08 m). For the rod of 0.24 m it gives
+124 mm, beyond the tip, so the marker is taken at the tip there.
 """
 
 from __future__ import annotations
@@ -19,9 +19,9 @@ if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
 
 
-WINDOW = 4e-3  # s
-LEVER = {0.24: 0.124, 0.12: 0.052, 0.08: 0.032}  # m, by rod length
-OTHER_LEVER = 0.42  # of the length, for rods that were not measured
+WINDOW = 4e-3  # s, time T of 40 frames
+LEVER = {0.24: 0.124, 0.12: 0.052, 0.08: 0.032}  # m, by rod length, m
+OTHER_LEVER = 0.42  # lever over rod length, for rods that were not measured
 
 
 def lever_of(length: float) -> float:
@@ -30,9 +30,9 @@ def lever_of(length: float) -> float:
 
 
 def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
-    """Return what the camera would have read in the free flight after the run.
+    """Return the motion as the camera would have measured it in the free flight after the run.
 
-    ``V_n`` and ``V_t`` are the mass centre's velocities, m/s, with gravity taken out, as it is here.
+    ``V_n`` and ``V_t`` are the velocities of the mass centre, m/s, without gravity, as is the result.
     """
     alpha, turn = result.plan.scene.impact.angle, result.motion.Omega * WINDOW
     axis, across = (
@@ -41,12 +41,14 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
     )
     arm = -lever_of(result.plan.scene.projectile.length) * axis
     centre = _start_centre(result)
-    shake = _mean_shake(result, np.stack([_nearest(centre, result), _nearest(centre + arm, result)]))
-    upper = np.array([V_t, 0.0, V_n]) + shake[0]
-    lower = np.array([V_t, 0.0, V_n]) + shake[1] + (_turned(arm, turn) - arm) / WINDOW
+    rows = np.stack([_nearest(centre, result), _nearest(centre + arm, result)])
+    u = result.flight.displacement(rows.ravel(), np.array([0.0, WINDOW]))
+    by_vibration = (u[:, 1] - u[:, 0]).reshape(-1, 3) / WINDOW  # (markers, 3) m/s
+    upper = np.array([V_t, 0.0, V_n]) + by_vibration[0]
+    lower = np.array([V_t, 0.0, V_n]) + by_vibration[1] + (_turned(arm, turn) - arm) / WINDOW
     line = (upper - lower) * WINDOW - arm
     angle = float(np.arctan2(line @ across, line @ axis))
-    angle += 2 * np.pi * round((turn - angle) / (2 * np.pi))  # a film shows how often it has turned
+    angle += 2 * np.pi * round((turn - angle) / (2 * np.pi))  # the film shows the number of full turns
     return Markers(
         V_n=float(upper[2]),
         V_t=float(upper[0]),
@@ -73,9 +75,3 @@ def _nearest(place: Array, result: SolidResult) -> Ints:
     free = ~result.model.geometry.rod.mesh.is_hanging
     distance = ((result.model.geometry.rod_points[free] - place) ** 2).sum(axis=1)
     return np.asarray(result.model.layout.rod[free][np.argmin(distance)])
-
-
-def _mean_shake(result: SolidResult, rows: Ints) -> Array:
-    """Return (markers, 3) mean velocities that vibration adds over the window, m/s."""
-    u = result.flight.displacement(rows.ravel(), np.array([0.0, WINDOW]))
-    return np.asarray((u[:, 1] - u[:, 0]).reshape(-1, 3) / WINDOW)

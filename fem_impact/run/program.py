@@ -1,4 +1,4 @@
-"""Which program computes: a digest of its sources and libraries, and the stamp of what they made."""
+"""Identity of the program: the digest of its sources and libraries, and the stamp of stored results."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ LIBRARIES = ("numpy", "scipy", "scikit-fem", "numba", "llvmlite")
 
 @cache
 def source_digest() -> str:
-    """Return a digest of sources and library versions: another program never reads a stale result."""
+    """Return the SHA-256 of sources and library versions, to which stored results are bound."""
     digest = hashlib.sha256()
     for name, file in _sources().items():
         digest.update(name.encode())
@@ -59,5 +59,5 @@ def _files(place: str) -> Iterator[tuple[str, Traversable]]:
 
 
 def stamp(scene: Scene) -> str:
-    """Return what a stored result must have been computed from."""
+    """Return the stamp of a stored result: digests of its scene and of the program."""
     return f"scene {digest(scene)}\nsources {source_digest()}\n"

@@ -1,4 +1,4 @@
-"""Whether the mesh of a run resolved its contact; without that, coefficients and shares are not known."""
+"""Check of whether the mesh of a run resolved its contact; if not, coefficients and shares are unknown."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ if TYPE_CHECKING:
 
 
 T = TypeVar("T", "ArmCoefficients", "Energy")
-LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # pressed at once, of the half model
+LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # nodes of the half model in contact at its peak
 ARM_LENGTHS = ("d_c", "d_d")
 PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
-ROUND_OFF = 0.01  # of mu, where f is 0
-LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # true whatever the contact is
+ROUND_OFF = 0.01  # mu allowed where f is 0
+LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 
 
 def is_resolved(result: SolidResult) -> bool:
@@ -42,27 +42,28 @@ def too_narrow(result: SolidResult) -> str:
 
 
 def doubted(restitution: Restitution, f: float, E_r: float) -> list[str]:
-    """Return a sentence for each number that a blow on a resting barrier cannot give by itself.
+    """Return a sentence for each number that an impact on a resting barrier makes doubtful.
 
     Parameters
     ----------
     restitution : coefficients of the run; f : Coulomb coefficient in force
     E_r : kinetic energy of the rigid motion after the last separation over E_0
     """
-    e, mu, said = restitution.edge.e, restitution.mu, []
+    e, mu = restitution.edge.e, restitution.mu
+    doubts: list[str] = []
     if not isinstance(e, Unknown) and e > 1:
-        said.append(
+        doubts.append(
             f"e = {e:.3g} is above 1: bending, spin or friction handed energy to the contact point, or the "
             "mesh did. Confirm it with half the accuracy.tip_size."
         )
     if not isinstance(mu, Unknown) and abs(mu) > PLOUGHING * f + ROUND_OFF:
-        said.append(
+        doubts.append(
             f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form "
             "of its crater, or by the mesh. Confirm it with half the accuracy.tip_size."
         )
     if E_r > 1:
-        said.append(f"E_r is {E_r:.4g} of E_0, more than the rod brought: distrust every share.")
-    return said
+        doubts.append(f"E_r is {E_r:.4g} of E_0, more than the rod brought: distrust every share.")
+    return doubts
 
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:
@@ -76,8 +77,8 @@ def without(outcome: Outcome, reason: Unknown) -> Outcome:
     )
 
 
-def _blank(group: T, reason: Unknown, kept: tuple[str, ...]) -> T:
-    """Return a group of numbers with all but the ``kept`` ones replaced by the reason."""
-    lost = [one.name for one in fields(group) if one.name not in kept]
-    blank: dict[str, Any] = {n: reason for n in lost if not isinstance(getattr(group, n), Unknown)}
+def _blank(group: T, reason: Unknown, valid: tuple[str, ...]) -> T:
+    """Return a group of numbers with all but the ``valid`` ones unknown for a reason."""
+    names = [one.name for one in fields(group) if one.name not in valid]
+    blank: dict[str, Any] = {n: reason for n in names if not isinstance(getattr(group, n), Unknown)}
     return replace(group, **blank)

@@ -1,4 +1,4 @@
-"""The rigid fidelity: one impulse along a sliding path, restitution by Thornton's law."""
+"""The rigid fidelity: impulses of a rigid rod along its sliding path, restitution by Thornton's law."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ASSUMPTIONS = (
 
 
 def rigid_outcome(plan: Plan) -> Outcome:
-    """Return the outcome by rigid impulse-momentum theory; what it cannot know is null with a reason."""
+    """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
     scene = plan.scene
     rod, impact = projectile(scene), scene.impact
     d_c, d_d = arms(scene)
@@ -90,15 +90,15 @@ def _normal_restitution(bodies: ContactBodies) -> tuple[float, str]:
 def _energy(bodies: ContactBodies, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
     impact = bodies.scene.impact
     start = rigid.kinetic_energy(impact.v_n, impact.v_t, impact.omega, mass=rod.mass, k2=rod.k2)
-    kept = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
+    end = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
     normal, tangential = (rod.mass * sum(w) for w in (path.normal_work, path.tangential_work))
     plastic_rod, plastic_barrier = plastic_shares(bodies, float(-normal / start))
     return replace(
         unknown(Energy, UNKNOWN),
         E_0=float(start),
-        rigid=float(kept / start),
+        rigid=float(end / start),
         friction=float(-tangential / start),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
-        residual=float((start + normal + tangential - kept) / start),
+        residual=float((start + normal + tangential - end) / start),
     )

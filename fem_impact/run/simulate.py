@@ -1,4 +1,4 @@
-"""One call for every fidelity: a scene in, an Outcome out."""
+"""Computation of a scene by any fidelity: `simulate` returns its Outcome and writes its files."""
 
 from __future__ import annotations
 
@@ -50,24 +50,29 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )
-    planned, out = plan(scene, fidelity), options.out
-    if out is None:
+    planned = plan(scene, fidelity)
+    if options.out is None:
         return _compute(planned, replace(options, resume=False))
+    return _compute_in(options.out, planned, options)
+
+
+def _compute_in(out: Path, plan: Plan, options: RunOptions) -> Outcome:
+    """Compute and write the files of the run to a directory, locked meanwhile."""
     from fem_impact.files.lock import directory_lock
     from fem_impact.files.run_directory import remove_drafts
 
     with directory_lock(out):
         remove_drafts(out)
-        goes_on = fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
-        if not goes_on:
-            _begin(scene, out)
-        outcome = _compute(planned, replace(options, resume=goes_on))
+        resume = plan.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
+        if not resume:
+            _begin(plan.scene, out)
+        outcome = _compute(plan, replace(options, resume=resume))
         _write(outcome, out)
     return outcome
 
 
 def _begin(scene: Scene, out: Path) -> None:
-    """Set an older run aside, so that nothing of it is taken for this one, and name the scene."""
+    """Move the files of an older run aside and write the scene."""
     from fem_impact.files.atomic import write_text
     from fem_impact.files.run_directory import set_aside
     from fem_impact.scene.write import to_toml
@@ -77,7 +82,7 @@ def _begin(scene: Scene, out: Path) -> None:
 
 
 def _compute(plan: Plan, options: RunOptions) -> Outcome:
-    """Import and run one model."""
+    """Run the model of the plan's fidelity, whose modules are imported only here."""
     if plan.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 
