@@ -1,4 +1,4 @@
-"""The cost of scenes in files and tables: JSON, CSV, text, the plot of error against time, Markdown."""
+"""Output of measured costs: JSON, CSV, text, Markdown tables, and the plot of error against time."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 WIDE = 400
-"""Letters of a line of cost.txt: its tables are never broken."""
+"""Characters of a line of cost.txt, enough that no cell of its tables is wrapped."""
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 SCALARS = ("name", "kind", "fidelity", "tip_size_m")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
@@ -41,7 +41,7 @@ LOOKS = {
 }
 """Label, marker and colour of each kind of setting."""
 WANTED = 0.02
-"""Band over the scale, at most, of a pair that counts as accurate enough in the table of scenes."""
+"""Largest band over scale of a pair of meshes that meets the requirement in the table of scenes."""
 
 Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]
 """Limits of the quantities, and settings, by scene."""
@@ -75,8 +75,8 @@ COST_COLUMNS = (
 def text_table(cost: CostStudy, names: Sequence[str] = NAMES) -> str:
     """Return limits and orders, then one line a setting: times, and the error of quantities in per cent.
 
-    An asterisk marks the Pareto front of that quantity. What the places of the barrier's grid tell of each
-    setting follows, the bands of the pairs of meshes, and what leaving an effect out changes.
+    An asterisk marks the Pareto front of that quantity. Further tables give the scatter over the places of
+    the barrier's grid, the bands of the pairs of meshes, and the changes by leaving an effect out.
     """
     listed = [name for name in NAMES if name in names and name in cost.truth]
     columns = (*COST_COLUMNS, *map(Column, listed))
@@ -145,8 +145,8 @@ def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
     best = front(settings, [name])
     axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
     for kind, (label, marker, colour) in LOOKS.items():
-        of = [one for one in settings if one.kind == kind]
-        axes.plot(*_points(of, name), marker, color=PALETTE[colour], label=label, markersize=5)
+        of_kind = [one for one in settings if one.kind == kind]
+        axes.plot(*_points(of_kind, name), marker, color=PALETTE[colour], label=label, markersize=5)
     axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
     axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
     _plain(axes)
@@ -154,7 +154,7 @@ def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
 
 
 def _plain(axes: Axes) -> None:
-    """Write plain numbers at the ticks, and within one decade at round steps instead of powers of ten."""
+    """Label ticks with plain numbers; an error axis of less than a decade has ticks at even round steps."""
     from matplotlib.ticker import MaxNLocator, NullFormatter
 
     low, high = axes.get_ylim()
@@ -170,9 +170,9 @@ def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[fl
 
 
 def summary_markdown(document: dict[str, Any]) -> str:
-    """Return two tables of one row a scene: what its best pair of meshes gives, and what every setting costs.
+    """Return two tables with a row per scene: results of its best pair of meshes, and all settings.
 
-    A cell of the second reads: errors of the targeted quantities with their scatter in per cent, CPU time
+    A cell of the second table is: errors of the targeted quantities with their scatter in per cent, CPU time
     in s.
     """
     scenes = {
@@ -182,8 +182,12 @@ def summary_markdown(document: dict[str, Any]) -> str:
     columns = _columns([settings for _, settings in scenes.values()])
     head = ["set", *(f"{name}, limit" for name in TARGETED), *columns]
     body = [
-        [name, *_limits(q), *(_markdown_cell(s, column) for column in columns)]
-        for name, (q, s) in scenes.items()
+        [
+            name,
+            *(f"{q[of]['limit']:.3g} ± {q[of]['uncertainty']:.1g}" for of in TARGETED),
+            *(_markdown_cell(settings, column) for column in columns),
+        ]
+        for name, (q, settings) in scenes.items()
     ]
     machine = document["machine"]
     note = (
@@ -196,19 +200,19 @@ def summary_markdown(document: dict[str, Any]) -> str:
 
 def _pairs(scenes: Scenes) -> str:
     """Return the table of each scene's best pair for each quantity, and how many meet `WANTED`."""
-    ran = {
+    paired = {
         scene: (q, settings) for scene, (q, settings) in scenes.items() if any(one.band for one in settings)
     }
-    columns = [[_best(name, *of) for of in ran.values()] for name in TARGETED]
+    columns = [[_best(name, *measured) for measured in paired.values()] for name in TARGETED]
     head = ["set", *(title for name in TARGETED for title in (name, "% (scatter)", "meshes, mm", "off", "s"))]
     body = [
         [scene, *(cell for cells, _ in row for cell in cells)]
-        for scene, *row in zip(ran, *columns, strict=True)
+        for scene, *row in zip(paired, *columns, strict=True)
     ]
     counts = " and ".join(
         f"{name} in {sum(met for _, met in column)}" for name, column in zip(TARGETED, columns, strict=True)
     )
-    sentence = f"To {100 * WANTED:g} % by its own band: {counts} of {len(ran)} sets."
+    sentence = f"To {100 * WANTED:g} % by its own band: {counts} of {len(paired)} sets."
     return f"{Table.of(head, body).markdown()}\n\n{sentence}"
 
 
@@ -228,14 +232,10 @@ def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tupl
 
 
 def _columns(groups: list[list[Judged]]) -> list[str]:
-    """Return names of settings from cheap to dear, without pairs and those that leave an effect out."""
+    """Return names of settings in order of cost, without pairs and those that leave an effect out."""
     kinds = ("rigid", "modal", "mesh", "numerics")
     named = {one.name: one for settings in groups for one in settings if one.kind in kinds}
     return sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
-
-
-def _limits(quantities: dict[str, Any]) -> list[str]:
-    return [f"{quantities[name]['limit']:.3g} ± {quantities[name]['uncertainty']:.1g}" for name in TARGETED]
 
 
 def _markdown_cell(settings: list[Judged], name: str) -> str:
@@ -247,7 +247,7 @@ def _markdown_cell(settings: list[Judged], name: str) -> str:
 
 
 def _off(setting: Judged, quantity: str) -> str:
-    """Return the error, and the scatter that is known."""
+    """Return the error and, where it was measured, the scatter, in per cent."""
     error, scatter = setting.error[quantity], setting.scatter.get(quantity)
     shown = "-" if error is None else _percent(error)
     return shown if scatter is None else f"{shown} ± {_percent(scatter)}"

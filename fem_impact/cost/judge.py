@@ -21,17 +21,19 @@ Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
 class Judged:
     """A setting with what it gave and what it took; times in s, memory in 1e6 bytes.
 
-    Settings are compared by CPU time: a run of the ladder has one thread, so that this is its wall time on a
-    free core, and another program beside it does not lengthen it.
+    Settings are compared by CPU time: a run has one thread, so this is its wall time on a free core and does
+    not depend on other programs.
 
-    ``value`` is the mean over the places of the barrier's grid, of a pair its limit. ``error`` holds, for
-    each quantity, distance from the limit plus the limit's own uncertainty over the scale, of a pair its
-    band where that is less; where an effect is left out, what that changes on the same mesh over the scale.
-    ``scatter`` is the standard error of the value over the scale, as the places tell it, of a solid setting
-    with all effects. ``band`` of a pair is the uncertainty of its extrapolation over the scale, scatter
-    included, without what is known of the limit. ``two_cores_s`` is the time with every other run beside.
-    ``meshes`` are those of a finite-element setting, the finer first. ``front`` names the quantities on whose
-    Pareto front it lies.
+    Attributes
+    ----------
+    value : by quantity, the mean over the places of the barrier's grid; of a pair of meshes its limit
+    error : by quantity, over its scale: distance from the limit plus the uncertainty of the limit, of a pair
+        its band where that is less; where an effect is left out, the change by that on the same mesh
+    scatter : standard error of the value over the scale, of a solid setting with all effects
+    band : of a pair, uncertainty of its extrapolation over the scale, scatter included
+    two_cores_s : CPU time of the longer half when the runs are divided between two cores
+    meshes : of a solid setting, the finer first
+    front : names of the quantities on whose Pareto front the setting lies
     """
 
     name: str
@@ -63,9 +65,8 @@ def judge(
 ) -> Judged:
     """Return a setting with its errors.
 
-    ``runs`` are those on each mesh, the finer first, or one of a reduced model; ``whole`` those with all
-    effects on the same mesh if the setting leaves one out: then errors of the mesh must not hide those of
-    the effect.
+    ``runs`` are those on each mesh, the finer first, or one of a reduced model. If the setting leaves an
+    effect out, ``whole`` are the runs with all effects on the same mesh, which are the reference then.
     """
     if whole is not None:
         truth = {
@@ -108,7 +109,7 @@ def cpu_seconds(run: Outcome) -> float:
 
 
 def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
-    """Return what bounds the error: the limit of all meshes, or a pair's own band where that is closer."""
+    """Return a bound of the error over the scale, by the limit of all meshes or a pair's own band if less."""
     if value is None or truth is None:
         return None
     bound = abs(value - truth.value) + truth.uncertainty
@@ -116,20 +117,20 @@ def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float
 
 
 def _total(counts: Iterable[int | None]) -> int | None:
-    known = [count for count in counts if count is not None]
-    return sum(known) if known else None
+    present = [count for count in counts if count is not None]
+    return sum(present) if present else None
 
 
 def worst(judged: Judged, names: Iterable[str]) -> float:
-    """Return the largest error over some quantities; infinite if one is not known."""
+    """Return the largest error of some quantities; infinite if one is unknown."""
     errors = [judged.error[name] for name in names]
     return max(inf if error is None else error for error in errors)
 
 
 def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
-    """Return the settings that no other beats in both time and worst error, from cheap to dear.
+    """Return the settings that no other beats in both time and worst error, in order of time.
 
-    A setting that leaves an effect out takes no part: its error is not one against the limit.
+    Settings that leave an effect out are not compared: their error is not one against the limit.
     """
     optimal: list[Judged] = []
     best = inf
@@ -157,15 +158,15 @@ def advice(
     settings: Sequence[Judged], names: Sequence[str], target: float | None, budget: float | None
 ) -> list[str]:
     """Return the answer in sentences."""
-    of = " and ".join(names)
+    wanted = " and ".join(names)
     lines = []
     if target is not None:
         quickest = cheapest(settings, names, target)
         best = front(settings, names)[-1]
         lines.append(
-            f"Cheapest within {100 * target:.3g} % of {of}: {_sentence_of(quickest, names)}."
+            f"Cheapest within {100 * target:.3g} % of {wanted}: {_sentence_of(quickest, names)}."
             if quickest
-            else f"No setting brings {of} within {100 * target:.3g} %; best: {_sentence_of(best, names)}."
+            else f"No setting brings {wanted} within {100 * target:.3g} %; best: {_sentence_of(best, names)}."
         )
     if budget is not None:
         within = best_within(settings, names, budget)
@@ -184,8 +185,8 @@ def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
 def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the quickest pair on two cores whose bands meet the target.
 
-    If none does, that of meshes widest apart, the finer if there are two: scatter of the values moves its
-    limit least, and a choice by the smallest band would choose agreement by chance.
+    If none does, the pair with the largest ratio of sizes, the finer if there are two: scatter of the values
+    has the least influence on its limit. The smallest band may be small by chance.
     """
     pairs = [one for one in settings if one.band]
     good = [one for one in pairs if all(one.band[name] <= target for name in names)]

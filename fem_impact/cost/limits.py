@@ -44,10 +44,10 @@ class Truth:
 
     Attributes
     ----------
-    value : limit; order : observed, None where it was not
+    value : limit; order : observed order of convergence, None where there is none
     uncertainty : of the limit, ``scatter`` included
-    scale : what errors are divided by
-    scatter : standard error of the limit, as the places of the grid tell it
+    scale : divisor of errors
+    scatter : standard error of the limit by the scatter over the places of the grid
     """
 
     value: float
@@ -103,8 +103,8 @@ def standard_error(values: Sequence[float]) -> float:
 def pair_limit(fine: float, coarse: float, ratio: float) -> tuple[float, float]:
     """Return the limit of two meshes and its half-width; ``ratio`` is coarse over fine size.
 
-    Two meshes tell no order, so the band holds what every order from `LOWEST` up would give; the limit is its
-    middle.
+    The band holds the limits of all orders from `LOWEST` up, since two meshes do not determine the order; the
+    limit is its middle.
 
     Examples
     --------
@@ -119,8 +119,8 @@ def pair_limit(fine: float, coarse: float, ratio: float) -> tuple[float, float]:
 def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
     """Return the limit from two or more meshes of every quantity that their runs know.
 
-    The uncertainty of a limit is what Eca and Hoekstra's band leaves beyond the finest mesh's own
-    distance from it, or the band of a pair, and the scatter of the means.
+    The uncertainty of a limit is the scatter of the means plus, of a pair, its band, of more meshes Eca and
+    Hoekstra's band less the distance of the finest mesh from the limit.
     """
     sizes = _sizes(meshes)
     finest = sizes.index(min(sizes))
@@ -160,7 +160,7 @@ def _sizes(meshes: Sequence[Placed]) -> list[float]:
 def _truth(quantity: TargetQuantity, sizes: list[float], meshes: Sequence[Placed], finest: int) -> Truth:
     values = [values_of(quantity, runs) for runs in meshes]
     value, order, left_open, scatter = _limit_of(sizes, values)
-    # an extrapolation to zero must not inflate every error
+    # the larger of limit and finest value, so that a limit near zero does not inflate the errors
     size = max(abs(value), abs(fmean(values[finest])))
     return Truth(value, order, left_open + scatter, quantity.scale(size, meshes[finest][0]), scatter)
 
@@ -168,14 +168,14 @@ def _truth(quantity: TargetQuantity, sizes: list[float], meshes: Sequence[Placed
 def _limit_of(
     sizes: list[float], values: Sequence[Sequence[float]]
 ) -> tuple[float, float | None, float, float]:
-    """Return limit, order, what the means leave open, and the limit's standard error."""
+    """Return limit, order, its uncertainty by extrapolation, and its standard error by scatter."""
     means = [fmean(on_mesh) for on_mesh in values]
     scatter = _carried(sizes, means, [standard_error(on_mesh) for on_mesh in values])
     return *_limit(sizes, means), scatter
 
 
 def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None, float]:
-    """Return limit, order and what the means leave open."""
+    """Return limit, order and uncertainty by extrapolation."""
     last, first = (values[sizes.index(extreme(sizes))] for extreme in (min, max))
     if len(sizes) == 2:
         value, half = pair_limit(last, first, max(sizes) / min(sizes))
@@ -185,9 +185,10 @@ def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None
 
 
 def _carried(sizes: list[float], values: list[float], errors: list[float]) -> float:
-    """Return the standard error of a limit: each mean moved up or down by its own, in all combinations.
+    """Return the standard error of a limit from those of the means.
 
-    The root mean square of what the limit moves by; of a pair it is exactly the weighted sum of variances.
+    It is the root mean square change of the limit when each mean is moved up or down by its standard error,
+    in all combinations; for a pair exactly the root of the weighted sum of variances.
     """
     value = _limit(sizes, values)[0]
     signs = product((-1.0, 1.0), repeat=len(values)) if any(errors) else ()

@@ -1,4 +1,4 @@
-"""Run the ladder of one scene and judge it: every finished run is stored, so it goes on where it stopped."""
+"""Measurement of the cost of one scene: its ladder of settings is run, stored and judged."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 
 SCHEMA = "fem-impact/cost/2"
-BRIEF = 5e-6  # s: into the first contact
+BRIEF = 5e-6  # s, end of the run that compiles the kernels: within the first contact
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,9 +39,9 @@ class CostStudy:
     Attributes
     ----------
     scene : Scene
-    truth : limit of every quantity that finite elements know here
-    settings : judged, from cheap to dear
-    failures : settings that gave nothing, with the reason
+    truth : limit of each quantity that the finite-element runs give
+    settings : judged, in order of CPU time
+    failures : settings without a result, with the reason
     """
 
     scene: Scene
@@ -52,8 +52,8 @@ class CostStudy:
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
         """Return unit, limit, order, uncertainty and scale of every quantity."""
-        known = [q for q in QUANTITIES if q.name in self.truth]
-        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in known}
+        given = [q for q in QUANTITIES if q.name in self.truth]
+        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in given}
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -129,13 +129,13 @@ def judge_stored(
 
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:
-    """Return every run of a ladder once: pairs stand on those of their meshes."""
+    """Return the runs of a ladder without repetition: a pair uses the runs of its two meshes."""
     jobs = (job for setting in settings for on_mesh in setting.runs for job in on_mesh)
     return list({job.name: job for job in jobs}.values())
 
 
 def _compile(scene: Scene, executor: Executor) -> None:
-    """Have the kernels compiled by a few steps that nobody keeps: they must not count as time of a run."""
+    """Compile the kernels by a run of a few steps, so that compilation is no part of a measured time."""
     if not compiled_before():
         coarse = on_mesh(scene, PLAIN)
         brief = replace(coarse, accuracy=replace(coarse.accuracy, max_time=BRIEF))
@@ -156,11 +156,11 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
     truth, judged = truths(list(meshes.values())), []
     for setting in settings:
-        given, whole = runs[setting.name], meshes.get(PLAIN)
+        outcomes, whole = runs[setting.name], meshes.get(PLAIN)
         if setting.kind == "effect":
-            judged += [judge(setting, given, truth, whole)] if given and whole else []
-        elif given:
-            judged.append(judge(setting, given, truth))
+            judged += [judge(setting, outcomes, truth, whole)] if outcomes and whole else []
+        elif outcomes:
+            judged.append(judge(setting, outcomes, truth))
     return CostStudy(scene, truth, _marked(judged), failures)
 
 
@@ -172,7 +172,7 @@ def _failure(result: Outcome | Failure) -> str | None:
 
 
 def _runs(setting: Setting, results: Results) -> list[Placed]:
-    """Return the outcomes that a setting stands on, none if one is missing."""
+    """Return the outcomes of a setting on each mesh, none if one is missing."""
     good: list[Placed] = [
         [run for job in jobs if isinstance(run := results.get(job.name), Outcome) and _failure(run) is None]
         for jobs in setting.runs

@@ -1,4 +1,4 @@
-"""Quantities whose error the ladder reports, and the scale that an error is divided by."""
+"""Quantities whose errors are reported for each setting, and the scales that errors are divided by."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ class TargetQuantity:
     ----------
     name, unit : str
     keys : keys of the outcome whose sum it is
-    floor : below it an error is no longer divided by the quantity but by the floor, so that a vanishing
-        quantity needs no infinite accuracy; for Omega in units of speed over radius of gyration
+    floor : least scale, so that a vanishing quantity needs no infinite accuracy; for Omega in units of speed
+        over radius of gyration
     """
 
     name: str
@@ -40,7 +40,7 @@ class TargetQuantity:
         return float(sum(parts)) if parts else None
 
     def scale(self, value: float, outcome: Outcome) -> float:
-        """Return what an error is divided by."""
+        """Return the scale that an error is divided by."""
         m, unit = outcome.motion, 1.0
         if self.unit == "rad/s":
             unit = hypot(m.v_n, m.v_t) / sqrt(m.k_squared)
@@ -51,8 +51,7 @@ def _quantity(name: str, unit: str, floor: float, *keys: str) -> TargetQuantity:
     return TargetQuantity(name, unit, tuple(KEY_TABLE[key] for key in keys), floor)
 
 
-# 2 % of the floor of a share is 1e-4 of E_0, as far as vibration is asked for
-SHARE = 0.005
+SHARE = 0.005  # floor of shares of E_0: 2 % of it are 1e-4 of E_0, the accuracy wanted of E_vib
 QUANTITIES = (
     _quantity("e", "-", 0.05, "e_edge"),
     _quantity("mu", "-", 0.05, "mu"),
@@ -65,7 +64,7 @@ QUANTITIES = (
     _quantity("peak force", "N", 0.0, "peak_force_N"),
 )
 TARGETED = ("e", "E_vib")
-"""What a target means unless other quantities are named."""
+"""Quantities that a target error applies to unless others are named."""
 
 
 def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
@@ -87,10 +86,9 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
             value="E_vib",
             remedy='Name others, or add "vibration" to the effects of the scene.',
         )
-    known = [quantity.name for quantity in QUANTITIES]
+    names_of_all = [quantity.name for quantity in QUANTITIES]
     for name in wanted:
-        if name not in known:
-            raise UsageError(
-                "is not a quantity of interest.", key="--of", value=name, remedy=f"Known: {', '.join(known)}."
-            )
+        if name not in names_of_all:
+            remedy = f"Known: {', '.join(names_of_all)}."
+            raise UsageError("is not a quantity of interest.", key="--of", value=name, remedy=remedy)
     return wanted or tuple(name for name in TARGETED if not (rigid and name == "E_vib"))

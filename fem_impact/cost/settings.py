@@ -37,13 +37,13 @@ class Mesh:
         return float(diameter / self.across / 2**self.levels)
 
 
-# by the size at the tip; meshes with 8 and with 12 cells across are alike there
+# in order of the size at the tip, where meshes with 8 and with 12 cells across are similar
 FAMILY = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))
-APART = 2.0  # least ratio of the sizes of a pair: closer meshes extrapolate their scatter
+APART = 2.0  # least ratio of the sizes of a pair: extrapolation of closer meshes amplifies their scatter
 PLAIN = Mesh(8, 2)  # the coarsest: on it elements, steps and effects are changed
 FINEST = FAMILY[-1]
-# of a meshed barrier's grid along t, in cells at the contact: a mesh is run at each, the finest, which
-# scatters least and costs most, at fewer
+# shifts of a meshed barrier's grid along t, in cells at the contact, at each of which a mesh is run; the
+# finest mesh, which scatters least and costs most, at fewer
 PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
@@ -72,7 +72,7 @@ class Setting:
 
 
 def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
-    """Return the settings from cheap to dear; ``family`` from coarse to fine."""
+    """Return the settings in order of cost; the meshes of ``family`` are given from coarse to fine."""
     scene = replace_all(scene, {"save.frames": 0})
     settings = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
     settings += [_solid(scene, mesh) for mesh in family]
@@ -85,7 +85,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
     """Return the scene on a mesh, the grid of the barrier at a place."""
     size = mesh.tip_size(scene.projectile.diameter)
     changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm", "grid_shift": place}
-    changes |= {"unresolved": "report"}  # what its mesh does to a number is what a setting is judged by
+    changes |= {"unresolved": "report"}  # an unresolved contact is an error of the setting, to be judged too
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
     return replace_all(scene, {f"accuracy.{key}": value for key, value in changes.items()})
@@ -119,7 +119,7 @@ def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Se
 
 
 def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[tuple[Mesh, Mesh]]:
-    """Return fine and coarse of all that are far enough apart."""
+    """Return (fine, coarse) of all pairs of meshes with a ratio of sizes of `APART` or more."""
     size = {mesh: mesh.tip_size(scene.projectile.diameter) for mesh in family}
     both = ((fine, coarse) for coarse, fine in combinations(family, 2))
     return [pair for pair in both if size[pair[1]] / size[pair[0]] > APART * (1 - 1e-9)]

@@ -35,7 +35,7 @@ from fem_impact.scene.types import Material, Scene
 SUMMARY = "fem-impact/cost-summary/2"
 
 STEEL = ("E", "rho", "yield", "ultimate over yield")
-# what a scene may differ by from one whose cost was measured; ratios as differences of logarithms
+# largest differences of a scene from one whose cost was measured; of ratios and sizes, of their logarithms
 NEARNESS = {
     "length over diameter": 0.1,
     "diameter": 0.3,
@@ -47,8 +47,6 @@ NEARNESS = {
     "friction f": 0.05,
     **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
-
-
 ALONE = Unknown("one mesh alone cannot estimate its own error")
 
 Run = Callable[[], Outcome]
@@ -115,7 +113,7 @@ def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
 
 
 def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
-    """Return the largest difference over what is allowed, and its name; infinite for another model."""
+    """Return the largest difference over the allowed one, and its name; infinite for another model."""
     for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", active(scene), active(other)),
@@ -184,15 +182,15 @@ def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneErr
 
 
 def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
-    of, whole = " and ".join(TARGETED), [one for one in settings if one.kind != "effect"]
+    quantities, whole = " and ".join(TARGETED), [one for one in settings if one.kind != "effect"]
     best = min(whole, key=lambda one: worst(one, TARGETED))
     error = worst(best, TARGETED)
     if error == inf:
-        problem = f"cannot be met: the {best.fidelity} fidelity does not know {of}."
+        problem = f"cannot be met: the {best.fidelity} fidelity does not know {quantities}."
         return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
     return SceneError(
         f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
-        f"uncertain by {100 * error:.2g} % in {of}.",
+        f"uncertain by {100 * error:.2g} % in {quantities}.",
         key="accuracy",
         value=_written(scene),
         remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',
@@ -208,9 +206,10 @@ def simulate(
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
-    A chosen setting runs every mesh at its places of the barrier's grid. What comes back is the finer mesh's
-    outcome at the first, with the limits of two meshes, or the means of one, in its ``validity``. The other
-    runs are kept below ``options.out``; with two ``workers`` or more a process beside takes every other run.
+    A chosen setting runs each mesh at its places of the barrier's grid. The result is the outcome of the
+    finer mesh at the first place, with the limits of two meshes, or the means of one, in its ``validity``.
+    Files of the other runs stand below ``options.out``. With two or more ``workers`` a second process does
+    half of the runs.
 
     Raises
     ------
@@ -225,7 +224,7 @@ def simulate(
 
 
 def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int) -> Outcome:
-    """Return the outcome of a chosen setting, all its runs done."""
+    """Do all runs of a chosen setting, the first lane here and a second in another process."""
     if not chosen.meshes:
         plain = replace(scene, accuracy=replace(scene.accuracy, target=None))  # a reduced model has no mesh
         alone = run.simulate(plain, chosen.setting.fidelity, options)
@@ -233,7 +232,9 @@ def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers:
     jobs = [placed(scene, mesh) for mesh in chosen.meshes]
     work = _work([one for scenes in jobs for one in scenes], options)
     lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
-    done = _side_by_side(lanes)
+    with LocalProcesses(1) as process:
+        later = [process.submit(_in_turn, lane) for lane in lanes[1:]]
+        done = [_in_turn(lanes[0]), *(lane.result() for lane in later)]
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
     meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
     wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
@@ -241,7 +242,7 @@ def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers:
 
 
 def _work(scenes: list[Scene], options: RunOptions) -> list[Run]:
-    """Return the runs; the first of all writes to ``options.out`` itself and tells its progress."""
+    """Return the runs; the first writes to ``options.out`` itself and reports its progress."""
     out = options.out
     beside = [replace(options, out=out and out / f"run-{at}", progress=None) for at in range(1, len(scenes))]
     return [
@@ -254,22 +255,15 @@ def _in_turn(work: list[Run]) -> list[Outcome]:
     return [run() for run in work]
 
 
-def _side_by_side(lanes: list[list[Run]]) -> list[list[Outcome]]:
-    """Do the first lane here and the others in a process beside."""
-    with LocalProcesses(1) as beside:
-        later = [beside.submit(_in_turn, runs) for runs in lanes[1:]]
-        return [_in_turn(lanes[0]), *(runs.result() for runs in later)]
-
-
 def _kept(outcome: Outcome, out: Path | None) -> Outcome:
-    """Write the outcome again, now that it states its accuracy."""
+    """Write the outcome, which states its accuracy now, once more; return it."""
     if out is not None:
         outcome.write(out / "outcome.json")
     return outcome
 
 
 def _stated(outcome: Outcome, chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
-    """Return the outcome with what was asked, expected and achieved."""
+    """Return the outcome with target, expected and achieved error and time in its validity."""
     limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
     means = mesh_means(meshes[0]) if meshes else ALONE
     stated = replace(
