@@ -1,7 +1,7 @@
 """A straight bar of equal bricks by central differences: an explicit code of its own.
 
-All elements are the same box, so one 24 x 24 stiffness is made and assembled. Rotations are small. The
-contact is that of public codes: a spring under every node, friction through a second one that gives way.
+All elements are the same box, so a single 24 x 24 stiffness is assembled. Rotations are small. The contact is
+that of public codes: a normal spring under each node, and a tangential one that slips at Coulomb's limit.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ def _corner_slopes(at: Array, edges: Array) -> Array:
 def brick_stiffness(kind: str, edges: Array, E: float, nu: float) -> Array:
     """Return the stiffness (24, 24), N/m, of a box with ``edges`` (3,), m; corners as in ``product``.
 
-    ``full`` is the 8-point hexahedron; ``bbar`` takes the dilatation's mean (Hughes 1980), ``incompatible``
+    ``full`` is the 8-point hexahedron; ``bbar`` has the mean dilatation (Hughes 1980), ``incompatible``
     adds 1 - xi^2 in each direction (Wilson 1973), condensed.
     """
     D, weight = _moduli(E, nu), float(np.prod(edges)) / 8
@@ -130,11 +130,11 @@ def wall_stress(bar: Bar, speed: float, step: float, start: float, end: float) -
     K, mass = bar.operators()
     free = np.ones((len(mass), 3))
     free[bar.points[:, 1] == 0.0, 1] = 0.0
-    held = bar.points[:, 2] == 0.0
-    free[held, 2] = 0.0
+    at_wall = bar.points[:, 2] == 0.0
+    free[at_wall, 2] = 0.0
     inverse = (free / mass[:, None]).ravel()
     v = (free * [0.0, 0.0, -speed]).ravel()
-    u, sums, count, wall = np.zeros_like(v), 0.0, 0, 3 * np.flatnonzero(held) + 2
+    u, sums, count, wall = np.zeros_like(v), 0.0, 0, 3 * np.flatnonzero(at_wall) + 2
     for k in range(int(end / step) + 1):
         force = K @ u
         if k * step >= start:
@@ -149,8 +149,8 @@ def spring_force(
 ) -> tuple[Array, Array, Array]:
     """Return pull (k, 2) and press (k,), N, of springs under nodes at ``place`` (k, 3), and new anchors.
 
-    ``stiffness`` (k,), N/m, is along the normal, ``stick`` times it across; where friction f gives way, the
-    anchor (k, 2) follows.
+    ``stiffness`` (k,), N/m, is that along the normal, ``stick`` the ratio of the tangential one to it. Where
+    friction f is exceeded, the anchor (k, 2), m, moves with the node.
     """
     press = stiffness * np.maximum(-place[:, 2], 0.0)
     stiff = (stick * stiffness)[:, None]

@@ -1,14 +1,15 @@
 """How far a ball differs from the half-space of Hertz: the approach measured from its mass centre.
 
-Hertz measures the approach from a point infinitely far away in a half-space. A ball ends a few contact
-radii a away, and while it is braked its own inertia loads it. Under Hertz' pressure and the uniform body
+Hertz measures the approach from a point at infinity in a half-space. A ball is only some contact radii a in
+size, and its inertia loads it while it is braked. Under Hertz' pressure and the uniform body
 force of the braking it is solved exactly by a Legendre series (the two regular solutions of each order:
 Lur'e, Three-dimensional problems of the theory of elasticity, 1964, chapter 6). Its compliance, the mean
 approach under that pressure over the force, is
 
     C(a) = 3 / (5 E* a) + chi(a / R) / (E_1* R),    E_1* = E_1 / (1 - nu_1^2).
 
-The first term is Hertz'. chi has a logarithm of a / R that goes with 1 - 2 nu.
+The first term is Hertz'. chi (`ball_excess`) has a logarithm of a / R, proportional to 1 - 2 nu. For a
+tangential traction of the same distribution chi_t (`ball_shear`) is the excess of the tangential compliance.
 """
 
 from __future__ import annotations
@@ -23,9 +24,9 @@ from scipy.integrate import cumulative_simpson
 from fem_impact.arrays import Array
 from fem_impact.reference.hertz import HertzImpact, hertz
 
-GAUSS = 100
-POINTS = 4001
-SMALLEST, LARGEST = 5e-3, 0.4  # a / R: below, the excess is under 0.5 % of the approach
+GAUSS = 100  # points of the quadrature over the contact circle
+POINTS = 4001  # tabulated contact radii, and points of the integral over the approach
+SMALLEST, LARGEST = 5e-3, 0.4  # a / R of the fit; below, the excess is under 0.5 % of the approach
 RESOLUTION = 40.0  # last order of the series times a / R
 
 
@@ -110,7 +111,7 @@ def ball_excess(a: float, nu: float) -> float:
 def local_law(E_star: float, radius: float, a: Array, excess: Array) -> tuple[Array, Array]:
     """Return force, N, and approach, m, at contact radii ``a`` (k,), m.
 
-    ``excess`` (k,), m/N, is what the compliance exceeds Hertz' by. The contact takes the radius of least
+    ``excess`` (k,), m/N, is the compliance less Hertz'. The contact takes the radius of least
     complementary energy F^2 C(a) / 2 + F a^2 / (5 R); the approach is its derivative by F.
     """
     slope = -3 / (5 * E_star * a**2) + np.gradient(excess, a, edge_order=2)
@@ -144,22 +145,22 @@ def fitted(excess: Callable[[float, float], float], nu: float, a: Array) -> Arra
 
 @cache
 def _excess_series(excess: Callable[[float, float], float], nu: float) -> Array:
-    """Return the polynomial (5,), fitted over contacts of some size."""
+    """Return ``excess`` as a polynomial (5,) of log(a / R), fitted from `SMALLEST` to `LARGEST`."""
     reach = np.exp(np.linspace(log(SMALLEST), log(LARGEST), 9))
     return np.polyfit(np.log(reach), [excess(float(a), nu) for a in reach], 4)
 
 
 def bounce(force: Array, approach: Array, a: Array, mass: float, speed: float) -> HertzImpact:
-    """Return the impact of a mass on a spring given by points from near 0."""
+    """Return the impact of a mass on a spring of ``force`` (k,), N, at ``approach`` (k,), m."""
     stored = cumulative_simpson(force, x=approach, initial=0.4 * force[0] * approach[0])
-    left = speed**2 - 2 * stored / mass
-    top = int(np.argmax(left <= 0.0))
-    deepest = float(np.interp(0.0, -left[top - 1 : top + 1], approach[top - 1 : top + 1]))
+    squared = speed**2 - 2 * stored / mass  # of the speed
+    top = int(np.argmax(squared <= 0.0))
+    deepest = float(np.interp(0.0, -squared[top - 1 : top + 1], approach[top - 1 : top + 1]))
     peak, radius = (float(np.interp(deepest, approach, y)) for y in (force, a))
     # d = deepest (1 - s^2) makes the end of the approach smooth
     s = np.linspace(0.0, 1.0, POINTS)
     d = deepest * (1 - s[1:] ** 2)
-    pace = np.sqrt(np.maximum(np.interp(d, [0.0, *approach], [speed**2, *left]), 0.0))
+    pace = np.sqrt(np.maximum(np.interp(d, [0.0, *approach], [speed**2, *squared]), 0.0))
     slope = 2 * deepest * s[1:] / np.maximum(pace, 1e-12 * speed)
     first = 2 * np.sqrt(mass * deepest / (2 * peak))  # for pace^2 = 2 peak deepest s^2 / mass
     return HertzImpact(peak, deepest, radius, 2 * float(np.trapezoid([first, *slope], s)))
@@ -185,7 +186,7 @@ def _shear_load(a: float, orders: int) -> tuple[Array, Array, Array, Array]:
 
 
 def ball_shear(a: float, nu: float) -> float:
-    """Return chi_t for a contact radius of ``a`` ball radii.
+    """Return chi_t, for a tangential force, at a contact radius of ``a`` ball radii.
 
     Examples
     --------
@@ -199,7 +200,7 @@ def ball_shear(a: float, nu: float) -> float:
     out[0] = along[0] = 0.0
     out[1], along[1] = braked(nu, float(polar[1]))
     twist = 2 * torsional / np.maximum(n - 1, 1)  # 2 G = 1
-    twist[1] = 2 * torsional[1] / 7  # its moment is balanced by inertia, the mean turn is 0
+    twist[1] = 2 * torsional[1] / 7  # its moment is balanced by inertia, the mean rotation is 0
     twist[0] = 0.0
     work = norm * (radial * out + n * (n + 1) * (polar * along + torsional * twist))
     stiffness = 1 / (1 - nu)  # E / (1 - nu^2) with 2 G = 1

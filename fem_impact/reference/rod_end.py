@@ -1,14 +1,17 @@
-"""How far the round end of a rod differs from the half-space of Hertz: the approach beyond that of a bar.
+"""Axial impact of a rod on a barrier: one-dimensional waves, and the compliance of its round end.
 
-Behind its round nose a rod is as narrow as its section and free all around; Hertz' half-space is neither. The
-nose of the rod, here a paraboloid, is solved as an axisymmetric static problem (quadratic quadrilaterals,
-graded towards the pole) under Hertz' pressure on a circle of radius a, held by a section some radii behind.
-From its approach that of the one-dimensional bar is taken, whose end lies where a flat end gives the rod
-its volume. The mean approach under the pressure over the force is then
+`strike` is the exact impact of a bar with a flat end on a rigid wall. `rod_impact` joins the bar to a contact
+law of its end (Sears' delay equation): Hertz' in `sears`, that of the round end of a narrow rod by `end_law`.
+
+Behind its nose a rod is only as wide as its section, unlike Hertz' half-space. The nose, a paraboloid, is
+solved as an axisymmetric static problem (quadratic quadrilaterals, graded towards the pole) under Hertz'
+pressure on a circle of radius a, fixed at a section some radii behind. The compression of a one-dimensional
+bar that has a flat end and the same volume is subtracted. The mean approach under the pressure over the force
+is then
 
     C(a) = 3 / (5 E* a) + chi / (E_1* R),    E_1* = E_1 / (1 - nu_1^2),    R radius of the rod.
 
-Inertia of the nose is left out: its mass takes about R / (c0 t_c) of the force.
+Inertia of the nose is neglected, a share of about R / (c0 t_c) of the force.
 """
 
 from __future__ import annotations
@@ -28,10 +31,32 @@ from skfem.helpers import ddot, div, sym_grad
 from fem_impact.arrays import Array
 from fem_impact.reference.finite_sphere import POINTS, local_law
 
-SMALLEST, RADII = 1 / 128, 7  # contact radii over R: the smallest, each twice the last
+SMALLEST, RADII = 1 / 128, 7  # contact radii over R: the smallest, and how many, each twice the last
 PER_OCTAVE, CORE = 4, 8  # cells per octave of radius, and over the smallest radius
 BEHIND = 3.0  # radii of rod behind the nose: the stress of a loaded end decays like exp(-2.7 z / R)
-ORDER = 24  # of the quadrature of the pressure, whose edge is a square root
+ORDER = 24  # of the quadrature of the pressure, which ends like a square root
+STEPS = 4000  # time steps per round trip of the wave through the rod
+
+
+@dataclass(frozen=True, slots=True)
+class AxialImpact:
+    """Largest force, N, and when, s; contact time, s; restitution; vibration share of E_0."""
+
+    force: float
+    peak_time: float
+    duration: float
+    restitution: float
+    vibration: float
+
+
+@dataclass(frozen=True, slots=True)
+class BarImpact:
+    """Plateau of the wall force, N; duration, s; restitution and vibration share, exact."""
+
+    force: float
+    duration: float
+    restitution: float = 1.0
+    vibration: float = 0.0
 
 
 def _grid(length: float) -> Array:
@@ -127,24 +152,10 @@ def end_law(
     return np.array([0.0, *force]), np.array([0.0, *approach])
 
 
-STEPS = 4000  # per round trip of the wave
-
-
-@dataclass(frozen=True, slots=True)
-class AxialImpact:
-    """Largest force, N, and when, s; contact time, s; restitution; vibration share of E_0."""
-
-    force: float
-    peak_time: float
-    duration: float
-    restitution: float
-    vibration: float
-
-
 def _history(
     law: Callable[[float], float], impedance: float, speed: float, dt: float, delay: int
 ) -> NDArray[np.float64]:
-    """Return the contact force at times k dt until the end leaves, by Heun's rule."""
+    """Return the contact force (n,), N, at times k dt until the end separates, by Heun's method."""
     force, d = [0.0], 0.0
     while True:
         k = len(force)
@@ -162,7 +173,7 @@ def rod_impact(
     E: float, rho: float, length: float, radius: float, law: Callable[[float], float], speed: float
 ) -> AxialImpact:
     """Return the impact of a rod whose end pushes with the force ``law`` (m to N) of its approach."""
-    c0, area = sqrt(E / rho), pi * radius**2
+    c0, area = bar_speed(E, rho), pi * radius**2
     dt = 2 * length / c0 / STEPS
     F = _history(law, rho * c0 * area, speed, dt, STEPS)
     rebound = float(F.sum()) * dt / (rho * area * length) - speed
@@ -185,29 +196,19 @@ def sears(
     return rod_impact(E, rho, length, radius, lambda d: k * d**1.5, speed)
 
 
-@dataclass(frozen=True, slots=True)
-class BarImpact:
-    """Plateau of the wall force, N; duration, s; restitution and vibration share, exact."""
-
-    force: float
-    duration: float
-    restitution: float = 1.0
-    vibration: float = 0.0
-
-
 def bar_speed(E: float, rho: float) -> float:
     """Return c0 = sqrt(E / rho), m/s."""
     return sqrt(E / rho)
 
 
 def strike(E: float, rho: float, area: float, length: float, speed: float) -> BarImpact:
-    """Return the force rho c0 A v during 2 L / c0; the bar then leaves without stress.
+    """Return the impact of a flat bar: force rho c0 A v during 2 L / c0, after which it is free of stress.
 
     Examples
     --------
     >>> from math import pi
-    >>> found = strike(219e9, 7850.0, pi * 0.0095**2, 0.24, 2.0)
-    >>> round(found.force), round(found.duration * 1e6, 2)
+    >>> bar = strike(219e9, 7850.0, pi * 0.0095**2, 0.24, 2.0)
+    >>> round(bar.force), round(bar.duration * 1e6, 2)
     (23512, 90.88)
     """
     c0 = bar_speed(E, rho)

@@ -11,7 +11,7 @@ import numpy as np
 from fem_impact.reference.finite_sphere import POINTS, ball_excess, ball_shear, fitted, local_law
 from fem_impact.reference.hertz import SpringRow, hertz, tangential_ratio
 
-STEPS = 4000
+STEPS = 4000  # time steps over the contact time
 INERTIA = 0.4  # K^2 of a solid sphere
 
 
@@ -39,7 +39,8 @@ def oblique_ball(
 ) -> SphereRebound:
     """Return the rebound of a ball of finite size from a half-space; E_ball = E / (1 - nu^2) of the ball.
 
-    Normally it follows `local_law`; tangentially the ball's share lies in series with the springs.
+    The normal force follows `local_law`; the tangential excess compliance of the ball is in series with the
+    springs.
 
     Examples
     --------
@@ -69,7 +70,7 @@ def _rebound(
     v_t: float,
     duration: float,
 ) -> SphereRebound:
-    """March the sphere; ``contact`` gives approach of the springs, m, and shear compliance, m/N."""
+    """March in time; ``contact`` gives approach of the springs, m, and shear compliance, m/N."""
     dt, approach, rate, slip, pushed = duration / STEPS, 0.0, v_n, v_t, 0.0
     impulse, shift, moved, T = 0.0, 0.0, 0.0, 0.0
     while True:
@@ -78,9 +79,9 @@ def _rebound(
             break
         depth, shear = contact(approach)
         shift += dt * slip
-        left = shift - shear * T  # for the springs
-        F, T = row.normal(depth), row.slide(depth, left - moved)
-        moved = left
+        shift_of_springs = shift - shear * T
+        F, T = row.normal(depth), row.slide(depth, shift_of_springs - moved)
+        moved = shift_of_springs
         rate -= dt * F / mass
         slip -= dt * T / mass * (1 + 1 / INERTIA)
         impulse += dt * F
@@ -98,5 +99,5 @@ def reversal(psi: float, nu: float, f: float = 0.1) -> float:
     """
     scale = 2 * (1 - nu) / (f * (2 - nu))
     R, rho, E_star = 9.5e-3, 7850.0, 115e9
-    found = oblique_sphere(E_star, nu, R, 4 / 3 * pi * R**3 * rho, f, 1.0, psi / scale)
-    return scale * found.contact_t
+    rebound = oblique_sphere(E_star, nu, R, 4 / 3 * pi * R**3 * rho, f, 1.0, psi / scale)
+    return scale * rebound.contact_t

@@ -3,7 +3,7 @@
 Bilinear quadrilaterals in the meridian plane (r, z) with 2 x 2 points and the element's mean dilatation,
 updated Lagrangian, stress turned with the midpoint's spin (Hughes & Winget 1980, doi:10.1002/nme.1620151210),
 von Mises' law with linear hardening returned along the radius (Wilkins 1964), lumped masses, central
-differences. A node that would pass the wall stops at it.
+differences. A node that would pass the wall is stopped at it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CORNERS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
 GAUSS = CORNERS / sqrt(3)
 SHAPE = np.prod(1 + GAUSS[:, None] * CORNERS, axis=2) / 4  # (points, corners)
 SLOPE = CORNERS * (1 + GAUSS[:, None] * CORNERS)[:, :, ::-1] / 4  # by the local coordinates
-COURANT, EVERY = 0.9, 10  # step over the smallest cell's limit; steps between looks for it
+COURANT, EVERY = 0.9, 10  # time step over the limit of the smallest cell; steps between updates of it
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,13 +36,13 @@ class Metal:
 
 @dataclass(frozen=True, slots=True)
 class _Places:
-    """What the 4 points of m cells measure.
+    """Shape functions and their derivatives at the 4 points of m cells.
 
     Attributes
     ----------
     slope : (points, corners, 2, m) slopes of the shapes by r and z; hoop : (points, corners, m) shape over r
     volume : (points, m) m3
-    swell : (points, corners, 2, m) a third of the mean dilatation's slopes less the point's own
+    swell : (points, corners, 2, m) a third of: slopes of the mean dilatation less those at the point
     """
 
     slope: Array
@@ -52,7 +52,7 @@ class _Places:
 
     @classmethod
     def at(cls, x: Array) -> _Places:
-        """Measure cells with corners at x (4, 2, m)."""
+        """Return those of cells with corners at x (4, 2, m)."""
         J = np.einsum("gak,aim->gkim", SLOPE, x)
         det = J[:, 0, 0] * J[:, 1, 1] - J[:, 0, 1] * J[:, 1, 0]
         inverse = np.stack([J[:, 1, 1], -J[:, 0, 1], -J[:, 1, 0], J[:, 0, 0]], axis=1) / det[:, None]
@@ -97,7 +97,7 @@ def _returned(metal: Metal, stress: Array, plastic: Array, strain: Array) -> tup
 
 
 def _force(places: _Places, stress: Array) -> Array:
-    """Return what the cells push their corners with (4, 2, m), N."""
+    """Return the forces (4, 2, m), N, of the cells on their corners."""
     rr, zz, hoop, rz = stress * places.volume
     tensor = np.stack([rr, rz, rz, zz]).reshape(2, 2, *rr.shape)
     out = np.einsum("ijgm,gajm->aim", tensor, places.slope)
