@@ -1,4 +1,4 @@
-"""The studies by name, and how one is run."""
+"""Run a study, or estimate its processor time, by the name of its module."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 def run_study(
     name: str, request: Request, progress: ProgressMeter, executor: Executor | None = None
 ) -> StudyResult:
-    """Run a study: its jobs through the executor, then its conclusions, written to ``request.out``.
+    """Run the jobs of a study, evaluate their results and write the study to ``request.out``.
 
     Parameters
     ----------
-    name : module of ``fem_impact.study`` with ``plan`` and ``conclude``: the first is asked
-        for jobs, with the results so far, until it names no new one; the second says what follows
-    progress : told after every job
-    executor : any; local processes when None
+    name : module of ``fem_impact.study`` with the functions ``plan`` and ``conclude``; ``plan`` is called
+        with the results so far until it returns no new job, then ``conclude`` with all results
+    progress : meter, updated after each job
+    executor : where the jobs run; local processes when None
 
     Raises
     ------
@@ -44,11 +44,15 @@ def run_study(
 def estimate_study(
     name: str, request: Request, progress: ProgressMeter, executor: Executor | None = None
 ) -> WorkForecast:
-    """Return what the study would take, later rounds of its plan apart; a few samples are computed."""
+    """Return the expected time of the study's first round of jobs, from a few sample runs.
+
+    Jobs that ``plan`` adds once it has results are not counted.
+    """
     with directory_lock(request.out):
         return estimate(_study(name)[0](request, {}), request.out / STORE, progress, executor)
 
 
 def _study(name: str) -> tuple[Plan, Conclude]:
+    """Return ``plan`` and ``conclude`` of a study's module."""
     module = import_module(f"fem_impact.study.{name}")
     return module.plan, module.conclude

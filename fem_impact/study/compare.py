@@ -1,4 +1,4 @@
-"""Model beside measurement: one row a quantity of a measured set, and what no camera could see."""
+"""Computed against measured quantities of a measured set, with computed energies that cannot be measured."""
 
 from __future__ import annotations
 
@@ -15,7 +15,17 @@ Row = dict[str, Any]
 
 @dataclass(frozen=True, slots=True)
 class ComparedQuantity:
-    """A compared quantity: its name in the tables, its key in the outcome, its name in the measured set."""
+    """A compared quantity.
+
+    Attributes
+    ----------
+    name : str
+        Name in the tables.
+    key : Key
+        Key of the computed value in the outcome.
+    measured : str or None
+        Name in the measured set; None where it cannot be measured.
+    """
 
     name: str
     key: Key
@@ -36,9 +46,17 @@ UNSEEN = tuple(ComparedQuantity(share.title, share.key) for share in shares("com
 
 
 def verdict(model: float, band: float | None, measured: Statistic) -> str:
-    """Return how the model's interval stands to the measured mean and to the scatter of single tests.
+    """Return whether the computed value agrees with the measurement.
 
-    A model value that only its own mesh band brings to the measurement is undecided, not in agreement.
+    "inside": in the 95 % interval of the mean; "undecided: mesh band": only the value's mesh band reaches
+    that interval; otherwise the distance from the mean, less the band, in standard deviations (SD) of single
+    tests, "outside, within the scatter" up to two.
+
+    Parameters
+    ----------
+    model : computed value
+    band : half-width of its mesh band, same unit; None without a second mesh
+    measured : mean, standard deviation and 95 % interval of the tests
 
     Examples
     --------
@@ -62,9 +80,10 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
 
 
 def compare(outcome: Outcome) -> list[Row]:
-    """Return the comparison rows of the outcome of a measured set; model and band are those of two meshes.
+    """Return one row a quantity of the outcome of a measured set.
 
-    Without a second mesh the model is the run's own value and has no band.
+    With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,
+    model is the run's own value and band is None.
     """
     statistics = measured_set(outcome.provenance.scene_id).statistics()
     return [
@@ -73,7 +92,7 @@ def compare(outcome: Outcome) -> list[Row]:
     ]
 
 
-def _row(outcome: Outcome, quantity: ComparedQuantity, found: Statistic | None) -> Row:
+def _row(outcome: Outcome, quantity: ComparedQuantity, measured: Statistic | None) -> Row:
     model, band = outcome.estimate(quantity.key)
     return {
         "set": outcome.provenance.scene_id,
@@ -81,21 +100,22 @@ def _row(outcome: Outcome, quantity: ComparedQuantity, found: Statistic | None) 
         "unit": quantity.key.unit,
         "model": or_none(model),
         "band": band,
-        "measured_mean": found and found.mean,
-        "measured_sd": found and found.sd,
-        "measured_low": found and found.low,
-        "measured_high": found and found.high,
-        "n": found and found.n,
-        "verdict": _verdict(outcome, quantity, model, band, found),
+        "measured_mean": measured and measured.mean,
+        "measured_sd": measured and measured.sd,
+        "measured_low": measured and measured.low,
+        "measured_high": measured and measured.high,
+        "n": measured and measured.n,
+        "verdict": _verdict(outcome, quantity, model, band, measured),
     }
 
 
 def _verdict(
-    outcome: Outcome, quantity: ComparedQuantity, model: Num, band: float | None, found: Statistic | None
+    outcome: Outcome, quantity: ComparedQuantity, model: Num, band: float | None, measured: Statistic | None
 ) -> str:
+    """Return `verdict`, or why there is none."""
     if isinstance(model, Unknown):
         return f"not known: {model.reason}"
-    if found is not None:
-        return verdict(model, band, found)
+    if measured is not None:
+        return verdict(model, band, measured)
     vibration = quantity.key.path == ("energy", "vibration")
     return "below floor" if vibration and known(outcome.energy.below_floor) else "not measurable by camera"

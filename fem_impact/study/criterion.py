@@ -27,7 +27,7 @@ FRICTIONS = np.round(np.arange(0.0, 0.951, 0.05), 3)
 
 @dataclass(frozen=True, slots=True)
 class Family:
-    """Rods of several diameters and slendernesses on one kind of contact."""
+    """Rods of several diameters on one kind of contact; with ``fixed_tip`` all have one tip radius."""
 
     name: str
     drop: Drop
@@ -43,36 +43,36 @@ FAMILIES = (
 
 
 def drops(family: Family, quick: bool) -> list[Drop]:
-    """Return the drops of a family, rod by rod; the paper's rods are among those of 19 mm."""
+    """Return the drops of a family, sorted by rod; the paper's rods are among those of 19 mm."""
     gammas = QUICK_GAMMAS if quick else GAMMAS
-    found = []
+    chosen = []
     for d in QUICK_DIAMETERS if quick else DIAMETERS:
         lengths = [length_of(g, d) for g in gammas] + (list(PAPER_RODS.values()) if d == BODY else [])
         for length in sorted(lengths):
             rod = replace(
                 family.drop, length=length, diameter=d, tip_radius=TIP if family.fixed_tip else None
             )
-            found += [replace(rod, angle=float(a)) for a in (QUICK_ANGLES if quick else ANGLES)]
-    return found
+            chosen += [replace(rod, angle=float(a)) for a in (QUICK_ANGLES if quick else ANGLES)]
+    return chosen
 
 
 def blind_drops(quick: bool) -> list[Drop]:
-    """Return elastic drops of the paper's rods at 45 degrees over friction."""
+    """Return elastic drops of the paper's rods at 45 degrees, one per coefficient of friction."""
     frictions = FRICTIONS[::5] if quick else FRICTIONS
     return [Drop(length, friction=float(f)) for length in PAPER_RODS.values() for f in frictions]
 
 
 def plan(request: Request, results: Results) -> list[Job]:
-    """Return every drop by modes, each also with a rod that cannot vibrate on the same contact."""
-    every = [drop for family in FAMILIES for drop in drops(family, request.quick)]
-    stiff = [replace(drop, vibrates=False) for drop in every]
-    chosen = {d.name: d for d in (*every, *stiff, *blind_drops(request.quick))}
+    """Return the modal job of every drop, and of the same drop with a rod that cannot vibrate."""
+    vibrating = [drop for family in FAMILIES for drop in drops(family, request.quick)]
+    stiff = [replace(drop, vibrates=False) for drop in vibrating]
+    chosen = {d.name: d for d in (*vibrating, *stiff, *blind_drops(request.quick))}
     return [Job(name, drop.scene(), "modal") for name, drop in chosen.items()]
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Measure what rigid theory gets wrong per rod, where it passes stated levels, and what governs it."""
+    """Return the study: error of rigid theory per rod, where it passes `LEVELS`, and its governing group."""
     quick = request.quick
-    found: dict[str, Rods] = {f.name: rods_of(drops(f, quick), results) for f in FAMILIES}
-    found["linear spring"] = linear_rods(drops(FAMILIES[1], quick))
-    return publish(study_report(found, blind_drops(quick), results), request, results)
+    families: dict[str, Rods] = {f.name: rods_of(drops(f, quick), results) for f in FAMILIES}
+    families["linear spring"] = linear_rods(drops(FAMILIES[1], quick))
+    return publish(study_report(families, blind_drops(quick), results), request, results)

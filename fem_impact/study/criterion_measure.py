@@ -1,4 +1,4 @@
-"""Per rod: restitution over the angles, the error of rigid theory, the group T1/tau; levels and exponents."""
+"""Restitution of a rod over the angles, error of rigid theory, group T1/tau, and where it passes a level."""
 
 from __future__ import annotations
 
@@ -35,15 +35,16 @@ class Rod:
     Attributes
     ----------
     drop : Drop
-        At any of the angles.
-    angles : (n,) degrees
+        The rod's drop at the first of the angles.
+    angles : (n,)
+        Inclinations, degrees.
     e, e_rigid : (n,)
         Restitution with vibration, and of the rod that cannot vibrate on the same contact.
     groups : (n,)
         T1/tau: first bending period over the contact time of the rod that cannot vibrate.
     whole : float
         T1 over the contact time of the rod's whole mass, falling at full speed onto the contact of 45
-        degrees: one number a rod. At an inclined contact only m* = m / (1 + d_c^2/k^2) stands behind.
+        degrees. The effective mass of an inclined contact is less: m* = m / (1 + d_c^2/k^2).
     """
 
     drop: Drop
@@ -75,56 +76,54 @@ Measure = Callable[[Rod], float]
 
 def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
     """Return the rods of a family; angles whose runs failed are left out."""
-    found: dict[tuple[float, float], list[tuple[Drop, Outcome, Outcome]]] = {}
+    by_rod: dict[tuple[float, float], list[tuple[Drop, Outcome, Outcome]]] = {}
     for drop in drops:
-        run, stiff = results[drop.name], results[_stiff(drop)]
+        run, stiff = results[drop.name], results[replace(drop, vibrates=False).name]
         if isinstance(run, Outcome) and isinstance(stiff, Outcome):
-            found.setdefault((drop.diameter, drop.length), []).append((drop, run, stiff))
-    return [_rod(each) for each in found.values()]
+            by_rod.setdefault((drop.diameter, drop.length), []).append((drop, run, stiff))
+    return [_rod(at_angles) for at_angles in by_rod.values()]
 
 
-def _stiff(drop: Drop) -> str:
-    return replace(drop, vibrates=False).name
-
-
-def _rod(each: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
-    drop = each[0][0]
+def _rod(at_angles: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
+    """Return a rod from, at each angle, its drop and the outcomes of the vibrating and the rigid rod."""
+    drop = at_angles[0][0]
     T1, level = first_period(drop), replace(drop, angle=45.0).scene()
     return Rod(
         drop,
-        np.array([drop.angle for drop, _, _ in each]),
-        np.array([known(run.restitution.edge.e) for _, run, _ in each]),
-        np.array([known(stiff.restitution.edge.e) for _, _, stiff in each]),
-        np.array([T1 / known(stiff.contact.intervals)[0].duration for _, _, stiff in each]),
+        np.array([drop.angle for drop, _, _ in at_angles]),
+        np.array([known(run.restitution.edge.e) for _, run, _ in at_angles]),
+        np.array([known(stiff.restitution.edge.e) for _, _, stiff in at_angles]),
+        np.array([T1 / known(stiff.contact.intervals)[0].duration for _, _, stiff in at_angles]),
         T1 / contact_time(contact_law(plan(level, "modal").bodies), projectile(level).mass, drop.speed),
     )
 
 
 def linear_rods(drops: Iterable[Drop]) -> Rods:
-    """Return the rods on one linear spring for all: as long a contact as Hertz' at the limit of Eq 29."""
+    """Return rods on one linear spring, as stiff as gives Hertz' contact time at the limit of Eq 29."""
     reference = Drop(length_of(LIMIT, BODY))
     k = _effective(slender(reference)) * (pi / _hertz_time(reference)) ** 2
-    found: dict[tuple[float, float], list[Drop]] = {}
+    by_rod: dict[tuple[float, float], list[Drop]] = {}
     for drop in drops:
-        found.setdefault((drop.diameter, drop.length), []).append(drop)
-    return [_linear_rod(each, k) for each in found.values()]
+        by_rod.setdefault((drop.diameter, drop.length), []).append(drop)
+    return [_linear_rod(at_angles, k) for at_angles in by_rod.values()]
 
 
-def _linear_rod(each: Sequence[Drop], k: float) -> Rod:
-    bodies = [slender(drop) for drop in each]
-    T1 = first_period(each[0])
+def _linear_rod(drops: Sequence[Drop], k: float) -> Rod:
+    """Return one rod on a spring, k in N/m, at the angles of its drops; its rigid restitution is 1."""
+    bodies = [slender(drop) for drop in drops]
+    T1 = first_period(drops[0])
     return Rod(
-        each[0],
-        np.array([drop.angle for drop in each]),
+        drops[0],
+        np.array([drop.angle for drop in drops]),
         np.array([spring_drop(body, k).restitution for body in bodies]),
-        np.ones(len(each)),
+        np.ones(len(drops)),
         np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies]),
         T1 / (pi * sqrt(bodies[0].mass / k)),
     )
 
 
 def _effective(rod: ObliqueRod) -> float:
-    """Return the mass behind a frictionless contact, kg."""
+    """Return the effective mass of a frictionless contact, kg: m / (1 + d_c^2/k^2)."""
     return rod.mass / (1 + rod.d_c**2 / rod.k2)
 
 
@@ -138,17 +137,20 @@ def _hertz_time(drop: Drop) -> float:
 
 @lru_cache(maxsize=4096)
 def slender(drop: Drop) -> ObliqueRod:
-    """Return the rod by bending (Timoshenko) and stretching (Love) modes."""
+    """Return the rod's bending (Timoshenko) and stretching (Love) modes at the contact point."""
     scene = drop.scene()
     body, steel, alpha = projectile(scene), scene.projectile.material, scene.impact.angle
     d_c, d_d = (float(arm) for arm in body.arms(alpha))
-    rho, z = (float(place) for place in body.contact_point(alpha))
-    whole, radius = (body.mass, body.k2), drop.diameter / 2
-    return oblique_rod(steel.E, steel.nu, steel.rho, drop.length, radius, alpha, whole, (d_c, d_d), (rho, z))
+    rho, z = (float(coordinate) for coordinate in body.contact_point(alpha))
+    inertia, radius = (body.mass, body.k2), drop.diameter / 2
+    return oblique_rod(
+        steel.E, steel.nu, steel.rho, drop.length, radius, alpha, inertia, (d_c, d_d), (rho, z)
+    )
 
 
 @lru_cache(maxsize=256)
 def _period(E: float, nu: float, rho: float, length: float, radius: float) -> float:
+    """Return the first bending period of a cylinder, s; SI units."""
     return 2 * pi / float(bending_modes(E, nu, rho, length, radius, 1).omega[0])
 
 
@@ -159,13 +161,13 @@ def first_period(drop: Drop) -> float:
 
 
 def blind_ratio(drop: Drop) -> float:
-    """Return mu*: a contact force of this ratio does not excite the first bending mode."""
+    """Return mu*, the ratio of tangential to normal force that does not excite the first bending mode."""
     rod = slender(drop)
     return float(-rod.along_n[0] / rod.along_t[0])
 
 
 def error_of(rod: Rod) -> float:
-    """Return the error of rigid theory."""
+    """Return the error of rigid theory in e."""
     return rod.error
 
 
@@ -175,7 +177,7 @@ def spread_of(rod: Rod) -> float:
 
 
 def gamma_at(rods: Rods, diameter: float, level: float, measure: Measure = error_of) -> float | None:
-    """Return the slenderness at which rods of a diameter first pass a level, interpolated."""
+    """Return the slenderness at which rods of a diameter first pass a level, by linear interpolation."""
     same = sorted((r.drop.gamma, measure(r)) for r in rods if r.drop.diameter == diameter)
     for (low, below), (high, above) in pairwise(same):
         if below < level <= above:
@@ -186,9 +188,9 @@ def gamma_at(rods: Rods, diameter: float, level: float, measure: Measure = error
 def exponent(rods: Rods, level: float, measure: Measure = error_of) -> float | None:
     """Return p of l = C d^p along which the measure stays at a level, fitted over the diameters."""
     diameters = sorted({r.drop.diameter for r in rods})
-    found = [(d, gamma_at(rods, d, level, measure)) for d in diameters]
-    known = [(d, length_of(g, d)) for d, g in found if g is not None]
-    if len(known) < 2:
+    onsets = [(d, gamma_at(rods, d, level, measure)) for d in diameters]
+    lengths = [(d, length_of(g, d)) for d, g in onsets if g is not None]
+    if len(lengths) < 2:
         return None
-    d, length = np.log(np.array(known)).T
+    d, length = np.log(np.array(lengths)).T
     return float(np.polyfit(d, length, 1)[0])

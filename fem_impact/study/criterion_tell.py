@@ -1,4 +1,4 @@
-"""What the criterion study says: sentences, pictures and tables."""
+"""Findings, pictures and tables of the criterion study."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from fem_impact.study.criterion_measure import (
 )
 from fem_impact.study.document import Picture, Sheet, StudyReport
 from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, Drop
-from fem_impact.study.static_give import give_picture, give_sheet, give_words, gives_of
+from fem_impact.study.static_give import give_picture, give_sentences, give_sheet, gives_of
 from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT
 from rigid.slenderness import EXPONENT
@@ -31,10 +31,11 @@ from rigid.slenderness import EXPONENT
 KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 """T1/tau and worst e of elastic frictionless drops, derived independently (benchmark problem 8)."""
 
-JUDGED = 0.05
+JUDGED = 0.05  # error of e that the verdict on the limit of Eq 29 allows
 HERTZ = ("Hertz, one tip radius", "Hertz, tip in proportion")
 YIELDING = "yielding, frictionless"
-Found = Mapping[str, Rods]
+Families = Mapping[str, Rods]
+"""Rods by the name of their family."""
 ASSUMPTIONS = (
     *MAP_NOTES,
     "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
@@ -46,31 +47,32 @@ ASSUMPTIONS = (
 )
 
 
-def study_report(found: Found, blind: Sequence[Drop], results: Results) -> StudyReport:
+def study_report(families: Families, blind: Sequence[Drop], results: Results) -> StudyReport:
     """Return the study from the rods of each family and the drops over friction."""
-    gives = gives_of(found[YIELDING])
-    told = {
-        "onset": [*_origin(found), *_verdicts(found)],
-        "angles": _invariance(found),
-        "static-give": give_words(gives),
-        "master": [*_group(found), *_known(found)],
-        "blind-direction": _blind_words(blind, results),
+    gives = gives_of(families[YIELDING])
+    sentences = {
+        "onset": [*_origin(families), *_verdicts(families)],
+        "angles": _invariance(families),
+        "static-give": give_sentences(gives),
+        "master": [*_group(families), *_known(families)],
+        "blind-direction": _blind_sentences(blind, results),
     }
     return StudyReport(
         "criterion",
         "When a rod may be called rigid",
-        [sentence for sentences in told.values() for sentence in sentences],
-        [_angles(found), _onset(found), give_picture(gives), _master(found), _blind(blind, results)],
-        [_levels(found), _rods(found), give_sheet(gives), _curves(found)],
+        [sentence for group in sentences.values() for sentence in group],
+        [_angles(families), _onset(families), give_picture(gives), _master(families), _blind(blind, results)],
+        [_levels(families), _rods(families), give_sheet(gives), _curves(families)],
         ASSUMPTIONS,
         ["modal", "thornton", "slenderness"],
-        [(name, sentence) for name, sentences in told.items() for sentence in sentences],
+        [(name, sentence) for name, group in sentences.items() for sentence in group],
     )
 
 
-def _angles(found: Found) -> Picture:
+def _angles(families: Families) -> Picture:
+    """Return e against inclination, one panel per family with up to six of its 19 mm rods."""
     panels = []
-    for name, rods in found.items():
+    for name, rods in families.items():
         same = [r for r in rods if r.drop.diameter == BODY]
         chosen = [same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int))]
         series = tuple(
@@ -80,18 +82,20 @@ def _angles(found: Found) -> Picture:
     return Picture("angles", "Restitution against inclination, 19 mm rods.", tuple(panels))
 
 
-def _onset(found: Found) -> Picture:
+def _onset(families: Families) -> Picture:
+    """Return the largest error of e against gamma, 19 mm, one line per family."""
     series = []
-    for at, (name, rods) in enumerate(found.items()):
+    for at, (name, rods) in enumerate(families.items()):
         same = sorted((r.drop.gamma, r.error) for r in rods if r.drop.diameter == BODY)
         series.append(Series(name, [g for g, _ in same], [e for _, e in same], "line", at))
     marks = (Mark(LIMIT, "limit of Eq 29"),)
-    words = "largest error of e by rigid theory"
-    panel = Panel("19 mm", "gamma, m^-0.3815", words, tuple(series), marks, LEVELS)
+    label = "largest error of e by rigid theory"
+    panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, LEVELS)
     return Picture("onset", "Where vibration changes the rebound; dotted: the stated levels.", (panel,), 1)
 
 
-def _master(found: Found) -> Picture:
+def _master(families: Families) -> Picture:
+    """Return 1 - largest error of e against T1/tau in both meanings of tau and against gamma."""
     independent = Series("independent reference", *KNOWN, "rings", 6)
     groups: tuple[tuple[str, str, Measure, tuple[Series, ...]], ...] = (
         ("by T1/tau, tau of the inclined rod", "T1/tau", lambda r: r.group, ()),
@@ -102,65 +106,70 @@ def _master(found: Found) -> Picture:
     for title, axis, group, more in groups:
         series = [
             Series(name, [group(r) for r in rods], [1 - r.error for r in rods], "points", at)
-            for at, (name, rods) in enumerate(found.items())
+            for at, (name, rods) in enumerate(families.items())
         ]
         marks = (Mark(LIMIT, "limit"),) if title == "by gamma" else ()
         panels.append(Panel(title, axis, "1 - largest error of e", (*series, *more), marks))
-    words = "One group or the other: all diameters, contacts and slendernesses."
-    return Picture("master", words, tuple(panels), 3)
+    caption = "One group or the other: all diameters, contacts and slendernesses."
+    return Picture("master", caption, tuple(panels), 3)
 
 
 def _blind(blind: Sequence[Drop], results: Results) -> Picture:
+    """Return vibration against friction of the paper's rods, with mu* of each."""
     series, marks = [], []
-    for at, (words, length) in enumerate(PAPER_RODS.items()):
+    for at, (rod, length) in enumerate(PAPER_RODS.items()):
         f, share = _over_friction(blind, results, length)
-        series.append(Series(words, f, [100 * s for s in share], "line", at))
-        marks.append(Mark(blind_ratio(Drop(length)), f"mu* of {words}"))
+        series.append(Series(rod, f, [100 * s for s in share], "line", at))
+        marks.append(Mark(blind_ratio(Drop(length)), f"mu* of {rod}"))
     panel = Panel("elastic, 45 degrees", "f", "vibration, % of E_0", tuple(series), tuple(marks))
-    words = "A contact force of ratio mu* does not excite the first bending mode."
-    return Picture("blind-direction", words, (panel,), 1)
+    caption = "A contact force of ratio mu* does not excite the first bending mode."
+    return Picture("blind-direction", caption, (panel,), 1)
 
 
 def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> tuple[list[float], list[float]]:
+    """Return f and E_vib/E_0 of the drops of a rod length, m, without the failed ones."""
     runs = [(d.friction, results[d.name]) for d in blind if d.length == length]
     shares = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
     return [f for f, _ in shares], [share for _, share in shares]
 
 
-def _origin(found: Found) -> list[str]:
-    told = []
-    for name, rods in found.items():
+def _origin(families: Families) -> list[str]:
+    """Return, per family, where the error passes each level and the exponent of l over d."""
+    sentences = []
+    for name, rods in families.items():
         powers = [(level, exponent(rods, level)) for level in LEVELS]
-        words = ", ".join(f"{p:.2f} at {level:.0%}" for level, p in powers if p is not None)
+        exponents = ", ".join(f"{p:.2f} at {level:.0%}" for level, p in powers if p is not None)
         onset = [(level, gamma_at(rods, BODY, level)) for level in LEVELS]
         where = ", ".join(f"{level:.0%} beyond gamma {g:.1f}" for level, g in onset if g is not None)
         passes = where or "no level within the map"
-        power = words or "that the map does not show"
-        told.append(
+        power = exponents or "that the map does not show"
+        sentences.append(
             f"{name}: the error of e passes {passes} (19 mm); the length at which it does grows with the "
             f"diameter to the power {power} (published {EXPONENT})."
         )
-    return told
+    return sentences
 
 
-def _verdicts(found: Found) -> list[str]:
-    told = []
-    for name, rods in found.items():
+def _verdicts(families: Families) -> list[str]:
+    """Return, per family, whether the limit of Eq 29 is safe for an error of `JUDGED`."""
+    sentences = []
+    for name, rods in families.items():
         onset = gamma_at(rods, BODY, JUDGED)
         if onset is None:
             safe = max((r.error for r in rods if r.drop.diameter == BODY), default=0.0) < JUDGED
             where = "never reaches" if safe else "is always above"
-            told.append(f"{name}: the error {where} {JUDGED:.0%} in the map.")
+            sentences.append(f"{name}: the error {where} {JUDGED:.0%} in the map.")
             continue
         word = "unsafe" if onset < LIMIT else "too strict" if onset > 1.15 * LIMIT else "about right and safe"
-        told.append(
+        sentences.append(
             f"{name}: with {JUDGED:.0%} allowed, gamma <= {LIMIT} is {word}: it comes at {onset:.1f}."
         )
-    return told
+    return sentences
 
 
-def _group(found: Found) -> list[str]:
-    rods = [r for each in found.values() for r in each if r.error > 0.005]
+def _group(families: Families) -> list[str]:
+    """Return the scatter of the error about one curve of each group, over all families."""
+    rods = [r for family in families.values() for r in family if r.error > 0.005]
     if len(rods) < 8:
         return []
     error = np.array([r.error for r in rods])
@@ -175,9 +184,9 @@ def _group(found: Found) -> list[str]:
     ]
 
 
-def _known(found: Found) -> list[str]:
-    """Say how far Hertz' contacts lie from the independent points, for each meaning of tau."""
-    rods = [r for name in HERTZ for r in found[name] if r.drop.diameter == BODY]
+def _known(families: Families) -> list[str]:
+    """Return the distance of Hertz' contacts from the independent points, for each meaning of tau."""
+    rods = [r for name in HERTZ for r in families[name] if r.drop.diameter == BODY]
     if len(rods) < 8:
         return []
     inclined, whole = (_apart(rods, lambda r: r.group), _apart(rods, lambda r: r.whole))
@@ -194,19 +203,19 @@ def _apart(rods: Sequence[Rod], group: Measure) -> float:
     return float(np.abs(np.interp(KNOWN[0], x, e) - KNOWN[1]).max())
 
 
-def _invariance(found: Found) -> list[str]:
-    """Say what the published meaning, e that does not change with inclination, gives."""
-    told = []
+def _invariance(families: Families) -> list[str]:
+    """Return, per family, where the spread of e over the angles (published criterion) passes a level."""
+    sentences = []
     for name in (HERTZ[1], YIELDING):
-        rods = [r for r in found[name] if r.drop.diameter == BODY]
+        rods = [r for r in families[name] if r.drop.diameter == BODY]
         stiff = max(np.ptp(r.e_rigid) for r in rods)
         onset = [(level, gamma_at(rods, BODY, level, spread_of)) for level in LEVELS]
         where = ", ".join(f"{level:.0%} beyond gamma {g:.1f}" for level, g in onset if g is not None)
-        told.append(
+        sentences.append(
             f"{name}: the spread of e over the angles passes {where or 'every level from the first rod on'}; "
             f"it is up to {stiff:.2f} for rods that cannot vibrate."
         )
-    return told
+    return sentences
 
 
 def _scatter(x: np.ndarray, y: np.ndarray) -> float:
@@ -217,36 +226,39 @@ def _scatter(x: np.ndarray, y: np.ndarray) -> float:
     return float(np.sqrt(np.mean((y[2:-2] - around) ** 2)))
 
 
-def _blind_words(blind: Sequence[Drop], results: Results) -> list[str]:
-    told = []
-    for words, length in PAPER_RODS.items():
+def _blind_sentences(blind: Sequence[Drop], results: Results) -> list[str]:
+    """Return mu* of the paper's rods and the friction at which they vibrate least."""
+    sentences = []
+    for rod, length in PAPER_RODS.items():
         f, share = _over_friction(blind, results, length)
         least = f[int(np.argmin(share))] if share else float("nan")
-        told.append(
-            f"{words} rod at 45 degrees: mu* = {blind_ratio(Drop(length)):.2f}; elastic drops vibrate least "
+        sentences.append(
+            f"{rod} rod at 45 degrees: mu* = {blind_ratio(Drop(length)):.2f}; elastic drops vibrate least "
             f"at f = {least:.2f} ({100 * min(share, default=0.0):.2g} % of E_0)."
         )
-    return told
+    return sentences
 
 
-def _levels(found: Found) -> Sheet:
+def _levels(families: Families) -> Sheet:
+    """Return gamma at which each measure passes each level, for three diameters, and the exponent."""
     measures: dict[str, Measure] = {"error of e": error_of, "spread of e": spread_of}
     rows: list[list[Cell]] = []
-    for name, rods in found.items():
+    for name, rods in families.items():
         thin, *_, thick = sorted({r.drop.diameter for r in rods})
-        for words, measure in measures.items():
+        for title, measure in measures.items():
             for level in LEVELS:
                 onset = [gamma_at(rods, d, level, measure) for d in (thin, BODY, thick)]
-                rows.append([name, words, level, *onset, exponent(rods, level, measure)])
+                rows.append([name, title, level, *onset, exponent(rods, level, measure)])
     head = ("contact", "measure", "level", "gamma_thinnest", "gamma_19_mm", "gamma_thickest", "exponent")
-    words = "Slenderness at which error or spread of e over the angles passes a level, and the exponent"
-    return Sheet("levels", words, Table.of(head, rows))
+    caption = "Slenderness at which error or spread of e over the angles passes a level, and the exponent"
+    return Sheet("levels", caption, Table.of(head, rows))
 
 
-def _rods(found: Found) -> Sheet:
+def _rods(families: Families) -> Sheet:
+    """Return group, error and spread of every 19 mm rod."""
     rows: list[list[Cell]] = [
         [name, r.drop.gamma, r.drop.diameter, r.drop.length, r.group, r.whole, r.error, r.spread]
-        for name, rods in found.items()
+        for name, rods in families.items()
         for r in rods
         if r.drop.diameter == BODY
     ]
@@ -263,10 +275,11 @@ def _rods(found: Found) -> Sheet:
     return Sheet("rods", "Rods of 19 mm", Table.of(head, rows))
 
 
-def _curves(found: Found) -> Sheet:
+def _curves(families: Families) -> Sheet:
+    """Return e at every angle of every rod."""
     rows: list[list[Cell]] = [
         [name, r.drop.gamma, r.drop.diameter, float(a), float(e), float(stiff), float(group)]
-        for name, rods in found.items()
+        for name, rods in families.items()
         for r in rods
         for a, e, stiff, group in zip(r.angles, r.e, r.e_rigid, r.groups, strict=True)
     ]

@@ -1,4 +1,8 @@
-"""What the criterion study says of the static give of a rod with a yielding tip."""
+"""Static elastic give of a rod with a yielding tip: restitution, findings, picture and table.
+
+The rod's modes act as springs without inertia: they take up energy as the contact force rises and return it
+as it falls, so that less is left for plastic flow.
+"""
 
 from __future__ import annotations
 
@@ -20,14 +24,14 @@ from fem_impact.study.document import Picture, Sheet
 from fem_impact.study.rods import BODY, PAPER_RODS, Drop
 from fem_impact.tables.table import Cell, Table
 
-SHORT = 14.5  # gamma: below it vibration takes less than .5 % of E_0 at any angle
-SHOWN = (5.0, 45.0, 70.0)  # degrees
+SHORT = 14.5  # gamma, m^-0.3815: below it vibration takes less than 0.5 % of E_0 at any angle
+SHOWN = (5.0, 45.0, 70.0)  # degrees: angles in the picture
 Gives = Sequence[tuple[Rod, NDArray[np.float64]]]
-"""Rods with e by static give alone at every angle."""
+"""Rods, each with its e (n,) by static give alone at the rod's n angles."""
 
 
 def gives_of(rods: Rods) -> Gives:
-    """Return the 19 mm rods with a yielding tip, and e with their static give at every angle."""
+    """Return the 19 mm rods by slenderness, and their e by static give alone at every angle."""
     same = sorted((r for r in rods if r.drop.diameter == BODY), key=lambda r: r.drop.gamma)
     return [
         (r, np.array([static_restitution(replace(r.drop, angle=float(a))) for a in r.angles])) for r in same
@@ -35,24 +39,24 @@ def gives_of(rods: Rods) -> Gives:
 
 
 def give_picture(gives: Gives) -> Picture:
-    """Return e of the rod that vibrates, with static give alone, and of the rigid rod, at three angles."""
+    """Return e of the vibrating rod, by static give alone, and of the rigid rod, at three angles."""
     gamma, panels = [rod.drop.gamma for rod, _ in gives], []
     for angle in SHOWN:
         at = [int(np.abs(rod.angles - angle).argmin()) for rod, _ in gives]
-        every = [(r.e[i], e[i], r.e_rigid[i]) for (r, e), i in zip(gives, at, strict=True)]
-        free, slow, stiff = zip(*every, strict=True)
+        curves = [(r.e[i], e[i], r.e_rigid[i]) for (r, e), i in zip(gives, at, strict=True)]
+        vibrating, static, rigid = zip(*curves, strict=True)
         series = (
-            Series("vibrating", gamma, free, "points"),
-            Series("static give alone", gamma, slow, "line"),
-            Series("rigid", gamma, stiff, "dashed"),
+            Series("vibrating", gamma, vibrating, "points"),
+            Series("static give alone", gamma, static, "line"),
+            Series("rigid", gamma, rigid, "dashed"),
         )
         panels.append(Panel(f"{gives[0][0].angles[at[0]]:g} degrees", "gamma, m^-0.3815", "e", series))
-    words = "Yielding tip, frictionless, 19 mm: what the rod stores elastically never reaches the contact."
-    return Picture("static-give", words, tuple(panels), 3)
+    caption = "Yielding tip, frictionless, 19 mm: what the rod stores elastically never reaches the contact."
+    return Picture("static-give", caption, tuple(panels), 3)
 
 
-def give_words(gives: Gives) -> list[str]:
-    """Say what the error of short rods with a yielding tip is."""
+def give_sentences(gives: Gives) -> list[str]:
+    """Return the error of short rods and e of the paper's rods; nothing without short rods."""
     short = [(r, e) for r, e in gives if r.drop.gamma < SHORT]
     if not short:
         return []
@@ -63,53 +67,57 @@ def give_words(gives: Gives) -> list[str]:
         "vibration. A rod that gives way elastically stores part of the blow and hands it back, so that less "
         "flows plastically and it bounces more than a rigid one; that static give alone predicts e within "
         f"{left:.3f}, and it goes to zero with gamma.",
-        _rods_words(gives),
+        _paper_rods_sentence(gives),
     ]
 
 
-def _rods_words(gives: Gives) -> str:
-    told = []
-    for words, length in PAPER_RODS.items():
+def _paper_rods_sentence(gives: Gives) -> str:
+    """Return e of the paper's rods at 45 degrees: rigid, by static give, vibrating."""
+    values = []
+    for name, length in PAPER_RODS.items():
         rod, give = next((r, e) for r, e in gives if r.drop.length == length)
         at = int(np.abs(rod.angles - 45.0).argmin())
-        told.append(
-            f"{words} rod: rigid {rod.e_rigid[at]:.2f}, give {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
+        values.append(
+            f"{name} rod: rigid {rod.e_rigid[at]:.2f}, give {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
         )
     return (
         "Without friction this makes long rods bounce more than short ones, which no contact law does; e at "
-        f"45 degrees: {'; '.join(told)}."
+        f"45 degrees: {'; '.join(values)}."
     )
 
 
 def give_sheet(gives: Gives) -> Sheet:
-    """Return e of every rod and angle."""
+    """Return the table of e of every rod and angle: rigid, by static give, vibrating."""
     rows: list[list[Cell]] = [
         [r.drop.gamma, float(a), float(stiff), float(slow), float(e)]
         for r, give in gives
         for a, stiff, slow, e in zip(r.angles, r.e_rigid, give, r.e, strict=True)
     ]
     head = ("gamma", "angle_deg", "e_rigid", "e_static_give", "e_vibrating")
-    words = "Yielding tip, frictionless, 19 mm: e of a rigid rod, with static give, with vibration"
-    return Sheet("static_give", words, Table.of(head, rows), shown=False)
+    caption = "Yielding tip, frictionless, 19 mm: e of a rigid rod, with static give, with vibration"
+    return Sheet("static_give", caption, Table.of(head, rows), shown=False)
 
 
 def static_restitution(drop: Drop) -> float:
-    """Return e of a frictionless drop whose rod gives way elastically and is left without vibration."""
+    """Return e of a frictionless drop whose rod deforms elastically but is left without vibration.
+
+    Impact energy = plastic and elastic work of the contact + F^2/2 times the flexibility of the rod's modes.
+    """
     scene = drop.scene()
     rod, law = modal_rod(scene), contact_law(plan(scene, "modal").bodies)
     mass = rod.mass / (1 + rod.centre_t**2 / rod.k2)
     energy = 0.5 * mass * scene.impact.v_n**2
     flexibility = float((rod.along_n**2 / rod.omega**2).sum())
 
-    def too_deep(depth: float) -> float:
+    def surplus(depth: float) -> float:
         force, work = _loading(law, depth)
         return work + 0.5 * flexibility * force**2 - energy
 
-    return sqrt(1 - plastic_work(law, brentq(too_deep, 0.0, drop.radius)) / energy)
+    return sqrt(1 - plastic_work(law, brentq(surplus, 0.0, drop.radius)) / energy)
 
 
 def _loading(law: ContactLaw, depth: float) -> tuple[float, float]:
-    """Return force, N, and work, J, of first loading to a depth, m."""
+    """Return force, N, and work, J, of first loading to a depth, m: Hertz, then linear beyond yield."""
     elastic = min(depth, law.yield_depth)
     beyond, force = depth - elastic, law.stiffness * elastic**1.5
     return force + law.slope * beyond, 0.4 * force * elastic + (force + 0.5 * law.slope * beyond) * beyond
