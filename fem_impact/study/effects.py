@@ -1,4 +1,4 @@
-"""Ablation: what the scene's own choice of effects leaves out, beside everything on; and what effects cost.
+"""Ablation: results with the effects that a scene chooses beside those with all on; cost of each effect.
 
 The thirteen measured sets and a designed set of others (short and long, slow and fast, low and high angle,
 hard and soft) run twice, with ``auto`` and with all effects; a few run again with one effect changed.
@@ -30,22 +30,24 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-TIP = 0.8e-3  # m; coarse: both runs of a pair share it
-WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # of e, of E_vib, of E_0
+TIP = 0.8e-3  # m, tip size: coarse, the same for both runs of a pair
+WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # accepted changes: of e, of E_vib, of E_0
 COST_COLUMNS = (
     *("run", "CPU, of auto", "a step, of auto"),
     *("change of e", "e expected", "change of E_vib/E_0", "E_vib/E_0 expected"),
 )
 BESIDE_COLUMNS = ("scene", "e", "e expected", "E_vib/E_0", "E_vib/E_0 expected", "found over expected")
-COSTED = ("t5b", "t3-machined", "t6-17")
-BASE = "t5b"
+COSTED = ("t5b", "t3-machined", "t6-17")  # scenes that run with single effects changed
+BASE = "t5b"  # scene that the designed ones change
 
 
 def _speed(v: float) -> dict[str, Any]:
+    """Return the changed keys of an impact with v, m/s, along either direction."""
     return {"impact.v_n": f"{-v} m/s", "impact.v_t": f"{-v} m/s"}
 
 
 def _yield(body: str, stress: float) -> dict[str, Any]:
+    """Return the changed keys of a body with a yield stress, MPa, without hardening."""
     return {f"{body}.material.{key}": f"{stress} MPa" for key in ("yield_stress", "ultimate_stress")}
 
 
@@ -77,7 +79,7 @@ DESIGNED: Mapping[str, Mapping[str, Any]] = {
 
 
 def plan(request: Request, results: Results) -> list[Job]:
-    """Return both runs of every scene, and those with one effect changed."""
+    """Return the runs of every scene with ``auto`` and all effects; of `COSTED`, those with one changed."""
     jobs = []
     for name, scene in _scenes(request).items():
         jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", everything(scene))]
@@ -87,7 +89,7 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Tell where auto differs from everything on, and what each effect costs."""
+    """Return the study: where ``auto`` differs from all effects, and what each effect costs."""
     scenes = _scenes(request)
     pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
     rows = [
@@ -96,7 +98,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         if isinstance(auto, Outcome) and isinstance(whole, Outcome)
     ]
     costs = [
-        cost_row(f"{name}{change}", run, base, told(scene, effects))
+        cost_row(f"{name}{change}", run, base, expected_change(scene, effects))
         for name, scene in scenes.items()
         if name in COSTED and isinstance(base := results[f"{name}-auto"], Outcome)
         for change, effects in _changes(scene)
@@ -111,21 +113,22 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
 
 
 def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:
-    """Return one line of the ablation table: what auto changes; vibration that is off counts as none."""
+    """Return a row of the ablation table: ``auto`` beside all effects; vibration that is off counts as 0."""
     e, e_all = (known(run.restitution.edge.e) for run in (auto, whole))
     vib, vib_all = _vibration(auto), _vibration(whole)
-    same = abs(e - e_all) <= WITHIN_E * abs(e_all) and _near(vib, vib_all)
+    same_e = abs(e - e_all) <= WITHIN_E * abs(e_all)
+    same_vib = abs(vib - vib_all) <= max(WITHIN_VIB * vib_all, LEAST_VIB)
     on, on_all = auto.provenance.effects, whole.provenance.effects
     off = [effect for effect in NAMES if effect in on_all and effect not in on]
     cost = auto.cost.cpu / whole.cost.cpu if whole.cost.cpu else None
     changes = [e_all, e - e_all, vib_all, vib - vib_all, cost]
-    return [name, ", ".join(off) or "none", *changes, "within" if same else "beyond"]
+    return [name, ", ".join(off) or "none", *changes, "within" if same_e and same_vib else "beyond"]
 
 
-def told(scene: Scene, effects: Sequence[str]) -> Harm:
-    """Return the changes of e and E_vib that are expected of a change of one effect.
+def expected_change(scene: Scene, effects: Sequence[str]) -> Harm:
+    """Return the expected changes of e and E_vib/E_0 by a change of one effect, the last of ``effects``.
 
-    They are those of two strikes; of an effect that a strike does not hold, their sizes alone.
+    They are differences of two quick impacts; for an effect that these do not model, only magnitudes.
     """
     changed = effects[-1].removeprefix("-")
     if EFFECTS[changed].harm and changed not in BARRIERS:
@@ -134,14 +137,14 @@ def told(scene: Scene, effects: Sequence[str]) -> Harm:
     return Harm(after.e - before.e, after.E_vib - before.E_vib)
 
 
-def expected_row(name: str, whole: Outcome, told: BeamImpact) -> list[Cell]:
-    """Return e and E_vib of a run beside those of a strike; vibration as found over expected."""
+def expected_row(name: str, whole: Outcome, expected: BeamImpact) -> list[Cell]:
+    """Return e and E_vib/E_0 of a run beside those of the quick impact, and the ratio of E_vib to that."""
     e, vib = known(whole.restitution.edge.e), known(whole.energy.vibration)
-    return [name, e, told.e, vib, told.E_vib, vib / told.E_vib if told.E_vib else None]
+    return [name, e, expected.e, vib, expected.E_vib, vib / expected.E_vib if expected.E_vib else None]
 
 
 def cost_row(name: str, run: Outcome, base: Outcome, harm: Harm) -> list[Cell]:
-    """Return one line of the cost table: times over those of auto, changes of e and E_vib, those expected."""
+    """Return a row of the cost table: times over those of ``auto``, actual and expected changes."""
     e, e_base = (known(r.restitution.edge.e) for r in (run, base))
     times = [r.cost.cpu / steps if (steps := known(r.cost.steps)) else 0.0 for r in (run, base)]
     return [
@@ -152,43 +155,39 @@ def cost_row(name: str, run: Outcome, base: Outcome, harm: Harm) -> list[Cell]:
 
 
 def _vibration(run: Outcome) -> float:
-    """Return E_vib over E_0; that of a rod that cannot vibrate is 0."""
+    """Return E_vib/E_0; 0 for a rod that cannot vibrate."""
     return or_none(run.energy.vibration) or 0.0
 
 
-def _near(vib: float, vib_all: float) -> bool:
-    return abs(vib - vib_all) <= max(WITHIN_VIB * vib_all, LEAST_VIB)
-
-
 def _scenes(request: Request) -> dict[str, Scene]:
-    """Return the scenes asked for, all with effects chosen by themselves and a coarse tip."""
-    every = {name: load(name) for name in MEASURED_SETS}
-    every |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
-    wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(every))
-    return {name: _coarse(every[name]) for name in wanted}
+    """Return the requested scenes by name, with ``auto`` effects and a coarse tip."""
+    scenes = {name: load(name) for name in MEASURED_SETS}
+    scenes |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
+    wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(scenes))
+    return {name: _coarse(scenes[name]) for name in wanted}
 
 
 def _coarse(scene: Scene) -> Scene:
-    """Return the scene with effects chosen by themselves, on a tip as coarse as its contact allows."""
+    """Return the scene with ``auto`` effects and a tip size of `TIP` or the largest its contact allows."""
     scene = replace_all(scene, {"effects": "auto", "save.frames": 0})
     size = min(TIP, widest_tip_size(plan_of(scene, "modal").bodies))
     return replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
 
 
 def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
-    """Return each change of one effect: its name and the effects to state."""
-    found: list[tuple[str, tuple[str, ...]]] = []
+    """Return each change of one effect: its suffix in the job's name, and the scene's ``effects``."""
+    changes: list[tuple[str, tuple[str, ...]]] = []
     for choice in choices(scene):
         if choice.name in BARRIERS and not choice.on:
-            found.append((f"-with-{choice.name}", ("auto", choice.name)))
+            changes.append((f"-with-{choice.name}", ("auto", choice.name)))
         elif choice.name not in BARRIERS:
             mark, word = ("-", "without") if choice.on else ("", "with")
-            found.append((f"-{word}-{choice.name}", ("auto", f"{mark}{choice.name}")))
-    return found
+            changes.append((f"-{word}-{choice.name}", ("auto", f"{mark}{choice.name}")))
+    return changes
 
 
 def _within(factor: float, beside: list[list[Cell]]) -> int:
-    """Return how many scenes vibrate within a factor of what was expected."""
+    """Return in how many rows of `expected_row` the ratio of E_vib lies within a factor."""
     ratios = [line[-1] for line in beside if isinstance(line[-1], float)]
     return sum(1 / factor <= ratio <= factor for ratio in ratios)
 

@@ -1,4 +1,7 @@
-"""Vibration against slenderness: maps by the reduced model with finite-element anchors."""
+"""Vibration against slenderness: maps by the modal fidelity, some of their points by finite elements too.
+
+The points computed with finite elements are called anchors.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
@@ -27,11 +30,11 @@ DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # beside 19 mm and 2.1 m/s
 ANGLES, QUICK_ANGLES = (5.0, 12.0, 20.0, 28.0, 36.0, 45.0, 54.0, 63.0, 72.0), (20.0, 45.0)
 ANCHOR_TIP, QUICK_TIP = 0.6e-3, 0.8e-3  # m
 LONG = 0.4  # m: an anchor beyond the paper's rods
-SLACK = 1e-6  # s after the first contact
+SLACK = 1e-6  # s: a cut run ends so long after its first contact
 
 
 def line(quick: bool) -> list[Drop]:
-    """Return the fine line: 19 mm, 2.1 m/s, 45 degrees, every surface state, elastic and yielding."""
+    """Return the drops of the fine line over gamma: 19 mm, 2.1 m/s, 45 degrees, every state and yielding."""
     return [
         Drop(length_of(g), friction=f, yields=yields)
         for g in (QUICK_FINE if quick else FINE)
@@ -41,7 +44,7 @@ def line(quick: bool) -> list[Drop]:
 
 
 def grid(quick: bool) -> list[Drop]:
-    """Return the map: other diameters, other speeds; surface states, angles, elastic and yielding."""
+    """Return the drops of the map over diameter, speed, gamma, yielding, surface state and angle."""
     gammas, angles = (QUICK_COARSE, QUICK_ANGLES) if quick else (COARSE, ANGLES)
     others = [] if quick else [*((d, SPEED) for d in DIAMETERS), *((BODY, speed) for speed in SPEEDS)]
     return [
@@ -55,41 +58,42 @@ def grid(quick: bool) -> list[Drop]:
 
 
 def anchors(quick: bool) -> list[Drop]:
-    """Return the drops that are computed with finite elements too."""
+    """Return the drops that also run with finite elements."""
     if quick:
         return [Drop(PAPER_RODS["0.08 m"], friction=STATES["machined"], yields=True)]
     lengths = (*PAPER_RODS.values(), LONG)
     elastic = [Drop(length) for length in lengths]
     machined = [Drop(length, friction=STATES["machined"], yields=True) for length in lengths]
-    some = [machined[0], machined[2]]
-    contaminated = [replace(drop, friction=STATES["contaminated"]) for drop in some]
-    steep = [replace(drop, angle=20.0) for drop in some]
+    longest_shortest = [machined[0], machined[2]]
+    contaminated = [replace(drop, friction=STATES["contaminated"]) for drop in longest_shortest]
+    steep = [replace(drop, angle=20.0) for drop in longest_shortest]
     return [*elastic, *machined, *contaminated, *steep, replace(elastic[0], friction=STATES["machined"])]
 
 
 def plan(request: Request, results: Results) -> list[Job]:
-    """Return maps and anchors; then the drops that touch twice again, cut off at their second contact."""
+    """Return the jobs of maps and anchors; with results, also drops with two contacts cut after the first."""
     tip = QUICK_TIP if request.quick else ANCHOR_TIP
     chosen = anchors(request.quick)
     drops = {drop.name: drop for drop in (*line(request.quick), *grid(request.quick), *chosen)}
     jobs = {name: Job(name, drop.scene(), "modal") for name, drop in drops.items()}
     solid = [Job(f"solid-{drop.name}", drop.scene(tip), "solid") for drop in chosen]
-    again = [drop.name for drop in line(request.quick) if _touches_again(results.get(drop.name))]
-    return [*jobs.values(), *solid, *(_cut(jobs[name], results[name]) for name in again)]
+    runs = {drop.name: results.get(drop.name) for drop in line(request.quick)}
+    cut = [
+        _cut(jobs[name], run)
+        for name, run in runs.items()
+        if isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1
+    ]
+    return [*jobs.values(), *solid, *cut]
 
 
-def _touches_again(run: Outcome | Failure | None) -> bool:
-    return isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1
-
-
-def _cut(job: Job, run: Outcome | Failure) -> Job:
-    assert isinstance(run, Outcome)
+def _cut(job: Job, run: Outcome) -> Job:
+    """Return a run's job that ends after the first of its contacts."""
     accuracy = replace(job.scene.accuracy, max_time=known(run.contact.intervals)[0].end + SLACK)
     return Job(first_only(job.name), replace(job.scene, accuracy=accuracy), "modal")
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Draw the maps, state the difference from finite elements, resolve what second contacts give back."""
+    """Return the study: maps, differences from finite elements, vibration returned by later contacts."""
     quick = request.quick
     maps = Maps(line(quick), grid(quick), anchors(quick), results)
     return publish(study_report(maps, QUICK_TIP if quick else ANCHOR_TIP), request, results)

@@ -14,7 +14,7 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.document import Request
-from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_row, plan, row, told
+from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_change, expected_row, plan, row
 
 RUN = outcome(e_edge=0.4, E_vib_over_E_0=2e-3, cpu_s=3.0, steps=100, effects=["vibration", "friction"])
 
@@ -69,10 +69,10 @@ def test_a_change_stands_beside_what_was_expected_of_it():
     harm = {choice.name: choice.harm for choice in choices(scene)}
     slippery, plane = (replace(scene, effects=("auto", word)) for word in ("-friction", "barrier-rigid"))
     base = quick_impact(resolved(scene))
-    assert told(scene, slippery.effects).e == quick_impact(resolved(slippery)).e - base.e
-    assert told(scene, plane.effects).E_vib == quick_impact(resolved(plane)).E_vib - base.E_vib
-    assert abs(told(scene, slippery.effects).e) == pytest.approx(harm["friction"].e, rel=0.05)
-    assert told(scene, ("auto", "radiation")) == harm["radiation"]
+    assert expected_change(scene, slippery.effects).e == quick_impact(resolved(slippery)).e - base.e
+    assert expected_change(scene, plane.effects).E_vib == quick_impact(resolved(plane)).E_vib - base.E_vib
+    assert abs(expected_change(scene, slippery.effects).e) == pytest.approx(harm["friction"].e, rel=0.05)
+    assert expected_change(scene, ("auto", "radiation")) == harm["radiation"]
 
 
 def test_vibration_stands_beside_what_was_expected():
