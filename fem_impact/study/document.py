@@ -1,4 +1,8 @@
-"""What is asked of a study, and what a study is: jobs, and what follows from their results."""
+"""Request and result of a study, its report, and how the report is written.
+
+A study is a module with two functions: ``plan`` returns its jobs (`Plan`), ``conclude`` evaluates their
+results, puts them into a `StudyReport` and writes it by `publish` (`Conclude`).
+"""
 
 from __future__ import annotations
 
@@ -23,7 +27,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Request:
-    """What is asked of a study.
+    """Options of a study.
 
     Attributes
     ----------
@@ -32,9 +36,9 @@ class Request:
     ids : tuple of str
         Measured sets, where the study is about them; all when empty.
     quick : bool
-        A small version for a first look.
+        Whether to run the small version.
     fidelity : str
-        Of the studies that leave the choice; each has its default.
+        Fidelity of the runs, for studies with a choice; empty for the study's default.
     """
 
     out: Path
@@ -43,7 +47,7 @@ class Request:
     fidelity: str = ""
 
     def command(self, study: str) -> str:
-        """Return the command that asks for this."""
+        """Return the command line of this request."""
         options = [*self.ids, *(["--quick"] if self.quick else [])]
         options += ["--fidelity", self.fidelity] if self.fidelity else []
         return " ".join(["fem-impact study", study, *options])
@@ -51,7 +55,7 @@ class Request:
 
 @dataclass(frozen=True, slots=True)
 class StudyResult:
-    """The document that study.json holds, its text for a terminal, directories of runs to be presented."""
+    """Contents of study.json, text for a terminal, and directories of the runs to be presented."""
 
     document: dict[str, Any]
     text: str
@@ -63,7 +67,7 @@ Conclude = Callable[[Request, Results, "ProgressMeter"], StudyResult]
 
 
 def failures_of(results: Results) -> list[dict[str, str]]:
-    """Return one row a failed job."""
+    """Return one row per failed job: its name and reason."""
     failed = (result for result in results.values() if isinstance(result, Failure))
     return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
 
@@ -74,12 +78,12 @@ LEDGER = (
     *(share.key.name for share in shares("study")),
     *("residual_over_E_0", "wall_s", "created_utc"),
 )
-"""Columns of runs.csv: one row a run."""
+"""Columns of runs.csv, one row per run."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A table: CSV of its name, and shown in the summary unless it is long."""
+    """A table: written as CSV under its name; in the summary if ``shown``."""
 
     name: str
     caption: str
@@ -89,7 +93,7 @@ class Sheet:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A figure: name of its files, caption, and what it draws."""
+    """A figure: name of its files, caption, panels, and their number side by side."""
 
     name: str
     caption: str
@@ -106,7 +110,7 @@ class StudyReport:
     study, title : str
         Name of the study and of its page.
     findings : sequence of str
-        Sentences.
+        Sentences on the results.
     pictures, sheets : sequences
         Figures and tables.
     assumptions : sequence of str

@@ -1,4 +1,4 @@
-"""What the gamma study says: sentences, pictures and tables of its maps."""
+"""Findings, pictures and tables of the gamma study."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ MARKS = (
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """A number of an outcome: its name in tables, and what it is multiplied by in figures."""
+    """A quantity of an outcome: its name in tables, and its factor in figures (100 for per cent)."""
 
     name: str
     of: Callable[[Outcome], Num]
@@ -53,7 +53,7 @@ KINDS = {False: "elastic", True: "yielding"}
 
 @dataclass(frozen=True, slots=True)
 class Maps:
-    """The drops of the fine line, of the map, of the anchors, and the results of all jobs."""
+    """Drops of the fine line, of the map and of the anchors (modal and solid), and all results."""
 
     line: Sequence[Drop]
     grid: Sequence[Drop]
@@ -61,12 +61,12 @@ class Maps:
     results: Results
 
     def value(self, drop: Drop, measure: Measure, prefix: str = "") -> float | None:
-        """Return a number of a drop, None where its run failed or does not know it."""
+        """Return a quantity of a drop; None where its run failed or has no value."""
         run = self.results.get(f"{prefix}{drop.name}")
         return or_none(measure.of(run)) if isinstance(run, Outcome) else None
 
     def worst(self) -> list[Drop]:
-        """Return, for each rod, speed, surface and kind of the map, the angle that vibrates most."""
+        """Return, per rod, speed, friction and yielding, the drop at the angle that vibrates most."""
         groups: dict[tuple[float | bool, ...], list[Drop]] = {}
         for drop in self.grid:
             key = (drop.length, drop.diameter, drop.speed, drop.friction, drop.yields)
@@ -81,8 +81,10 @@ def first_only(name: str) -> str:
 
 def study_report(maps: Maps, tip: float) -> StudyReport:
     """Return the study."""
-    pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *_other_pictures(maps)]
-    sheets = [_anchor_sheet(maps), _rod_sheet(maps), _worst_sheet(maps), _map_sheet(maps)]
+    by = [_by(maps, "diameter", 1e3, "mm"), _by(maps, "speed", 1.0, "m/s")]
+    pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *by]
+    worst = Sheet("worst", "The angle that vibrates most", _points(maps, maps.worst()), shown=False)
+    sheets = [_anchor_sheet(maps), _rod_sheet(maps), worst, _map_sheet(maps)]
     peaks, back, away = _peaks(maps), _given_back(maps), _differences(maps)
     anchored = f"Anchors: finite elements of {tip * 1e3:g} mm at the tip, one mesh, so without a mesh band."
     return StudyReport(
@@ -94,20 +96,18 @@ def study_report(maps: Maps, tip: float) -> StudyReport:
         [*MAP_NOTES, anchored],
         ["modal", "thornton", "slenderness"],
         [
-            *(("line-elastic", told) for told in peaks[:1]),
-            *(("line-yielding", told) for told in peaks[-1:]),
-            *(("second-contacts", told) for told in back),
-            *(("line-yielding", told) for told in away),
+            *(("line-elastic", sentence) for sentence in peaks[:1]),
+            *(("line-yielding", sentence) for sentence in peaks[-1:]),
+            *(("second-contacts", sentence) for sentence in back),
+            *(("line-yielding", sentence) for sentence in away),
         ],
     )
 
 
-def _curve(
-    maps: Maps, drops: Iterable[Drop], measure: Measure, prefix: str = ""
-) -> tuple[list[float], list[float]]:
-    """Return gamma and a number, fractions of E_0 in per cent, of the drops that have it."""
-    found = [(drop.gamma, maps.value(drop, measure, prefix)) for drop in drops]
-    points = [(gamma, measure.factor * value) for gamma, value in found if value is not None]
+def _curve(maps: Maps, drops: Iterable[Drop], measure: Measure, prefix: str = "") -> Curve:
+    """Return gamma and a quantity, times its factor, of the drops that have a value."""
+    values = [(drop.gamma, maps.value(drop, measure, prefix)) for drop in drops]
+    points = [(gamma, measure.factor * value) for gamma, value in values if value is not None]
     return [gamma for gamma, _ in points], [value for _, value in points]
 
 
@@ -148,7 +148,7 @@ def _second_picture(maps: Maps) -> Picture:
 
 
 def _after_first(maps: Maps, drop: Drop) -> float:
-    """Return the vibration after the first contact; a rod that touches once has no other."""
+    """Return E_vib/E_0 after the first contact: of the cut run, or of the full run with one contact only."""
     cut = maps.value(drop, VIBRATION, "first-")
     end = maps.value(drop, VIBRATION)
     return cut if cut is not None else end if end is not None else float("nan")
@@ -159,7 +159,11 @@ def _worst_picture(maps: Maps) -> Picture:
     for yields, kind in KINDS.items():
         series = []
         for at, (state, f) in enumerate(STATES.items()):
-            chosen = [d for d in maps.worst() if _main(d) and (d.friction, d.yields) == (f, yields)]
+            chosen = [
+                d
+                for d in maps.worst()
+                if (d.diameter, d.speed) == (BODY, 2.1) and (d.friction, d.yields) == (f, yields)
+            ]
             series.append(Series(state, *_curve(maps, chosen, VIBRATION), "line", at))
         panels.append(Panel(f"{kind}, worst angle", X, "vibration, % of E_0", tuple(series), MARKS))
     return Picture(
@@ -167,16 +171,8 @@ def _worst_picture(maps: Maps) -> Picture:
     )
 
 
-def _main(drop: Drop) -> bool:
-    return (drop.diameter, drop.speed) == (BODY, 2.1)
-
-
-def _other_pictures(maps: Maps) -> list[Picture]:
-    """Return vibration at 45 degrees by diameter and by speed, frictionless elastic and machined yielding."""
-    return [_by(maps, "diameter", 1e3, "mm"), _by(maps, "speed", 1.0, "m/s")]
-
-
 def _by(maps: Maps, name: str, scale: float, unit: str) -> Picture:
+    """Return vibration at 45 degrees by diameter or speed, frictionless elastic and machined yielding."""
     other = "speed" if name == "diameter" else "diameter"
     panels = []
     for yields, state in ((False, "frictionless"), (True, "machined")):
@@ -199,7 +195,8 @@ def _grouped(drops: Iterable[Drop], name: str) -> dict[float, list[Drop]]:
 
 
 def _peaks(maps: Maps) -> list[str]:
-    told = []
+    """Return, per kind of contact and surface state, gamma of the largest vibration at 45 degrees."""
+    sentences = []
     for yields, kind in KINDS.items():
         for state, f in STATES.items():
             same = [d for d in maps.line if d.friction == f and d.yields == yields]
@@ -207,14 +204,15 @@ def _peaks(maps: Maps) -> list[str]:
             if gamma:
                 top = int(np.argmax(share))
                 last = f", and {share[-1]:.2g} % at gamma {gamma[-1]:.0f}" if gamma[top] < gamma[-1] else ""
-                told.append(
+                sentences.append(
                     f"{kind}, {state}, 45 degrees: vibration is largest at gamma {gamma[top]:.0f} with "
                     f"{share[top]:.2g} % of E_0{last}."
                 )
-    return told
+    return sentences
 
 
 def _given_back(maps: Maps) -> list[str]:
+    """Return how many drops touch again, and how much vibration that returns to the rigid motion."""
     twice = [d for d in maps.line if maps.value(d, VIBRATION, "first-") is not None]
     if not twice:
         return []
@@ -229,17 +227,18 @@ def _given_back(maps: Maps) -> list[str]:
 
 
 def _differences(maps: Maps) -> list[str]:
-    told = []
-    for words, measure in COMPARED.items():
+    """Return the differences between modal and finite-element results over the anchors."""
+    sentences = []
+    for quantity, measure in COMPARED.items():
         pairs = [(maps.value(d, measure), maps.value(d, measure, "solid-")) for d in maps.anchors]
         away = [m - s for m, s in pairs if m is not None and s is not None]
         if away:
-            told.append(
-                f"{words}: modes less finite elements over {len(away)} anchors: mean {np.mean(away):+.3f}, "
-                f"root mean square {np.linalg.norm(away) / len(away) ** 0.5:.3f}, largest "
-                f"{max(away, key=abs):+.3f}."
+            sentences.append(
+                f"{quantity}: modes less finite elements over {len(away)} anchors: mean "
+                f"{np.mean(away):+.3f}, root mean square {np.linalg.norm(away) / len(away) ** 0.5:.3f}, "
+                f"largest {max(away, key=abs):+.3f}."
             )
-    return told
+    return sentences
 
 
 def _anchor_sheet(maps: Maps) -> Sheet:
@@ -254,13 +253,9 @@ def _anchor_sheet(maps: Maps) -> Sheet:
 
 
 def _rod_sheet(maps: Maps) -> Sheet:
-    """Return the paper's rods, elastic and yielding, from the anchors' modal twins."""
+    """Return the modal results of those anchors at 45 degrees that are the paper's rods."""
     rods = [d for d in maps.anchors if d.length in PAPER_RODS.values() and d.angle == 45.0]
     return Sheet("rods", "The paper's rods (modes)", _points(maps, rods))
-
-
-def _worst_sheet(maps: Maps) -> Sheet:
-    return Sheet("worst", "The angle that vibrates most", _points(maps, maps.worst()), shown=False)
 
 
 def _map_sheet(maps: Maps) -> Sheet:
@@ -270,6 +265,7 @@ def _map_sheet(maps: Maps) -> Sheet:
 
 
 def _points(maps: Maps, drops: Iterable[Drop]) -> Table:
+    """Return one row per drop: its parameters and its quantities."""
     listed = (VIBRATION, RESTITUTION, MU, CONTACTS, FRICTION, PLASTIC)
     head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact")
     rows = [_row(d, [maps.value(d, measure) for measure in listed]) for d in drops]

@@ -1,4 +1,8 @@
-"""How long a mass without arms stays in contact."""
+"""Reference drops of the criterion study: contact time of a point mass, rebound of a rod from a spring.
+
+The point mass uses the contact law of the modal fidelity; the rod on a spring is piecewise linear and solved
+exactly by its modes.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +16,11 @@ from fem_impact.modal.march import ALONE, MOST_CONTACTS, RIGID, Bounds, Start, d
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.reference.oblique import ObliqueRod
 
-STEP, FREE = 2e-8, 1e-6  # s
-LATEST = 1.0  # s
+STEP, FREE = 2e-8, 1e-6  # s: time steps of the point mass in contact and in flight
+LATEST = 1.0  # s: end of the point mass's run
+HORIZON = 8e-3  # s: longest flight of the spring drop before its next contact
+SAMPLES = 24  # of the gap over the shortest period
+MOST = 40  # contacts of a spring drop
 
 
 def contact_time(law: ContactLaw, mass: float, speed: float) -> float:
@@ -25,14 +32,9 @@ def contact_time(law: ContactLaw, mass: float, speed: float) -> float:
     return float(contacts[0, 1] - contacts[0, 0])
 
 
-HORIZON = 8e-3  # s: the longest flight to a further touch
-SAMPLES = 24  # over the shortest period
-MOST = 40  # contacts
-
-
 @dataclass(frozen=True, slots=True)
 class SpringDrop:
-    """Kinematic restitution of the contact point, vibration over E_0, number of contacts."""
+    """Rebound from a linear spring: e of the contact point (kinematic), E_vib/E_0, number of contacts."""
 
     restitution: float
     vibration: float
@@ -40,11 +42,12 @@ class SpringDrop:
 
 
 def spring_drop(rod: ObliqueRod, stiffness: float) -> SpringDrop:
-    """Return the rebound of a rod that falls along n; it does not depend on the speed.
+    """Return the rebound of a rod that falls along n onto a linear spring; it does not depend on the speed.
 
     Parameters
     ----------
-    stiffness : of the contact, N/m
+    rod : inertia, lever arms and modes
+    stiffness : of the spring, N/m
     """
     scale = np.sqrt(np.concatenate([[rod.mass, rod.mass * rod.k2], np.ones(len(rod.omega))]))
     # the contact point's normal displacement is c . x for mass-normalised unknowns x
@@ -69,7 +72,10 @@ def spring_drop(rod: ObliqueRod, stiffness: float) -> SpringDrop:
 
 
 def _reach(rod: ObliqueRod, x: Array, v: Array, c: Array) -> float:
-    """Return the time, s, after which the rigid drift has outrun the sum of all modal amplitudes."""
+    """Return the time, s, after which the rigid motion exceeds the sum of all modal amplitudes.
+
+    No contact can follow; at most `HORIZON`.
+    """
     drift, start = float(c[:2] @ v[:2]), float(c[:2] @ x[:2])
     amplitude = float(np.abs(c[2:]) @ np.hypot(x[2:], v[2:] / rod.omega))
     return min(HORIZON, (amplitude - start) / drift) if drift > 0 else HORIZON
@@ -85,18 +91,19 @@ class _System:
 
     @classmethod
     def of(cls, K: Array, c: Array) -> _System:
-        square, shape = np.linalg.eigh(K)
-        return cls(np.sqrt(np.maximum(square, 0.0)), shape, c)
+        """Return the modes of a mass-normalised stiffness (k, k), 1/s^2; negative round-off is set to 0."""
+        omega_squared, shape = np.linalg.eigh(K)
+        return cls(np.sqrt(np.maximum(omega_squared, 0.0)), shape, c)
 
     def at(self, x: Array, v: Array, t: Array) -> tuple[Array, Array]:
         """Return x and v, (k, n), at times t (n,)."""
         q, rate = self.shape.T @ x, self.shape.T @ v
         phase = np.outer(self.omega, t)
-        # sin(w t) / w, which is t for a rigid motion
-        swing = t * np.sinc(phase / np.pi)
+        # sin(omega t) / omega, which is t for a rigid motion
+        sine = t * np.sinc(phase / np.pi)
         cosine = np.cos(phase)
-        x_t = q[:, None] * cosine + rate[:, None] * swing
-        v_t = rate[:, None] * cosine - (self.omega**2 * q)[:, None] * swing
+        x_t = q[:, None] * cosine + rate[:, None] * sine
+        v_t = rate[:, None] * cosine - (self.omega**2 * q)[:, None] * sine
         return self.shape @ x_t, self.shape @ v_t
 
     def gap(self, x: Array, v: Array, t: float) -> float:
@@ -104,18 +111,18 @@ class _System:
         return float(self.c @ self.at(x, v, np.array([t]))[0][:, 0])
 
     def until(self, x: Array, v: Array, rising: bool, horizon: float) -> tuple[Array, Array, bool]:
-        """Return the state at which the gap next rises (or falls) through zero, and whether it does."""
+        """Return x, v at the gap's next rise (or fall) through 0, and whether it is in the horizon, s."""
         dt = 2 * np.pi / float(self.omega.max()) / SAMPLES
         t: Array = dt * np.arange(1.0, max(horizon // dt, 2.0))
-        past = (self.c @ self.at(x, v, t)[0] >= 0.0) == rising
-        first = int(past.argmax())
-        touched = bool(past[first])
+        passed = (self.c @ self.at(x, v, t)[0] >= 0.0) == rising
+        first = int(passed.argmax())
+        touched = bool(passed[first])
         end = self._refine(x, v, float(t[first]) - dt, float(t[first])) if touched else float(t[-1])
         state = self.at(x, v, np.array([end]))
         return state[0][:, 0], state[1][:, 0], touched
 
     def _refine(self, x: Array, v: Array, low: float, high: float) -> float:
-        """Return where the gap changes sign between two times, by bisection; the later end of the bracket."""
+        """Return the time, s, of the gap's change of sign, by bisection: the last bracket's later end."""
         at_end = self.gap(x, v, high) >= 0.0
         for _ in range(40):
             middle = 0.5 * (low + high)

@@ -1,4 +1,4 @@
-"""Scenes of the maps: dropped rods of any slenderness, diameter, tip, speed, angle, friction and yield."""
+"""Scenes of the studies over slenderness: drops over diameter, tip, speed, angle, friction, yielding."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 STATES = {"frictionless": 0.0, "contaminated": 0.16, "cleaned": 0.42, "machined": 0.57}
 """f of the surface states at which maps are drawn; all but 0 are those of `fem_impact.scene.surfaces`."""
 
-BODY, TIP = 0.019, 0.003  # m
-LATEST = 8e-3  # s: the second contact of a slender rod comes after some periods of its bending
+BODY, TIP = 0.019, 0.003  # m: diameter and edge radius of the paper's rods
+LATEST = 8e-3  # s, end of a run: a slender rod's second contact comes some bending periods after the first
 MAP_NOTES = (
     "Dropped without spin: v_n = -v cos(alpha), v_t = -v sin(alpha); no gravity during the impact.",
     "Edge radius 3 mm on 19 mm and in proportion to other diameters; steels of the paper.",
@@ -31,9 +31,10 @@ def length_of(gamma: float, diameter: float = BODY) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Drop:
-    """A rod that falls on the plate: lengths in m, angle in degrees, speed in m/s.
+    """A rod that falls on the plate without spin: lengths in m, angle in degrees, speed in m/s.
 
-    ``yields`` lets both bodies yield; ``vibrates`` is off for the rigid rod on the same contact.
+    With ``yields`` both bodies yield; without ``vibrates`` the rod is rigid, on the same contact. A
+    ``tip_radius`` of None is in proportion to the diameter.
     """
 
     length: float
@@ -52,11 +53,11 @@ class Drop:
 
     @property
     def name(self) -> str:
-        """An identifier that holds every number: um, 0.01 degrees, 0.001, mm/s."""
-        numbers = (self.length * 1e6, self.diameter * 1e6, self.radius * 1e6, self.angle * 1e2)
-        more = (self.friction * 1e3, self.speed * 1e3)
-        words = [("y" if self.yields else "e") + ("v" if self.vibrates else "r")]
-        return "-".join([*words, *(str(round(n)) for n in (*numbers, *more))])
+        """Identifier of rounded numbers: lengths in um, angle in 0.01 deg, f in 0.001, speed in mm/s."""
+        kind = ("y" if self.yields else "e") + ("v" if self.vibrates else "r")
+        lengths = (self.length * 1e6, self.diameter * 1e6, self.radius * 1e6)
+        numbers = (*lengths, self.angle * 1e2, self.friction * 1e3, self.speed * 1e3)
+        return "-".join([kind, *(str(round(n)) for n in numbers)])
 
     @property
     def radius(self) -> float:
@@ -65,7 +66,7 @@ class Drop:
 
     def scene(self, tip_size: float | None = None) -> Scene:
         """Return the scene; ``tip_size``, m, is for the solid fidelity."""
-        steels, turn = materials(), radians(self.angle)
+        steels, angle = materials(), radians(self.angle)
         f = self.friction
         accuracy = Accuracy(max_time=LATEST)
         return Scene(
@@ -74,13 +75,14 @@ class Drop:
             projectile=ProjectileSpec(self.length, self.diameter, "B", self.radius, steels["rod-steel"]),
             barrier=Barrier(steels["plate-steel"]),
             surface=Surface("custom", f, f, f, "point of a map"),
-            impact=Impact(turn, -self.speed * cos(turn), -self.speed * sin(turn)),
+            impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
             effects=self._effects(),
             accuracy=replace(accuracy, tip_size=tip_size) if tip_size else accuracy,
             save=Save(frames=0),
         )
 
     def _effects(self) -> tuple[str, ...]:
+        """Return the names of the scene's effects."""
         barrier = ("rod-plasticity", "barrier-elastoplastic") if self.yields else ("barrier-elastic",)
-        rubs = ("friction",) if self.friction else ()
-        return (*(("vibration",) if self.vibrates else ()), *rubs, *barrier, "large-rotation")
+        friction = ("friction",) if self.friction else ()
+        return (*(("vibration",) if self.vibrates else ()), *friction, *barrier, "large-rotation")

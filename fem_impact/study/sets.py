@@ -1,4 +1,4 @@
-"""The measured sets, each on two meshes, beside the experiments."""
+"""The measured sets, each on two meshes, beside the experiments, and what uncertain inputs could explain."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ if TYPE_CHECKING:
 
 
 QUICK_TIP = 0.6e-3  # m
-QUICK_FRAMES = 60  # half the usual
+QUICK_FRAMES = 60  # half the default
 QUICK_SETS = ("t3-machined", "t4", "t5b")
 COARSER = 2.0  # tip size of the second mesh over that of the first
 
 
 def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the set's job, its coarser twin and, unless quick, that with each uncertain input changed."""
+    """Return the jobs of a set: "fine", "coarse" and, unless quick, "coarse" with each input changed."""
     scene = load(set_id)
     if quick:
         size = f"{QUICK_TIP * 1e3:g} mm"
@@ -40,14 +40,14 @@ def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
     coarser = f"{COARSER * scene.accuracy.tip_size * 1e3:g} mm"
     coarse = {"accuracy.tip_size": coarser, "accuracy.unresolved": "report", "save.frames": 0}
     coarse_scene = replace_all(scene, coarse)
-    twin = Job(f"{set_id}-coarse", coarse_scene, out=out / f"{set_id}-coarse")
-    return {"fine": Job(set_id, scene, out=out / set_id), "coarse": twin} | (
-        {} if quick else sensitivity_jobs(twin, out)
+    coarse_job = Job(f"{set_id}-coarse", coarse_scene, out=out / f"{set_id}-coarse")
+    return {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job} | (
+        {} if quick else sensitivity_jobs(coarse_job, out)
     )
 
 
 def chosen(request: Request) -> tuple[str, ...]:
-    """Return the sets that are asked for: all of them, or one of each rod for a first look."""
+    """Return the requested sets; by default all, or one of each rod if quick."""
     return request.ids or (QUICK_SETS if request.quick else MEASURED_SETS)
 
 
@@ -58,7 +58,7 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Compare the sets with the measurements; write the study, and present the runs of the finer mesh."""
+    """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
     out, outcomes, changed = request.out, [], []
     for name in chosen(request):
         runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
@@ -118,14 +118,14 @@ def sets_report(
 
 
 def inside_sentence(comparison: Sequence[Row]) -> str:
-    """Say how many measured quantities the model meets."""
+    """Return the sentence on how many quantities lie inside the 95 % interval of the measurement."""
     measured = [row for row in comparison if row["measured_mean"] is not None]
     inside = sum(row["verdict"] == "inside" for row in measured)
     return f"{inside} of {len(measured)} computed quantities lie inside the 95 % interval of the measurement."
 
 
 def miss_sentence(explained: Sequence[Row]) -> str:
-    """Say how many misses each input could explain, and how many none could."""
+    """Return the sentence on how many misses each input could explain, and how many none could."""
     counts = {name: sum(name in row["could"] for row in explained) for name in WORDS}
     ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
     listed = ", ".join(f"{name} {counts[name]}" for name in ranked) or "none"
@@ -143,7 +143,7 @@ BESIDE = (
 
 
 def _beside(comparison: Sequence[Row]) -> Table:
-    """Return a row a set with the quantities that a camera sees."""
+    """Return one row per set with the quantities of `COMPARED`, computed and measured."""
     cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
     names = list(dict.fromkeys(row["set"] for row in comparison))
     return Table.of(("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names])
@@ -160,7 +160,7 @@ def _cell(row: Row) -> str:
 
 
 def _shares(outcomes: Sequence[Outcome]) -> Table:
-    """Return a row a set with its shares of E_0, of two meshes their limits with bands."""
+    """Return one row per set with its shares of E_0; with two meshes their limits with bands."""
     listed = shares("report")
     rows = [
         (
@@ -187,7 +187,7 @@ def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
 
 
 def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
-    """Return a row a set with two meshes: limits of e and E_vib, how uncertain, what the finer took."""
+    """Return one row per set with two meshes: limits and bands of e and E_vib, CPU time of the finer mesh."""
     rows = [_limit_row(o) for o in outcomes if or_none(o.validity.mesh_band)]
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"
@@ -216,7 +216,7 @@ def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Shee
 
 
 def _changes(changed: Sequence[Row]) -> Table:
-    """Return a row a set and quantity: its value on the coarser mesh and what each input changes."""
+    """Return one row per set and quantity: value on the coarser mesh and its change by each input."""
     by_quantity: dict[tuple[str, str], dict[str, Row]] = {}
     for row in changed:
         by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
@@ -232,12 +232,12 @@ def _change(row: Row | None) -> str:
 
 
 def _explanations(explained: Sequence[Row]) -> Table:
-    """Return a row a quantity that lies outside: what alone could bring it in, and what cannot."""
+    """Return one row per quantity outside its interval: the inputs that could explain it, and the others."""
     rows = []
     for row in explained:
-        told = {name: f"{name} ({share:+.0%})" for name, share in row["shares"].items()}
-        could = ", ".join(told[name] for name in row["could"]) or "none of these"
-        cannot = ", ".join(text for name, text in told.items() if name not in row["could"])
+        labels = {name: f"{name} ({share:+.0%})" for name, share in row["shares"].items()}
+        could = ", ".join(labels[name] for name in row["could"]) or "none of these"
+        cannot = ", ".join(label for name, label in labels.items() if name not in row["could"])
         numbers = (f"{row[key]:.3g}" for key in ("model", "measured_mean"))
         rows.append((row["set"], row["quantity"], *numbers, could, cannot))
     return Table.of(("set", "quantity", "model", "measured", "could explain it", "cannot"), rows)
