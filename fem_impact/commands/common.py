@@ -1,4 +1,4 @@
-"""Read ``--set key=value`` and change a scene by it."""
+"""What several commands need: changed scenes, progress meters, checked paths, printed JSON."""
 
 from __future__ import annotations
 
@@ -20,9 +20,13 @@ from fem_impact.progress import NullMeter, ProgressMeter, meter_for
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
+RESULT_FILES = ("outcome.json", "study.json")
+_OWN_FILES = (*RESULT_FILES, "store.sqlite", "ledger.csv", *COMPUTED, "scene.toml", "row.json", LOCK)
+"""Files that runs and studies write into their directories."""
+
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
-    """Load a scene and apply the changes of the command line, checked together at the end."""
+    """Load a scene and apply the changes of the command line; the changed scene is checked once."""
     from fem_impact.scene.shipped import load, replace_all
 
     scene = load(id_or_path)
@@ -62,18 +66,13 @@ def chosen_meter(options: Options) -> ProgressMeter:
     return meter_for(sys.stderr, width=max(40, shutil.get_terminal_size((100, 24)).columns - 1))
 
 
-RESULT_FILES = ("outcome.json", "study.json")
-_OF_STUDIES = ("store.sqlite", "ledger.csv")
-_OWN_FILES = (*RESULT_FILES, *_OF_STUDIES, *COMPUTED, "scene.toml", "row.json", LOCK)
-
-
 def checked_out(out: Path) -> Path:
-    """Make the directory for results and prove that it can be written.
+    """Make the directory for results and check that it can be written.
 
     Raises
     ------
     OutputPathError
-        When it is a file, lies below a file, holds somebody's other files, or cannot be written.
+        It is a file, lies below a file, holds files that are no results, or cannot be written.
     """
     try:
         _refuse_files(out)
@@ -107,7 +106,7 @@ def checked_result(result: Path) -> Path:
     Raises
     ------
     ResultError
-        When it is missing, is a file, or holds no results.
+        It is missing, is a file, or holds no results.
     """
     if not result.exists():
         raise ResultError(f"{result}: there is no such directory. Name one that `fem-impact run` wrote.")
@@ -139,7 +138,7 @@ def _refuse_strangers(out: Path) -> None:
 
 
 def _is_ours(out: Path) -> bool:
-    """Say whether a run, or the runs of a study that was stopped early, wrote here."""
+    """Return whether a run or a study, complete or stopped early, wrote into the directory."""
     own = (out / name for name in _OWN_FILES)
     of_runs = (run / name for run in out.iterdir() if run.is_dir() for name in _OWN_FILES)
     return any(path.exists() for path in (*own, *of_runs))
@@ -151,10 +150,10 @@ def _prove_writable(directory: Path) -> None:
 
 
 def _cannot(out: Path, error: Exception) -> str:
-    words = getattr(error, "strerror", None) or str(error)
-    return f"{out}: cannot be written ({words}). Choose another directory with --out."
+    reason = getattr(error, "strerror", None) or str(error)
+    return f"{out}: cannot be written ({reason}). Choose another directory with --out."
 
 
 def print_json(document: Any) -> None:
-    """Print one JSON document; NaN and infinity are never written."""
+    """Print one JSON document; NaN and infinity raise ValueError."""
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")

@@ -23,7 +23,7 @@ PAPER = "paper"
 
 
 def cost(options: Options) -> int:
-    """Run the ladder of settings, judge it, and name the cheapest setting that does."""
+    """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     from fem_impact.assess.drop import quantity
     from fem_impact.cost.quantities import chosen
 
@@ -43,18 +43,18 @@ def cost(options: Options) -> int:
     from fem_impact.files.lock import directory_lock
 
     with directory_lock(out):
-        found = _measured(scene, out, options, family)
-        write_cost(found, out, names)
-    answers = advice(found.settings, names, target, budget)
+        study = _measured(scene, out, options, family)
+        write_cost(study, out, names)
+    answers = advice(study.settings, names, target, budget)
     if target is not None:
-        answers.append(pair_sentence(found.settings, found.quantities, names, target))
+        answers.append(pair_sentence(study.settings, study.quantities, names, target))
     if options.json:
-        print_json({**found.to_dict(), "advice": answers})
+        print_json({**study.to_dict(), "advice": answers})
     else:
-        told = [line for answer in answers for line in wrapped(answer)]
-        told += [f"all quantities: {out / 'cost.txt'}", f"results: {out}"]
-        sys.stdout.write("\n".join([text_table(found, names), "", *told]) + "\n")
-    return RunError.exit_code if found.failures else 0
+        lines = [line for answer in answers for line in wrapped(answer)]
+        lines += [f"all quantities: {out / 'cost.txt'}", f"results: {out}"]
+        sys.stdout.write("\n".join([text_table(study, names), "", *lines]) + "\n")
+    return RunError.exit_code if study.failures else 0
 
 
 def _share(text: str) -> float:
@@ -68,7 +68,7 @@ def _share(text: str) -> float:
 
 
 def _family(scene: Scene, finest: str) -> list[Mesh]:
-    """Return the meshes that are no finer at the tip than wanted."""
+    """Return the meshes whose tip elements are at least ``finest`` in size."""
     from fem_impact.assess.drop import quantity
     from fem_impact.cost.settings import FAMILY
 
@@ -85,7 +85,7 @@ def _family(scene: Scene, finest: str) -> list[Mesh]:
 
 
 def _measured(scene: Scene, out: Path, options: Options, family: list[Mesh]) -> CostStudy:
-    """Run the ladder, or with ``--stored`` judge what has run."""
+    """Run all settings, or with ``--stored`` read those that have run."""
     from fem_impact.cost.measure import judge_stored, measure
 
     work = judge_stored if options.stored else measure

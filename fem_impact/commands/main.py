@@ -1,6 +1,6 @@
 """The ``fem-impact`` command: reads the command line, calls one handler, turns errors into exit codes.
 
-Nothing heavy is imported here: a handler imports what it needs when it is called.
+Handlers are imported when they are called, so that ``--help`` loads no numerical library.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from fem_impact.errors import FemImpactError, OutputPathError, RunError, printab
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
-    # a run has no large dense algebra: idle threads of the linear-algebra library only burn time
+    # a run has no large dense algebra: further threads of the linear-algebra library only cost time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # closed by the caller: `>&-`
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # None after `>&-`
     options = read_line(argv)
     if options.version:
         return _version()
     if not options.handler:
         build_parser().print_help(sys.stderr)
         return 2
-    if threading.current_thread() is threading.main_thread():  # no other may set what a signal does
-        signal.signal(signal.SIGTERM, signal.default_int_handler)  # like Ctrl-C: drafts and workers go
+    if threading.current_thread() is threading.main_thread():  # signals are set there only
+        signal.signal(signal.SIGTERM, signal.default_int_handler)  # cleans up like Ctrl-C
     return _guarded(_handler(options.handler), options)
 
 
 def _handler(path: str) -> Callable[[Options], int]:
-    """Import ``module:function``, only now."""
+    """Import and return ``module:function``."""
     module, _, name = path.partition(":")
     function: Callable[[Options], int] = getattr(import_module(module), name)
     return function
@@ -55,7 +55,9 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
             "out of memory. Use a larger accuracy.tip_size or fewer workers.", RunError.exit_code
         )
     except BrokenPipeError:
-        return _reader_left()
+        # the reader of the output closed it (`| head`): end without a message
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
     except OSError as error:
         return _complain(_disk_message(error), OutputPathError.exit_code)
 
@@ -72,12 +74,6 @@ def _disk_message(error: OSError) -> str:
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return f"{fault} The disk is full: free some space or choose another --out, then run again."
     return f"{fault} Check that the place exists and can be written, or choose another --out."
-
-
-def _reader_left() -> int:
-    """Stop without a message: the reader of the output closed it (``| head``)."""
-    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    return 0
 
 
 def _version() -> int:

@@ -1,4 +1,4 @@
-"""The short readable summary of a run on standard output."""
+"""The summary of a run on standard output."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _MOTION = (
     ("Omega after", "Omega_rad_per_s", "rad/s"),
 )
 _IF_ON = ("damping", "contact", "gravity")
-"""Shares that are not mentioned where there are none."""
+"""Shares that are left out where they are not known: their effects are off."""
 
 
 def print_outcome(outcome: Outcome, out: Path) -> None:
@@ -34,10 +34,14 @@ def print_outcome(outcome: Outcome, out: Path) -> None:
     lines += [_share(label, value) for label, value in listed.items()]
     lines += [_share("residual of the ledger", outcome.energy.residual)]
     lines += ["", _share("friction + plate's top 0.1 mm", outcome.energy.skin)]
-    lines += [_vibration_note(outcome)] if or_none(outcome.energy.below_floor) else []
+    if or_none(outcome.energy.below_floor):
+        floor = _value(outcome.energy.vibration_floor)
+        lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy(outcome)
     lines += _unknown({**listed, "friction + plate's top 0.1 mm": outcome.energy.skin})
-    lines += ["", *(line for sentence in _sentences(outcome) for line in wrapped(f"note: {sentence}"))]
+    v = outcome.validity
+    notes = (*v.assumptions, *v.outside, *v.warnings)
+    lines += ["", *(line for sentence in notes for line in wrapped(f"note: {sentence}"))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
 
@@ -52,14 +56,14 @@ def _listed(outcome: Outcome) -> dict[str, Num]:
 
 
 def _accuracy(outcome: Outcome) -> list[str]:
-    """Return expected and achieved error and time of a run that a target chose."""
+    """Return expected and achieved error and time of a run whose setting a target error chose."""
     v = outcome.validity
     if isinstance(v.accuracy_target, Unknown):
         return []
-    told = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
+    both = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
     lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
-    for word, error, wall in told:
-        lines += [f"  {word} error of e and E_vib {_percent(error)}, time {_value(wall)} s"]
+    for label, error, wall in both:
+        lines += [f"  {label} error of e and E_vib {_percent(error)}, time {_value(wall)} s"]
     limits = or_none(v.mesh_limit)
     if limits:
         e, vibration = (_number(limits[name]) for name in ("e_edge", "E_vib_over_E_0"))
@@ -71,15 +75,11 @@ def _percent(value: Num) -> str:
     return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
 
 
-def _sentences(outcome: Outcome) -> list[str]:
-    return [*outcome.validity.assumptions, *outcome.validity.outside, *outcome.validity.warnings]
-
-
-def _motion(outcome: Outcome, words: str, name: str, unit: str) -> str:
+def _motion(outcome: Outcome, label: str, name: str, unit: str) -> str:
     value, band = outcome.estimate(KEY_TABLE[name])
     spread = f" +- {_number(band)}" if band is not None else ""
-    told = "" if isinstance(value, Unknown) else f"{spread} {unit}"
-    return f"  {words:<30} {_value(value)}{told}".rstrip()
+    rest = "" if isinstance(value, Unknown) else f"{spread} {unit}"
+    return f"  {label:<30} {_value(value)}{rest}".rstrip()
 
 
 def _share(label: str, share: Num) -> str:
@@ -93,13 +93,8 @@ def _unknown(listed: Mapping[str, Num]) -> list[str]:
     for label, value in listed.items():
         if isinstance(value, Unknown):
             named.setdefault(value.reason, []).append(label)
-    told = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
-    return [line for lines in ([""], *told) for line in lines] if told else []
-
-
-def _vibration_note(outcome: Outcome) -> str:
-    floor = _value(outcome.energy.vibration_floor)
-    return f"  vibration is below its numerical floor (fraction {floor})"
+    notes = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
+    return [line for lines in ([""], *notes) for line in lines] if notes else []
 
 
 def _value(value: Num) -> str:

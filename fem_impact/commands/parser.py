@@ -28,7 +28,7 @@ _RESULT = "directory that a run or a study wrote"
 
 
 class Options(argparse.Namespace):
-    """Options of the command line, each with a value whichever command was given."""
+    """Options of the command line; those of other commands than the given one have their defaults."""
 
     handler: str = ""
     version: bool = False
@@ -82,17 +82,10 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for add in (
-        _add_run,
-        _add_study,
-        _add_render,
-        _add_report,
-        _add_scenes,
-        _add_check,
-        _add_cost,
-        _add_verify,
-        _add_stress,
-    ):
+    for add in (_add_run, _add_study, _add_render, _add_report):
+        add(commands)
+    _command(commands, "scenes", "list the shipped scenes", "fem_impact.commands.run:scenes")
+    for add in (_add_check, _add_cost, _add_verify, _add_stress):
         add(commands)
     add_rigid_commands(commands, _command)
     return parser
@@ -184,10 +177,6 @@ def _add_report(commands: Commands) -> None:
         commands, "report", "write the report as one HTML file", "fem_impact.commands.show:report"
     )
     parser.add_argument("result", type=Path, metavar="RESULT", help=_RESULT)
-
-
-def _add_scenes(commands: Commands) -> None:
-    _command(commands, "scenes", "list the shipped scenes", "fem_impact.commands.run:scenes")
 
 
 def _add_check(commands: Commands) -> None:

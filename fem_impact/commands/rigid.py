@@ -82,7 +82,7 @@ def _rod(options: Options) -> Projectile:
 
 
 def _angle(options: Options) -> float:
-    """Return the angle in rad; where the rod has no lowest point it is refused."""
+    """Return the angle, rad; one that is not in [0, pi/2) is refused."""
     from fem_impact.assess.drop import quantity
 
     alpha = quantity(options.angle, "angle", "--angle")
@@ -92,7 +92,7 @@ def _angle(options: Options) -> float:
 
 
 def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
-    """Return the arms and where they come from; stated ones come as a pair."""
+    """Return the arms, m, and their source; ``--d-c`` and ``--d-d`` are given both or neither."""
     import numpy as np
 
     from fem_impact.assess.drop import quantity

@@ -1,4 +1,4 @@
-"""The command ``run``: one scene."""
+"""The commands of one scene: ``run`` computes it, ``check`` prints it, ``scenes`` lists those shipped."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ if TYPE_CHECKING:
     from fem_impact.plan.size import RunSize
 
 
-LONG = 600.0  # s: a run that takes longer says so before it starts
+LONG = 600.0
+"""Expected computing time, s, above which `run` prints it before it starts."""
 
 
 def run(options: Options) -> int:
@@ -64,11 +65,15 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out)
-    return 0 if outcome.validity.finished else _stopped(outcome.validity.stopped_because, out)
+    if outcome.validity.finished:
+        return 0
+    cause = outcome.validity.stopped_because
+    sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
+    return RunError.exit_code
 
 
 def _say_plan(scene: Scene, options: Options) -> None:
-    """Before the work: what the measured costs chose for the error that the scene allows, or a long run."""
+    """Print the setting chosen for the scene's target error, or without one the time of a long run."""
     if scene.accuracy.target is None:
         sentence = "" if options.fidelity in ("rigid", "modal") else _long_run(scene)
     else:
@@ -95,7 +100,7 @@ def _elements(size: RunSize) -> str:
 
 
 def _say_old_fall(scene: Scene, options: Options) -> None:
-    """Warn where ``--set`` changed the angle of a fall and left its velocities."""
+    """Warn where ``--set`` changed the angle of impact and not its velocities."""
     changed, impact = read_changes(options.changes), scene.impact
     if not {"impact.angle", "impact.angle_rad"} & set(changed):
         return
@@ -124,14 +129,9 @@ def _say_kept(out: Path, before: list[Path], options: Options) -> None:
 
 
 def _default_out(scene: Scene, options: Options) -> Path:
-    """Return results/ID, with the digest's start when the scene was changed, and the fidelity if reduced."""
+    """Return results/ID, with 8 digits of the digest of a changed scene and the fidelity if not solid."""
     name = f"{scene.id}-{digest(scene)[:8]}" if options.changes else scene.id
     return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
-
-
-def _stopped(cause: str, out: Path) -> int:
-    sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
-    return RunError.exit_code
 
 
 def scenes(options: Options) -> int:
@@ -208,10 +208,10 @@ def _sources(scene: Scene) -> dict[str, str]:
     """Return where each material value and the friction come from, by dotted key."""
     bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
     keys = ("E", "nu", "rho", "yield_stress", "ultimate_stress")
-    found = {
+    sources = {
         f"{body}.material.{key}": source_of(steel.name, key) for body, steel in bodies.items() for key in keys
     }
-    return found | {"surface.friction": scene.surface.source}
+    return sources | {"surface.friction": scene.surface.source}
 
 
 def _readable(planned: Plan, statement: dict[str, Any]) -> str:
@@ -252,13 +252,13 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
     number = "not finite" if effect.number is None else f"{effect.number:.2g}"
     verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
     decided = f"{effect.measure}: {number}, threshold {effect.threshold:g}"
-    told = [decided, _harm(effect), _time(effect)]
-    decision = wrapped("; ".join(words for words in told if words), " " * 8, "")
+    clauses = [decided, _harm(effect), _time(effect)]
+    decision = wrapped("; ".join(clause for clause in clauses if clause), " " * 8, "")
     return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
 
 
 def _harm(effect: EffectChoice) -> str:
-    """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    """Return the changes of e and E_vib without the effect, empty for a barrier that is not in use."""
     from fem_impact.effects.registry import BARRIERS
 
     if effect.name in BARRIERS and not effect.on:

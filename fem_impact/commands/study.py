@@ -41,7 +41,7 @@ def study(options: Options) -> int:
 
 
 def _report(options: Options, out: Path) -> int:
-    """Write one page over the studies that stand beside ``out``."""
+    """Write one page over the studies in the parent directory of ``out``."""
     from fem_impact.report.all_page import write_all
 
     if not options.quiet:
@@ -76,22 +76,24 @@ def _estimate(options: Options, request: Request, meter: ProgressMeter, executor
 
     from fem_impact.study.catalogue import estimate_study
 
-    found = estimate_study(options.name, request, meter, executor)
+    forecast = estimate_study(options.name, request, meter, executor)
     meter.close()
     if options.json:
-        print_json(asdict(found))
+        print_json(asdict(forecast))
     else:
-        sys.stdout.write(_estimate_text(found))
+        sys.stdout.write(_estimate_text(forecast))
     return 0
 
 
-def _estimate_text(found: WorkForecast) -> str:
+def _estimate_text(forecast: WorkForecast) -> str:
     from fem_impact.progress import clock_text
 
-    lines = [f"{_jobs(found.jobs)}, {found.stored} of them stored; work left: {clock_text(found.work_s)}"]
-    lines += [_kind_line(kind) for kind in found.kinds]
-    lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in found.wall_s.items()]
-    lines += [f"The longest job takes {clock_text(found.longest_s)}; no number of workers beats that."]
+    lines = [
+        f"{_jobs(forecast.jobs)}, {forecast.stored} of them stored; work left: {clock_text(forecast.work_s)}"
+    ]
+    lines += [_kind_line(kind) for kind in forecast.kinds]
+    lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in forecast.wall_s.items()]
+    lines += [f"The longest job takes {clock_text(forecast.longest_s)}; no number of workers beats that."]
     return "\n".join(lines) + "\n"
 
 

@@ -1,4 +1,4 @@
-"""``fem-impact verify``: problems with known answers, run and judged."""
+"""The commands ``verify``, problems with known answers, and ``stress``, hard cases."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from fem_impact.hard_cases.run import MARKS, Row, page, row_line, run_cases
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.jobs.executors import cores
 from fem_impact.outcome.record import utc_now
-from fem_impact.scene.fields import Parameter
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
+from fem_impact.verify import catalogue
 from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
 from fem_impact.verify.problem import Problem, Verification
 
@@ -52,18 +52,14 @@ def verify(options: Options) -> int:
 
 def _write_page(options: Options) -> int:
     """Run all problems at their defaults and put the results between the marks of a file."""
-    from fem_impact.files.atomic import read_text, write_text
-    from fem_impact.outcome.record import utc_now
-    from fem_impact.verify.catalogue import page, put_page
-
     if options.problem or options.changes:
         raise UsageError("takes all problems at their defaults.", key="--readme")
-    put_page(read_text(options.readme), "")  # before any work
+    put_page(read_text(options.readme), "")  # refuses a file without marks before any run
     done = []
     for name in PROBLEMS:
         done.append(problem(name).run())
         sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
-    write_text(options.readme, put_page(read_text(options.readme), page(done, utc_now()[:10])))
+    write_text(options.readme, put_page(read_text(options.readme), catalogue.page(done, utc_now()[:10])))
     if options.json:
         print_json([verification.document() for verification in done])
     return 0 if all(verification.passed for verification in done) else RunError.exit_code
@@ -83,15 +79,16 @@ def _show_parameters(options: Options) -> int:
         )
     chosen = problem(options.problem)
     if options.json:
-        print_json([_entry(parameter) for parameter in chosen.parameters])
+        print_json(
+            [
+                {"name": p.key, "meaning": p.meaning, "unit": p.si_unit, "default": p.default}
+                | {"low": p.low, "high": p.high, "whole": p.whole, "even": p.even}
+                for p in chosen.parameters
+            ]
+        )
     else:
         sys.stdout.write(_parameter_text(chosen))
     return 0
-
-
-def _entry(p: Parameter) -> dict[str, object]:
-    limits = {"default": p.default, "low": p.low, "high": p.high, "whole": p.whole, "even": p.even}
-    return {"name": p.key, "meaning": p.meaning, "unit": p.si_unit, **limits}
 
 
 def _parameter_text(chosen: Problem) -> str:
@@ -118,10 +115,10 @@ def _text(verification: Verification) -> str:
 
 
 def stress(options: Options) -> int:
-    """Run one case, or all of them; the exit code says whether each is as it must be."""
+    """Run one hard case, or all of them; the exit code says whether all passed."""
     names = _chosen(options)
     if options.readme:
-        put_page(read_text(options.readme), "", MARKS)  # before any work
+        put_page(read_text(options.readme), "", MARKS)  # refuses a file without marks before any run
     out = checked_out(options.out or Path("results") / "stress")
     rows = run_cases(names, out, _progress(options, len(names)), options.workers or cores())
     text = page(rows, utc_now()[:10])
@@ -135,7 +132,7 @@ def stress(options: Options) -> int:
 
 
 def _progress(options: Options, total: int) -> Callable[[Row], None]:
-    """Return what tells of each case when it is done."""
+    """Return the function that prints the result of each finished case."""
     count = itertools.count(1)
 
     def show(row: Row) -> None:

@@ -53,12 +53,12 @@ def write_all(results: Path, out: Path) -> Path:
 def _folders(results: Path) -> list[Path]:
     """Return the folders that hold a study, that of the measured sets first."""
     places = results.iterdir() if results.is_dir() else ()
-    found = [place for place in places if (place / "study.json").is_file()]
-    return sorted(found, key=lambda place: (place.name != "sets", place.name))
+    folders = [place for place in places if (place / "study.json").is_file()]
+    return sorted(folders, key=lambda place: (place.name != "sets", place.name))
 
 
 def _parts(study: Study, figures: Path) -> list[Markup]:
-    """Return the sections of a study; of one with a comparison also what the paper's conclusions come to."""
+    """Return the sections of a study; one with outcomes also gets the verdicts on the paper's conclusions."""
     if not study.rows:
         return [findings_section(study)]
     since = study.folder / "study.json"
@@ -88,10 +88,10 @@ def _ledger_part(ledger: Table) -> Markup:
     """Return the finite-element runs as a table, and all runs as a file inside the page."""
     at = ledger.names.index("fidelity")
     solid = [tuple(_short(str(cell)) for cell in row) for row in ledger.rows if row[at] == "solid"]
-    words = f"{len(ledger)} runs, {len(solid)} of them with finite elements: "
+    counts = f"{len(ledger)} runs, {len(solid)} of them with finite elements: "
     link = data_link(ledger.csv().encode(), "ledger.csv", "ledger.csv")
     shown = table(Table(ledger.columns, tuple(solid)), compact=True)
-    return join([Markup(f"<p>{words}{link}</p>"), details("Finite-element runs", shown)])
+    return join([Markup(f"<p>{counts}{link}</p>"), details("Finite-element runs", shown)])
 
 
 def _short(cell: str) -> str:
@@ -108,7 +108,7 @@ def _markdown(studies: Iterable[Study], concluded: str) -> str:
 
 
 def _summary(folder: Path) -> str:
-    """Return a study's summary one heading lower, with its pictures' places seen from the report's folder."""
+    """Return a study's summary.md one heading level lower, its figure links relative to the report."""
     text = read_text(folder / "summary.md").strip().replace("](figures/", f"](../{folder.name}/figures/")
     return text.replace("# ", "## ", 1)
 
@@ -122,7 +122,7 @@ def _footer(studies: Sequence[Study]) -> str:
 
 
 class Conclusion(NamedTuple):
-    """A sentence, and where its figure is: in the page, and as a file beside the report."""
+    """A conclusion: its sentence, the id of its figure in the page, and the path of the figure's file."""
 
     sentence: str
     figure: str = ""
@@ -130,7 +130,7 @@ class Conclusion(NamedTuple):
 
 
 def conclusions(studies: Iterable[Study]) -> list[Conclusion]:
-    """Return what each study concludes, that of the measured sets with what the paper's come to."""
+    """Return the conclusions of all studies; before those of measured sets the verdicts on the paper."""
     listed = []
     for study in studies:
         listed += _of_paper(study.rows)
@@ -152,16 +152,13 @@ def _of_paper(rows: Sequence[Outcome]) -> list[Conclusion]:
 
 
 def conclusion_section(listed: Sequence[Conclusion]) -> Markup:
-    """Return the page of conclusions, each linked to its figure."""
-    return section("Conclusions", bullets(_linked(one) for one in listed))
-
-
-def _linked(one: Conclusion) -> Markup:
-    link = f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else ""
-    return Markup(escape(one.sentence) + link)
+    """Return the section of conclusions, each linked to its figure."""
+    links = (f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else "" for one in listed)
+    items = (Markup(escape(one.sentence) + link) for one, link in zip(listed, links, strict=True))
+    return section("Conclusions", bullets(items))
 
 
 def conclusion_text(listed: Sequence[Conclusion]) -> str:
-    """Return the same as Markdown, nothing when there is none."""
+    """Return the conclusions as Markdown, empty when there is none."""
     lines = [f"- {one.sentence}" + (f" ([figure]({one.file}))" if one.file else "") for one in listed]
     return "\n".join(["## Conclusions", "", *lines]) if lines else ""

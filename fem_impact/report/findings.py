@@ -13,7 +13,7 @@ from fem_impact.tables.table import Table
 
 
 def findings_section(study: Study) -> Markup:
-    """Return what a study found, its pictures and data inside."""
+    """Return the findings of a study, its figures and data embedded."""
     runs = f"{study.runs} runs, {len(study.failures)} failed."
     failed = [(failure["scene_id"], failure["error"]) for failure in study.failures]
     return section(
@@ -28,7 +28,7 @@ def findings_section(study: Study) -> Markup:
 
 
 def figure_id(study: str, name: str) -> str:
-    """Return the name under which a page links to a study's figure."""
+    """Return the id of a study's figure in a page."""
     return f"{study}-{name}"
 
 

@@ -1,4 +1,4 @@
-"""Small pieces of HTML; every text from outside is escaped here and nowhere else."""
+"""HTML elements; texts that are not `Markup` are escaped."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from fem_impact.tables.table import Table, number
 
 @dataclass(frozen=True, slots=True)
 class Markup:
-    """HTML that is already escaped; anything else is escaped when it is put in."""
+    """HTML that is already escaped."""
 
     text: str
 
 
 def join(parts: Iterable[Markup]) -> Markup:
-    """Return the pieces one after the other."""
+    """Return the non-empty parts, one a line."""
     return Markup("\n".join(part.text for part in parts if part.text))
 
 
@@ -29,7 +29,7 @@ def paragraph(content: str | Markup, kind: str = "") -> Markup:
 
 
 def place(name: str, content: Markup) -> Markup:
-    """Return a piece that a link ``#name`` leads to."""
+    """Return a block with the id ``name``."""
     return Markup(f'<div id="{escape(name)}">\n{content.text}\n</div>')
 
 
@@ -40,7 +40,7 @@ def section(title: str, *content: Markup) -> Markup:
 
 
 def details(title: str, *content: Markup, opened: bool = False) -> Markup:
-    """Return a piece that can be unfolded."""
+    """Return a block that can be unfolded."""
     state = " open" if opened else ""
     return Markup(f"<details{state}><summary>{escape(title)}</summary>\n{join(content).text}\n</details>")
 

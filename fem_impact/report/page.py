@@ -1,4 +1,4 @@
-"""The page around the sections."""
+"""The HTML page around the sections, and embedded figures, films and data files."""
 
 from __future__ import annotations
 
@@ -13,6 +13,21 @@ from string import Template
 from fem_impact.errors import ResultError
 from fem_impact.figures.style import Shape
 from fem_impact.report.html import Markup, bullets, join, section
+
+TYPES = {
+    ".svg": "image/svg+xml",
+    ".png": "image/png",
+    ".gif": "image/gif",
+    ".webp": "image/webp",
+    ".mp4": "video/mp4",
+}
+"""Media type by suffix."""
+
+FILMS = ("film.mp4", "film.webp", "film.gif")
+"""Names of a run's film, in order of preference."""
+
+Draw = Callable[[Path, Shape], Path]
+"""Draws a figure to a path in a shape and returns the path."""
 
 
 def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
@@ -52,57 +67,38 @@ def _data(name: str) -> str:
     return resources.files("fem_impact.report").joinpath("data", name).read_text(encoding="utf-8")
 
 
-TYPES = {
-    ".svg": "image/svg+xml",
-    ".png": "image/png",
-    ".gif": "image/gif",
-    ".webp": "image/webp",
-    ".mp4": "video/mp4",
-}
-FILMS = ("film.mp4", "film.webp", "film.gif")
-"""Names under which a run's film is looked for, best first."""
-
-Draw = Callable[[Path, Shape], Path]
-
-
 def picture(draw: Draw, stem: Path, alt: str, caption: str, since: Path | None = None) -> Markup:
     """Draw a figure twice, for desktop and phone, and return it embedded.
 
     Parameters
     ----------
     draw : callable
-        Draws to a path in a shape and returns the path.
     stem : Path
-        Where the pictures and their data stay: ``stem.svg``, ``stem.csv``, ``stem-narrow.svg``.
+        Path of the files without suffix: ``stem.svg``, ``stem.csv``, ``stem-narrow.svg``.
     alt : str
-        For who cannot see it.
+        Alternative text.
     caption : str
-        Below the figure.
+        Text below the figure.
     since : Path, optional
-        The file whose data it shows: pictures drawn after it are taken as they are.
+        File of the data shown: figures newer than it are not drawn again.
     """
-    if since is not None and _drawn(stem, since):
-        wide, narrow = (_data_url(file) for file in _files(stem))
-        return _figure(wide, narrow, alt, caption)
     files = _files(stem)
+    if since and all(file.is_file() and file.stat().st_mtime > since.stat().st_mtime for file in files):
+        return _figure(_data_url(files[0]), _data_url(files[1]), alt, caption)
     wide, slim = _data_url(draw(files[0], "wide")), draw(files[1], "narrow")
     narrow = _data_url(slim)
-    slim.with_suffix(".csv").unlink(missing_ok=True)  # the same numbers stand beside the wide one
+    slim.with_suffix(".csv").unlink(missing_ok=True)  # equal to stem.csv
     return _figure(wide, narrow, alt, caption)
 
 
 def stored_picture(stem: Path, caption: str) -> Markup:
     """Return a figure that a study drew, ``stem.svg`` and ``stem-narrow.svg``, embedded."""
-    wide, narrow = (_data_url(file) for file in _files(stem))
+    wide, narrow = map(_data_url, _files(stem))
     return _figure(wide, narrow, caption, caption)
 
 
 def _files(stem: Path) -> tuple[Path, Path]:
     return stem.with_suffix(".svg"), stem.with_name(f"{stem.name}-narrow.svg")
-
-
-def _drawn(stem: Path, since: Path) -> bool:
-    return all(file.is_file() and file.stat().st_mtime > since.stat().st_mtime for file in _files(stem))
 
 
 def _figure(wide: str, narrow: str, alt: str, caption: str) -> Markup:
@@ -113,25 +109,25 @@ def _figure(wide: str, narrow: str, alt: str, caption: str) -> Markup:
     return Markup(f"<figure>{inner}<figcaption>{escape(caption)}</figcaption></figure>")
 
 
-def download(path: Path, words: str) -> Markup:
-    """Return a link to a file that the page carries inside."""
-    return Markup(f"<p>{data_link(_bytes(path), path.name, words)}</p>")
+def download(path: Path, label: str) -> Markup:
+    """Return a paragraph with the link to a CSV file embedded in the page."""
+    return Markup(f"<p>{data_link(_bytes(path), path.name, label)}</p>")
 
 
-def data_link(held: bytes, name: str, words: str) -> str:
-    """Return the link to a CSV file inside the page."""
-    text = base64.b64encode(held).decode("ascii")
-    return f'<a download="{escape(name)}" href="data:text/csv;base64,{text}">{escape(words)}</a>'
+def data_link(content: bytes, name: str, label: str) -> str:
+    """Return the link to a CSV file embedded in the page."""
+    text = base64.b64encode(content).decode("ascii")
+    return f'<a download="{escape(name)}" href="data:text/csv;base64,{text}">{escape(label)}</a>'
 
 
 def film(folder: Path, caption: str) -> Markup:
     """Return the run's film embedded, nothing when there is none."""
-    found = next((folder / name for name in FILMS if (folder / name).is_file()), None)
-    if found is None:
+    path = next((folder / name for name in FILMS if (folder / name).is_file()), None)
+    if path is None:
         return Markup("")
-    data = _data_url(found)
+    data = _data_url(path)
     shown = f'<img src="{data}" alt="{escape(caption)}">'
-    if found.suffix == ".mp4":
+    if path.suffix == ".mp4":
         shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
     return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
 
@@ -144,5 +140,4 @@ def _bytes(path: Path) -> bytes:
 
 
 def _data_url(path: Path) -> str:
-    held = _bytes(path)
-    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(held).decode('ascii')}"
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"

@@ -1,4 +1,4 @@
-"""Films and pages of finished runs, drawn side by side; a missing library costs a picture, never a result."""
+"""Films and pages of finished runs, made in parallel; what a missing library prevents becomes a note."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ def present(runs: Iterable[Path], study: Path, progress: ProgressMeter) -> list[
     folders, notes = list(runs), []
     with LocalProcesses(max(1, min(cores(), len(folders)))) as executor:
         drawn = [executor.submit(pictures, run) for run in folders]
-        _attempt(study, _draw)  # meanwhile; what cannot be drawn, the page tells
-        for done, (run, found) in enumerate(zip(folders, drawn, strict=True), 1):
-            notes += _notes(run, found)
+        _attempt(study, _draw)  # in parallel; its notes are repeated when the page is written
+        for done, (run, future) in enumerate(zip(folders, drawn, strict=True), 1):
+            notes += _notes(run, future)
             progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))
     return list(dict.fromkeys([*notes, *_attempt(study, _write)]))
 

@@ -32,7 +32,7 @@ from fem_impact.tables.table import Cell, Table
 
 
 def _keys(*path: str) -> list[Key]:
-    """Return the keys of a group, by the attributes that lead to it."""
+    """Return the keys of a group of the outcome, given by its attribute path."""
     return [key for key in KEYS if key.path[: len(path)] == path]
 
 
@@ -104,7 +104,9 @@ def _cards(outcome: Outcome) -> Markup:
     restitution = ("e, paper's arms", "e_paper", "") if measured else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
     cards = [_card(outcome, label, KEY_TABLE[name], unit) for label, name, unit in shown]
-    inner = join([*cards, _vibration_card(outcome), _residual_card(outcome)])
+    residual = f"{outcome.energy.residual:.1e}"
+    last = card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
+    inner = join([*cards, _vibration_card(outcome), last])
     return Markup(f'<div class="cards">{inner.text}</div>')
 
 
@@ -122,11 +124,6 @@ def _vibration_card(outcome: Outcome) -> Markup:
     if or_none(energy.below_floor):
         return card("vibration, of E₀", "below floor", note)
     return card("vibration, of E₀", "–" if share is None else percent(share), note)
-
-
-def _residual_card(outcome: Outcome) -> Markup:
-    note = "of E₀; a run must stay below 1e-4"
-    return card("ledger residual", f"{outcome.energy.residual:.1e}", note)
 
 
 def _arms(outcome: Outcome) -> Markup:

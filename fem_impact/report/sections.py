@@ -31,7 +31,7 @@ from fem_impact.tables.table import Cell, Missing, Table, read_csv
 
 
 def strangers(outcome: Outcome, folder: Path) -> list[str]:
-    """Return what says that files of the folder are not, or not wholly, those of the outcome."""
+    """Return warnings that the folder's scene or history does not belong to the outcome."""
     return [*_other_scene(outcome, folder), *_short_history(outcome, folder)]
 
 
@@ -51,14 +51,14 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
     try:
         last = read_csv(folder / "history.csv").numbers("time_s")[-1]
     except (ResultError, IndexError):
-        return []  # that it is missing or damaged is told where its curves would stand
+        return []  # `history_figures` says that it is missing or damaged
     end = intervals[-1].end
-    told = f"history.csv ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
-    return [f"{told}: it is not whole."] if last < end else []
+    cut = f"history.csv ends at {last * 1e6:.4g} us, before the last contact does ({end * 1e6:.4g} us)"
+    return [f"{cut}: it is not whole."] if last < end else []
 
 
 def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
-    """Return the warnings where they cannot be missed."""
+    """Return a highlighted block of warnings, nothing when there is none."""
     warned = sentences(rows, lambda row: row.validity.warnings)
     cut = [
         f"{row.provenance.scene_id} was cut off: {row.validity.stopped_because}"
@@ -72,7 +72,7 @@ def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
 def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Markup:
     """Return ledger and contact force over time, or the sentence that says why they are missing.
 
-    Pictures that were drawn after the run are only drawn ``again`` if that is asked for.
+    With ``again`` False, figures newer than history.csv are not drawn again.
     """
     if outcome.provenance.fidelity != "solid":
         return section("Over time", paragraph("No curves over time: only the finite elements write them."))
@@ -111,24 +111,28 @@ def has_film(folder: Path) -> bool:
 
 
 def key_table(outcome: Outcome, keys: Iterable[Key], caption: str = "") -> Markup:
-    """Return meaning, value and unit of some keys, limit and band where two meshes gave them.
+    """Return a table of meaning, value and unit of keys; of two meshes the limit and its band.
 
-    Those that are not known are left to ``unknown``.
+    Keys that are not known are left out: `unknown` lists them.
     """
     shown = [key for key in keys if not isinstance(key.of(outcome), Unknown)]
-    rows = [(_meaning(key), estimated(outcome, key), _unit(key)) for key in shown]
+    meanings = [key.meaning.replace(", as a fraction of E_0.", ".") for key in shown]
+    rows = [
+        (f"{meaning} `{key.name}`", estimated(outcome, key), _unit(key))
+        for key, meaning in zip(shown, meanings, strict=True)
+    ]
     return table(Table.of(("quantity", "value", "unit"), rows, left=(0, 2)), caption)
 
 
 def card(name: str, value: str, note: str = "") -> Markup:
-    """Return one figure worth seeing first."""
+    """Return a card that shows one number with its name and a note."""
     small = f'<div class="note">{escape(note)}</div>' if note else ""
     inner = f'<div class="name">{escape(name)}</div><div class="value">{escape(value)}</div>{small}'
     return Markup(f'<div class="card">{inner}</div>')
 
 
 def estimated(outcome: Outcome, key: Key) -> str:
-    """Return a number for the eye, of two meshes their limit with its band."""
+    """Return a number as text; of two meshes the limit with its band."""
     value, band = outcome.estimate(key)
     return with_band(or_none(value), band)
 
@@ -142,19 +146,22 @@ def contacts_table(outcome: Outcome) -> Markup:
 
 
 def unknown(rows: Sequence[Outcome]) -> Markup:
-    """Return what is not known and why, equal reasons together."""
+    """Return the table of keys that are not known, with reason and runs; one row a reason."""
     reasons: dict[str, dict[str, list[str]]] = {}
     for row in rows:
         for name, reason in row.reasons.items():
             reasons.setdefault(reason, {}).setdefault(name, []).append(row.provenance.scene_id)
-    lines = [(_names(names), reason, _where(names, len(rows))) for reason, names in reasons.items()]
+    lines = [
+        (", ".join(f"`{name}`" for name in names), reason, _where(names, len(rows)))
+        for reason, names in reasons.items()
+    ]
     shown = lines if len(rows) > 1 else [line[:2] for line in lines]
     head = ("key", "why it is not known", "runs")[: len(shown[0]) if shown else 2]
     return section("What is not known", table(Table.of(head, shown, left=range(len(head)))))
 
 
 def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -> list[str]:
-    """Return the sentences that outcomes hold, such as warnings, each once, with the runs that say it."""
+    """Return the distinct sentences of outcomes, such as warnings, each with the ids of its runs."""
     said: dict[str, list[str]] = {}
     for row in rows:
         for sentence in of(row):
@@ -165,7 +172,7 @@ def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -
 
 
 def all_keys(outcome: Outcome) -> Markup:
-    """Return every plain key of the record, to be unfolded."""
+    """Return a folded table of every number, count, flag and text of the outcome."""
     plain = [key for key in KEYS if key.kind in ("number", "count", "flag", "text")]
     rows = [(f"`{key.name}`", known_cell(key.of(outcome)), key.unit, key.meaning) for key in plain]
     shown = Table.of(("key", "value", "unit", "meaning"), rows, left=range(4))
@@ -175,10 +182,6 @@ def all_keys(outcome: Outcome) -> Markup:
 def known_cell(value: Cell | Unknown) -> Cell:
     """Return a value of an outcome as a cell, with the reason where it is not known."""
     return Missing(value.reason) if isinstance(value, Unknown) else value
-
-
-def _meaning(key: Key) -> str:
-    return f"{key.meaning.replace(', as a fraction of E_0.', '.')} `{key.name}`"
 
 
 def _unit(key: Key) -> str:
@@ -191,10 +194,6 @@ def _contact(at: int, contact: ContactInterval) -> tuple[Cell, ...]:
     normal, tangential = contact.impulse_n, contact.impulse_t
     times = (f"{contact.start * 1e6:.1f}", f"{contact.end * 1e6:.1f}")
     return (at, *times, normal, tangential, tangential / normal if normal else None)
-
-
-def _names(names: Iterable[str]) -> str:
-    return ", ".join(f"`{name}`" for name in names)
 
 
 def _where(names: Mapping[str, Sequence[str]], count: int) -> str:
@@ -235,7 +234,7 @@ def _row(choice: EffectChoice) -> list[Cell]:
 
 
 def _changes(choice: EffectChoice) -> list[Cell]:
-    """Return what leaving it out changes; nothing for a barrier beside the one in use."""
+    """Return the changes of e and E_vib/E_0 without the effect; none for a barrier that is not in use."""
     if choice.name in BARRIERS and not choice.on:
         return [None, None]
     return [f"± {c:.1g}".replace("-", "−") for c in (choice.change_of_e, choice.change_of_vibration)]

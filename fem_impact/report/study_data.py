@@ -1,4 +1,4 @@
-"""The file of a study, read strictly."""
+"""Reader of study.json; damaged or missing parts are refused."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ def _records(document: Record, name: str, keys: tuple[str, ...], path: Path) -> 
 
 
 def _check_names(records: list[Record], path: Path) -> None:
-    """Refuse a name that is no plain file name: it becomes part of a path."""
+    """Refuse a name that is no plain file name, since it becomes part of a path."""
     for record in records:
         if Path(str(record["name"])).name != record["name"]:
             raise ResultError(f'{path}: key "name" = {record["name"]!r} is no name of a figure or table.')

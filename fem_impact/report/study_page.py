@@ -31,7 +31,7 @@ from fem_impact.tables.table import DASH, Cell, Marked, Table
 
 
 def draw_study(folder: Path) -> None:
-    """Draw the study's own figures into ``folder/figures``, for a page that is not to draw them again."""
+    """Draw comparison and partition of the study into ``folder/figures``; `study_page` can reuse them."""
     study = read_study(folder)
     comparison_part(study)
     partition_part(study)
@@ -40,7 +40,7 @@ def draw_study(folder: Path) -> None:
 def study_page(folder: Path, again: bool = True) -> str:
     """Return the HTML of the study in ``folder``; figures with their data stay in ``folder/figures``.
 
-    Figures of its runs, where they were drawn after the study, are only drawn ``again`` if that is asked for.
+    With ``again`` False, figures newer than study.json are not drawn again.
 
     Raises
     ------
@@ -49,6 +49,7 @@ def study_page(folder: Path, again: bool = True) -> str:
     """
     study, since = read_study(folder), None if again else folder / "study.json"
     rows = list(study.rows)
+    filmed = any(has_film(folder / row.provenance.scene_id) for row in rows)
     body = (
         _cards(study),
         notices(rows),
@@ -59,7 +60,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         unknown(rows),
         section("Range of validity", bullets(sentences(rows, lambda row: row.validity.outside))),
         section("Cost", _costs(rows)),
-        sources(_used(study)),
+        sources([*study.sources, *(["film"] if filmed else [])]),
     )
     return page(study.title, "Study", "", _footer(study), body)
 
@@ -81,7 +82,7 @@ def _cards(study: Study) -> Markup:
 
 
 def comparison_part(study: Study, since: Path | None = None) -> Markup:
-    """Return the figure of model beside measurement; it is not drawn again ``since`` a file."""
+    """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
     if not study.comparison:
         return Markup("")
     figures = make_directory(study.folder / "figures")
@@ -138,7 +139,7 @@ def _is_inside(verdict: Any) -> bool:
 
 
 def partition_part(study: Study, since: Path | None = None) -> Markup:
-    """Return the figure of the shares of E_0; it is not drawn again ``since`` a file."""
+    """Return the figure of the shares of E_0; one newer than the file ``since`` is not drawn again."""
     if not study.rows:
         return Markup("")
     figures = make_directory(study.folder / "figures")
@@ -162,7 +163,7 @@ def _run(row: Outcome, folder: Path) -> Markup:
 
 
 def _own_page(place: Path) -> Markup:
-    """Return the link to the run's own page, which carries its film: thirteen films make no page to send."""
+    """Return the link to the run's page with its film; films of all runs would make this page too large."""
     if not (has_film(place) and (place / "report.html").is_file()):
         return Markup("")
     return Markup(f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>')
@@ -179,11 +180,6 @@ def _cost(cost: RunCost) -> list[Cell]:
     counts = (cost.steps, cost.element_steps, cost.elements_rod, cost.elements_barrier)
     lengths = [None if size is None else 1e3 * size]
     return [*lengths, *map(known_cell, counts), cost.wall, known_cell(cost.peak_memory)]
-
-
-def _used(study: Study) -> set[str]:
-    films = any(has_film(study.folder / row.provenance.scene_id) for row in study.rows)
-    return {*study.sources, *(["film"] if films else [])}
 
 
 def _footer(study: Study) -> str:

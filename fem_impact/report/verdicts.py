@@ -1,4 +1,4 @@
-"""What the paper concluded, what stands and what does not, each with the picture that shows it."""
+"""Verdicts on the paper's conclusions, each with its figure, and the replay of the camera's markers."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from rigid.experiments import measured_set
 
 MOMENTS = (KEY_TABLE["e_m_paper"], KEY_TABLE["e_m_edge"], KEY_TABLE["e_m_impulse"])
 MARKED = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
-"""Unit of what two markers measure, by its attribute of the motion and of the markers."""
+"""Quantities that the two markers measure, by attribute of `motion` and `contact.markers`, and units."""
 
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """A conclusion of the paper: name of its figure, sentence, and the figure that shows it."""
+    """Verdict on a conclusion of the paper: name of the figure, sentence, and the figure's panel."""
 
     name: str
     sentence: str
@@ -32,15 +32,15 @@ class Verdict:
 
 
 def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
-    """Return closure, trend of e_m, mu_c as a bound, and E_lt as heat, from the measured sets as computed."""
+    """Return the verdicts on closure, e_m, mu_c as a bound and E_lt as heat, from outcomes of the sets."""
     rows = [row for row in rows if not isinstance(row.restitution.paper.e_m, Unknown)]
     return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
 
 
-def verdict_section(told: Sequence[Verdict], figures: Path) -> Markup:
+def verdict_section(judged: Sequence[Verdict], figures: Path) -> Markup:
     """Return the verdicts with their figures, drawn into a folder."""
     title = "What the paper concluded, what stands and what does not"
-    return section(title, *(_shown(verdict, figures) for verdict in told))
+    return section(title, *(_shown(verdict, figures) for verdict in judged))
 
 
 def _shown(verdict: Verdict, figures: Path) -> Markup:
@@ -56,7 +56,9 @@ def _draw(panel: Panel, path: Path, shape: str) -> Path:
 
 def _closure(rows: Sequence[Outcome]) -> Verdict:
     lost = [100 * known(row.energy.vibration) for row in rows]
-    gap = [100 * (_sum(row) - 1) for row in rows]
+    paper = [row.restitution.paper for row in rows]
+    kept = [known(row.energy.rigid) for row in rows]
+    gap = [100 * (known(p.E_ln) + known(p.E_lt) + k - 1) for p, k in zip(paper, kept, strict=True)]
     identity = [100 * _spin(row) * (1 + 1 / known(row.restitution.paper.e_m)) for row in rows]
     sentence = (
         "Does not stand: that losses and retained energy add up to E_0 was read as a sign that they hold all "
@@ -75,15 +77,12 @@ def _closure(rows: Sequence[Outcome]) -> Verdict:
 
 
 def _apart(a: Sequence[float], b: Sequence[float]) -> float:
+    """Return the largest absolute difference."""
     return float(np.abs(np.subtract(a, b)).max())
 
 
-def _sum(row: Outcome) -> float:
-    paper = row.restitution.paper
-    return known(paper.E_ln) + known(paper.E_lt) + known(row.energy.rigid)
-
-
 def _spin(row: Outcome) -> float:
+    """Return I Omega^2/2 after the impact, fraction of E_0."""
     m = row.motion
     return 0.5 * m.mass * m.k_squared * m.Omega**2 / row.energy.E_0
 
@@ -92,7 +91,7 @@ def _moment(rows: Sequence[Outcome]) -> Verdict:
     angle = np.degrees([row.motion.alpha for row in rows])
     paper, edge, impulse = ([known(key.of(row)) for row in rows] for key in MOMENTS)
     named = {"the paper's arms": paper, "arms of the edge": edge, "centre of the impulse": impulse}
-    series = tuple(Series(words, angle, e_m, "points") for words, e_m in named.items())
+    series = tuple(Series(label, angle, e_m, "points") for label, e_m in named.items())
     spread = [abs(a - b) for a, b in zip(paper, edge, strict=True)]
     sentence = (
         "Does not stand as physics: e_m moves with the contact point that is assumed. The same computed "
@@ -145,18 +144,19 @@ def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
 
 
 def marker_section(rows: Sequence[Outcome]) -> Markup:
-    """Return the camera's two markers, replayed on the computed flight, beside the exact momentum sums."""
+    """Return the table of velocities by momentum sums and by two camera markers on the computed flight."""
     seen = [row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)]
     shown: list[tuple[Cell, ...]] = [
         (row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in seen
     ]
-    head = ("set", *(words for name, unit in MARKED.items() for words in (f"{name}, {unit}", "by markers")))
+    titles = ((f"{name}, {unit}", "by markers") for name, unit in MARKED.items())
+    head = ("set", *(title for pair in titles for title in pair))
     listed = table(Table.of(head, shown), compact=True)
     return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)
 
 
 def marker_sentence(seen: Sequence[Outcome]) -> str:
-    """Say how far the markers lie from the exact sums, nothing where no run has them."""
+    """Return the largest differences of markers and momentum sums as a sentence, empty without markers."""
     if not seen:
         return ""
     away = {name: _apart(*zip(*(_pair(row, name) for row in seen), strict=True)) for name in MARKED}

@@ -1,4 +1,4 @@
-"""Write the report of whatever a folder holds."""
+"""Write the report of a run or a study."""
 
 from __future__ import annotations
 
@@ -13,15 +13,14 @@ from fem_impact.report.study_page import study_page
 def write_report(result_dir: str | Path, again: bool = True) -> Path:
     """Write ``report.html`` into a result folder and return its path.
 
-    The file carries its figures and film inside and refers to nothing outside. The figures and
-    their data are also left in ``figures/``.
+    Figures and film are embedded. The figures and their data are also written to ``figures/``.
 
     Parameters
     ----------
     result_dir : path
         The folder of a study (study.json) or of a run (outcome.json).
     again : bool, optional
-        False takes figures that `draw_study` has drawn of a study as they are.
+        False: figures of a study that `draw_study` has drawn are not drawn again.
 
     Raises
     ------
