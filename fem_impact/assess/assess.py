@@ -1,4 +1,4 @@
-"""An assessment of one dropped rod for engineers: losses, worst case, heat bound, limits of the theory."""
+"""Assessment of one dropped rod by rigid theory: losses, worst case, bound of friction heat, limits."""
 
 from __future__ import annotations
 
@@ -33,12 +33,16 @@ ASSUMPTIONS = (
     "kinetic energy only: no chemical heat (pyrophoric metal, thermite), no work of gravity during contact",
     "energy, not temperature: area and duration of the contact are not known to rigid theory",
 )
-"""Of the upper bound of friction heat."""
+"""Assumptions of the upper bound of friction heat."""
 
 TURNING = (
     "at this angle the mass centre stands nearly above the contact: the tip can turn up the slope by itself, "
     "and no critical ratio limits the search; take the bound that holds whatever happens"
 )
+"""Reason why a worst case over mu <= mu_c does not exist."""
+
+_NAMES = ("total", "E_lt", "E_ln", "E_r")
+"""Fractions of E_0 that are reported."""
 
 
 def assess(case: DroppedRod) -> dict[str, Any]:
@@ -46,7 +50,7 @@ def assess(case: DroppedRod) -> dict[str, Any]:
 
     Parameters
     ----------
-    case : Case
+    case : DroppedRod
         Rod, height, angle and surface.
 
     Returns
@@ -58,14 +62,16 @@ def assess(case: DroppedRod) -> dict[str, Any]:
     tests = measured_on(case.surface)
     weights = weights_of(case)
     energy = 0.5 * case.rod.mass * case.speed**2
-    every = {name: carry(t, case) for name, t in tests.items()}
+    carried = {name: carry(t, case) for name, t in tests.items()}
     known = _range(case, tests, weights)
-    shares = {name: _share({k: _values(c, name) for k, c in every.items()}, weights) for name in _NAMES}
+    values = {name: _values(c) for name, c in carried.items()}
+    shares = {share: _share({name: v[share] for name, v in values.items()}, weights) for share in _NAMES}
+    mu_c = np.concatenate([carried[name].mu_c for name in weights])
     return {
         "case": _case_entry(case, energy),
         "basis": _basis(weights, tests),
         "losses": {name: {**s, "mean_J": s["mean"] * energy} for name, s in shares.items()},
-        "mu_c": _critical([every[name] for name in weights]),
+        "mu_c": {"mean": float(mu_c.mean()), "low": float(mu_c.min()), "high": float(mu_c.max())},
         "range": {"e": list(known.e), "d_c_m": list(known.d_c), "measured": not outside_of(case)},
         "worst_case": _worst(case, known, energy),
         "friction_heat": _heat(case, known, energy),
@@ -75,19 +81,16 @@ def assess(case: DroppedRod) -> dict[str, Any]:
     }
 
 
-_NAMES = ("total", "E_lt", "E_ln", "E_r")
-
-
-def _values(c: Carried, name: str) -> Floats:
-    """Give one fraction by name; with e_m = -1 losses and retained energy add up to E_0."""
+def _values(c: Carried) -> dict[str, Floats]:
+    """Return the fractions of E_0 by name; with e_m = -1 losses and retained energy add up to E_0."""
     total = c.E_ln + c.E_lt
-    return {"total": total, "E_lt": c.E_lt, "E_ln": c.E_ln, "E_r": 1.0 - total}[name]
+    return dict(zip(_NAMES, (total, c.E_lt, c.E_ln, 1.0 - total), strict=True))
 
 
 def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, float]:
-    """Give mean, 95 % prediction interval of one impact, and the extremes over all tests of the surface.
+    """Return mean, 95 % prediction interval of one impact, and the extremes over all tests of the surface.
 
-    The spread is that within the weighed sets and that between them.
+    The variance is the weighted sum of the variances within the sets and between their means.
     """
     means = {name: float(values[name].mean()) for name in weights}
     mean = sum(w * means[name] for name, w in weights.items())
@@ -104,13 +107,8 @@ def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, fl
     return {"mean": mean, "low": low, "high": high, **extremes}
 
 
-def _critical(carried: list[Carried]) -> dict[str, float]:
-    mu_c = np.concatenate([c.mu_c for c in carried])
-    return {"mean": float(mu_c.mean()), "low": float(mu_c.min()), "high": float(mu_c.max())}
-
-
 def _range(case: DroppedRod, tests: dict[str, Tests], weights: dict[str, float]) -> Range:
-    """Give the scatter of every test on this surface; outside what was measured, every restitution."""
+    """Return the ranges of e and d_c over the tests of this surface; outside the measured cases all e."""
     outside = bool(outside_of(case))
     e = np.concatenate([t.e for t in tests.values()])
     spread = 2.0 * max(float(t.e.std(ddof=1)) for t in tests.values())
@@ -146,21 +144,21 @@ def _basis(weights: dict[str, float], tests: dict[str, Tests]) -> dict[str, Any]
 
 
 def _worst(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
-    found = worst_losses(case, known)
-    if found is None:
+    worst = worst_losses(case, known)
+    if worst is None:
         return {"total": None, "tangential": None, "reason": TURNING}
-    total = {"over_E_0": found.total, "J": found.total * energy, "mu": found.mu_total, "e": found.e_total}
+    total = {"over_E_0": worst.total, "J": worst.total * energy, "mu": worst.mu_total, "e": worst.e_total}
     slid = {
-        "over_E_0": found.tangential,
-        "J": found.tangential * energy,
-        "mu": found.mu_tangential,
-        "e": found.e_tangential,
+        "over_E_0": worst.tangential,
+        "J": worst.tangential * energy,
+        "mu": worst.mu_tangential,
+        "e": worst.e_tangential,
     }
-    return {"total": total, "tangential": slid, "mu_c_largest": found.mu_c_largest, "reason": None}
+    return {"total": total, "tangential": slid, "mu_c_largest": worst.mu_c_largest, "reason": None}
 
 
 def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
-    """Give the bound that always holds, and the sharper one of a rigid rod with Coulomb friction."""
+    """Return the upper bound of friction heat, and the lower one of a rigid rod with Coulomb friction."""
     certain = largest_loss_whatever(case, known)
     worst = worst_losses(case, known)
     rigid = max(sliding_heat(case, known), worst.tangential if worst else 0.0)
@@ -184,9 +182,8 @@ def _unattributed(total: dict[str, float]) -> dict[str, Any]:
         "high": total["high"],
         "sentence": (
             "of E_0: the whole loss. E_lt and E_ln are works of two components of the impulse; how much of "
-            "them is friction heat, plastic work, vibration or waves, rigid-body velocities do not "
-            "tell (their "
-            "closure tests only mass, inertia and e_m = -1). A finite-element run does: fem-impact run"
+            "them is friction heat, plastic work, vibration or waves, rigid-body velocities do not tell "
+            "(their closure tests only mass, inertia and e_m = -1). A finite-element run does: fem-impact run"
         ),
     }
 
@@ -207,7 +204,6 @@ def _slenderness(case: DroppedRod) -> dict[str, Any]:
         "verdict": verdict,
         "meaning": (
             "the limit was found for bars that rebound elastically; a tip that yields lengthens the "
-            "contact and "
-            "quietens the rod, so gamma alone decides nothing about a yielding tip"
+            "contact and quietens the rod, so gamma alone decides nothing about a yielding tip"
         ),
     }

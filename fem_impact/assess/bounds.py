@@ -1,4 +1,4 @@
-"""The worst that can happen: largest losses over mu <= mu_c, and bounds of the friction heat."""
+"""Losses carried over from the measured sets, largest losses over mu <= mu_c, bounds of friction heat."""
 
 from __future__ import annotations
 
@@ -23,13 +23,15 @@ from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet
 
 STEPS = 9
+"""Values of e and of d_c that are searched in a `Range`."""
+
 FRICTION = np.concatenate([np.linspace(0.0, 1.5, 601), np.geomspace(1.6, 50.0, 20)])
-"""Coulomb coefficients that are searched for the most friction work; beyond 50 nothing changes."""
+"""Coulomb coefficients that are searched for the largest friction work; above 50 it stays constant."""
 
 
 @dataclass(frozen=True, slots=True)
 class Range:
-    """What is not known of the case.
+    """Ranges of the quantities of a case that are not known.
 
     Attributes
     ----------
@@ -62,25 +64,25 @@ class Worst:
 
 
 def worst_losses(case: DroppedRod, known: Range) -> Worst | None:
-    """Search the largest total and the largest tangential loss; None where the tip turns by itself."""
+    """Return the largest total and the largest tangential loss; None where a critical ratio is negative."""
     v_n, v_t = case.velocity
     e, body = known.grid(case)
     limit = critical_ratio(v_n, v_t, e=e, **body)
     if (limit < 0).any():
         return None
-    found = worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2)
-    at, slid = (np.unravel_index(int(x.argmax()), x.shape) for x in (found.total, found.tangential))
+    worst = worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2)
+    at, slid = (np.unravel_index(int(x.argmax()), x.shape) for x in (worst.total, worst.tangential))
     given = np.broadcast_to(e, limit.shape)
-    total = float(found.total[at]), float(found.mu_total[at]), float(given[at])
-    tangential = float(found.tangential[slid]), float(found.mu_tangential[slid]), float(given[slid])
+    total = float(worst.total[at]), float(worst.mu_total[at]), float(given[at])
+    tangential = float(worst.tangential[slid]), float(worst.mu_tangential[slid]), float(given[slid])
     return Worst(*total, *tangential, float(limit.max()))
 
 
 def sliding_heat(case: DroppedRod, known: Range) -> float:
-    """Largest friction work of a rigid rod, fraction of E_0, for any Coulomb friction, reversal included.
+    """Return the largest friction work of a rigid rod over all Coulomb coefficients, fraction of E_0.
 
-    Sliding, sticking and reverse sliding are resolved in the impulse domain with energetic restitution; the
-    largest work over the friction is found to a thousandth of itself.
+    Sliding, sticking and reverse sliding are resolved in the impulse domain with energetic restitution. The
+    relative error of the maximum over `FRICTION` is below 1e-3.
     """
     v_n, v_t = case.velocity
     e, body = known.grid(case)
@@ -90,7 +92,7 @@ def sliding_heat(case: DroppedRod, known: Range) -> float:
 
 
 def largest_loss_whatever(case: DroppedRod, known: Range) -> float:
-    """Largest loss of the first impact, fraction of E_0, whatever friction and restitution do."""
+    """Return the largest loss of the first impact for any friction and restitution, fraction of E_0."""
     v_n, v_t = case.velocity
     arms: dict[str, Any] = {"d_c": np.linspace(*known.d_c, 2001), "d_d": case.arms.d_d, "k2": case.rod.k2}
     return float(pinned_loss(v_n, v_t, **arms, mass=2.0 / case.speed**2).max())
@@ -98,18 +100,18 @@ def largest_loss_whatever(case: DroppedRod, known: Range) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Tests:
-    """What is carried, (n,) float64 each.
+    """Results of n tests that are carried over to another case, (n,) float64 each.
 
     Attributes
     ----------
     e : float64
         Restitution at the centre of the impulse, not below 0.
     friction : float64
-        Ratio while sliding.
+        Impulse ratio while sliding.
     excess : float64
         Impulse ratio over the critical one, at least 1.
     offset : float64
-        From the geometric contact point to the centre of the impulse, over the rod's length.
+        Distance from the geometric contact point to the centre of the impulse, over the rod's length.
     """
 
     e: Floats
@@ -137,7 +139,7 @@ class Carried:
 
 
 def _own(s: MeasuredSet) -> Tests:
-    """Work out what is carried of each test of a set, with the arms of its rod's real geometry."""
+    """Return the `Tests` of a set, with the arms of its rod's real geometry."""
     rod = Projectile(s.length, s.diameter, s.tip, s.tip_radius, DENSITY)
     arms = rod.arms(s.alpha)
     centre = impulse_centre(**s.motion, d_d=arms.d_d, k2=rod.k2)
@@ -150,12 +152,15 @@ def _own(s: MeasuredSet) -> Tests:
 
 
 def measured_on(surface: str) -> dict[str, Tests]:
-    """Work out what is carried of every test on one surface, by set."""
-    found = {s.id: _own(s) for s in sets_of(surface)}
-    slid = np.concatenate([t.friction[t.excess == 1.0] for t in found.values()]).mean()
+    """Return the `Tests` of every set on one surface, by its id.
+
+    Where mu exceeds mu_c the tip did not slide throughout: its friction is at least the mean of the others.
+    """
+    tests = {s.id: _own(s) for s in sets_of(surface)}
+    slid = np.concatenate([t.friction[t.excess == 1.0] for t in tests.values()]).mean()
     return {
         id: replace(t, friction=np.where(t.excess > 1.0, np.maximum(t.friction, slid), t.friction))
-        for id, t in found.items()
+        for id, t in tests.items()
     }
 
 

@@ -19,9 +19,12 @@ from rigid.arrays import Floats
 
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
-LARGEST = 1e6  # m/s or rad/s
+LARGEST = 1e6
+"""Bound of the size of a velocity, m/s or rad/s."""
+
 _NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega)(?:_(\w+)|\s*[\[(](.+)[\])])?")
 Line = tuple[int, list[str]]
+"""Number and cells of a line of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,7 @@ def read_camera(path: str | Path) -> Camera:
 
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
-    """Yield line number and cells of what is neither blank nor a remark."""
+    """Yield the lines that are neither blank nor comments (#)."""
     reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
     try:
         for cells in reader:
@@ -87,21 +90,21 @@ def _lines(text: str, path: str | Path) -> Iterator[Line]:
 
 
 def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit]]:
-    """Find the five columns and their units."""
-    found: dict[str, tuple[int, Unit]] = {}
+    """Return index and unit of the five columns by quantity."""
+    places: dict[str, tuple[int, Unit]] = {}
     for at, name in enumerate(names):
         match = _NAME.fullmatch(name)
         if match is None:
             continue
-        if match[1] in found:
+        if match[1] in places:
             raise ResultError(f"{path}: {match[1]} has two columns, the second is {name!r}. Keep one.")
-        found[match[1]] = at, _unit(name, match[1], match[2] or match[3], path)
-    missing = [name for name in KINDS if name not in found]
+        places[match[1]] = at, _unit(name, match[1], match[2] or match[3], path)
+    missing = [name for name in KINDS if name not in places]
     if missing:
         hint = " Separate columns by commas." if any(";" in name or "\t" in name for name in names) else ""
         lacks = f"{path}: the header lacks {', '.join(missing)}.{hint}"
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).")
-    return found
+    return places
 
 
 def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
@@ -118,7 +121,7 @@ def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
 
 
 def _check_rows(rows: Sequence[Line], names: Sequence[str], path: str | Path) -> None:
-    """Refuse a table that is ragged or too short for an uncertainty."""
+    """Refuse rows of unequal length, and fewer than two rows: they give no uncertainty."""
     for line, cells in rows:
         if len(cells) != len(names):
             raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
@@ -151,18 +154,18 @@ def _check_motion(
     places: Mapping[str, tuple[int, Unit]],
     path: str | Path,
 ) -> None:
-    """Refuse a test that is no impact, usually one with a sign turned round."""
+    """Refuse a test that is no impact, usually because of a wrong sign."""
     wrong = (
         ("v_n", motion["v_n"] >= 0, "must be negative: n points out of the barrier, and the rod falls on it"),
         ("V_n", motion["V_n"] <= motion["v_n"], "must exceed v_n: the barrier can only push"),
     )
-    for name, bad, words in wrong:
+    for name, bad, rule in wrong:
         if bad.any():
             first = int(np.argmax(bad))
             line, cells = rows[first]
             at = places[name][0]
             cell = cells[at].strip()
-            raise ResultError(f"{path}: line {line}, column {names[at]}: {cell} {words}.")
+            raise ResultError(f"{path}: line {line}, column {names[at]}: {cell} {rule}.")
 
 
 def _labels(rows: Sequence[Line], names: Sequence[str]) -> tuple[str, ...]:

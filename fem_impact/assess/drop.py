@@ -1,4 +1,4 @@
-"""A dropped rod to be assessed, and how far it lies from what was measured."""
+"""A dropped rod to be assessed, its options on the command line, and its distance from measured sets."""
 
 from __future__ import annotations
 
@@ -16,9 +16,25 @@ from rigid.experiments import MeasuredSet, measured_sets
 
 Surface = Literal["machined", "contaminated", "cleaned"]
 NEAR = {"length": math.log(2.0), "alpha": math.radians(20.0), "speed": math.log(2.0)}
-"""What counts as one step away: twice the length, 20 degrees, twice the speed."""
+"""Unit of distance between cases: a factor 2 in length, 20 degrees, a factor 2 in speed."""
 FAST, STEEP = math.log(1.5), math.radians(10.0)
-"""As near a set must be in speed for its angle to count as measured, and in angle for its speed."""
+"""A set counts for the measured range of angles within FAST (log of speed), of speeds within STEEP (rad)."""
+
+DENSITY = 7850.0
+"""Density of the measured steel rods, kg/m3."""
+
+TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
+"""Radius of each measured tip, m (a plain tip has a sharp edge); other tips have no default."""
+
+_EXAMPLES = {
+    "--diameter": "19 mm",
+    "--height": "0.82 m",
+    "--angle": "45 deg",
+    "--tip-radius": "3 mm",
+    "--budget": "30 s",
+    "--finest": "0.25 mm",
+}
+"""Example value of an option, for messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +44,7 @@ class DroppedRod:
     Attributes
     ----------
     rod : Projectile
-        SI.
+        Length, diameter, tip (m) and density (kg/m3).
     height : float
         Drop height, m.
     alpha : float
@@ -46,11 +62,11 @@ class DroppedRod:
         if not (math.isfinite(self.height) and self.height > 0):
             raise SceneError("must be above 0.", key="--height", value=f"{self.height:g} m")
         if not 0 < self.alpha < math.pi / 2:
-            words = (
-                "must lie between 0 and 90 degrees; a rod that falls flat on its end has no one "
-                "contact point."
+            problem = (
+                "must lie between 0 and 90 degrees; "
+                "a rod that falls flat on its end has no one contact point."
             )
-            raise SceneError(words, key="--angle", value=f"{math.degrees(self.alpha):g} deg")
+            raise SceneError(problem, key="--angle", value=f"{math.degrees(self.alpha):g} deg")
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -70,15 +86,15 @@ class DroppedRod:
 
 
 def sets_of(surface: str) -> tuple[MeasuredSet, ...]:
-    """Give the measured sets of one surface state."""
+    """Return the measured sets of one surface state."""
     return tuple(s for s in measured_sets() if s.surface == surface)
 
 
 def weights_of(case: DroppedRod) -> dict[str, float]:
-    """Weigh the measured sets of this surface by nearness (the fourth power of the distance, Shepard's way).
+    """Return inverse-distance weights of the measured sets of this surface (Shepard, distance^-4), sum 1.
 
-    A measured case takes its own set alone, a case between two sets both; what has less than 2 % is left
-    out. The weights add up to 1.
+    A measured case has weight on its own set alone, a case between two sets on both; sets with less than
+    2 % are left out.
     """
     near = {s.id: max(_distance(case, s), 0.02) ** -4 for s in sets_of(case.surface)}
     kept = {name: w for name, w in near.items() if w >= 0.02 * sum(near.values())}
@@ -86,7 +102,7 @@ def weights_of(case: DroppedRod) -> dict[str, float]:
 
 
 def _distance(case: DroppedRod, s: MeasuredSet) -> float:
-    """Count steps in length, angle and speed; an edge for a measured nose, or a nose for an edge, is one."""
+    """Return the distance in length, angle and speed in units of `NEAR`; plus 1 between edge and nose."""
     steps = (
         math.log(case.rod.length / s.length) / NEAR["length"],
         (case.alpha - s.alpha) / NEAR["alpha"],
@@ -97,7 +113,7 @@ def _distance(case: DroppedRod, s: MeasuredSet) -> float:
 
 
 def _has_face(tip: Nose) -> bool:
-    """Whether the tip has a flat face, so that its edge strikes (B, plain), and not its nose (A)."""
+    """Return whether the tip has a flat face, whose edge strikes (B, plain), and is no round nose (A)."""
     return tip.face > 0
 
 
@@ -106,13 +122,13 @@ def _speed(s: MeasuredSet) -> float:
 
 
 def warnings_of(case: DroppedRod) -> tuple[str, ...]:
-    """Say in plain sentences where the case lies outside what was measured."""
+    """Return warnings: few tests on this surface, and quantities outside the measured range."""
     narrow = (_narrow(case.surface, sets_of(case.surface)),) if case.surface != "machined" else ()
     return (*narrow, *outside_of(case))
 
 
 def outside_of(case: DroppedRod) -> tuple[str, ...]:
-    """Name each quantity of the case that leaves the range measured on its surface."""
+    """Return a sentence on each quantity of the case outside the range measured on its surface."""
     return tuple(_outside(case, sets_of(case.surface)))
 
 
@@ -136,8 +152,7 @@ def _narrow(surface: str, sets: tuple[MeasuredSet, ...]) -> str:
     speeds = " and ".join(f"{_speed(s):.2f}" for s in sorted(sets, key=_speed))
     return (
         f"{surface} surfaces were measured with one rod (240 mm), at one angle (45 degrees), at "
-        f"{speeds} m/s, in "
-        f"{tests} tests: anything else is an extrapolation"
+        f"{speeds} m/s, in {tests} tests: anything else is an extrapolation"
     )
 
 
@@ -161,22 +176,6 @@ def _motion_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterato
 def _span(values: list[float], unit: str, form: str) -> str:
     low, high = format(values[0], form), format(values[-1], form)
     return f"{low} {unit} only" if low == high else f"{low} to {high} {unit}"
-
-
-DENSITY = 7850.0
-"""Of the measured steel rods, kg/m3."""
-
-TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
-"""Radius of each measured tip, m (a plain tip has a sharp edge); an added tip has none by default."""
-
-_EXAMPLES = {
-    "--diameter": "19 mm",
-    "--height": "0.82 m",
-    "--angle": "45 deg",
-    "--tip-radius": "3 mm",
-    "--budget": "30 s",
-    "--finest": "0.25 mm",
-}
 
 
 def quantity(text: str, dimension: str, option: str) -> float:

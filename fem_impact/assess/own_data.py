@@ -1,4 +1,4 @@
-"""Coefficients of a user's own tests, with their uncertainty."""
+"""Coefficients of a user's own tests with their uncertainty."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def own_coefficients(
     camera : Camera
         Velocities of the tests, SI.
     rod : Projectile
-        Gives mass and k2.
+        The rod: mass and k2 are used.
     alpha : float
         Inclination, rad.
     arms : Arms
-        Of the contact point, m.
+        Arms of the contact point, m.
     source : str
-        Where the arms come from, in words.
+        Source of the arms, for the report.
 
     Returns
     -------
@@ -53,25 +53,26 @@ def own_coefficients(
     tests = _tests(camera, rod, arms)
     mean = {name: values.mean() for name, values in camera.motion.items()}
     centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
-    found = {
+    fall = float(mean["v_n"]), float(mean["v_t"])
+    document = {
         "tests": len(camera.tests),
         "rod": _rod_entry(rod, alpha),
         "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
         "coefficients": _estimates(camera.motion, body),
         "scatter": _scatter(tests),
-        "mu_c": _critical(mean, body, tests),
+        "mu_c": finite(critical_ratio(*fall, e=max(0.0, float(tests["e"].mean())), **body)),
         "impulse_centre": {"d_c_m": float(centre.d_c), "from_contact_m": float(centre.d_c - arms.d_c)},
         "rows": _rows(camera, tests),
     }
-    return {**found, "notes": _notes(camera, tests, found)}
+    return {**document, "notes": _notes(camera, tests, document)}
 
 
 def _tests(camera: Camera, rod: Projectile, arms: Arms) -> dict[str, Floats]:
-    """Give coefficients and energy fractions test by test."""
+    """Return coefficients and energy fractions of each test, (n,) float64 by name."""
     given: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": rod.k2}
     shares = losses(**camera.motion, **given, mass=rod.mass).fractions()._asdict()
-    found = coefficients(**camera.motion, **given)._asdict()
-    return {**found, **{f"{name}_over_E_0": shares[name] for name in SHARES}}
+    ratios = coefficients(**camera.motion, **given)._asdict()
+    return {**ratios, **{f"{name}_over_E_0": shares[name] for name in SHARES}}
 
 
 def _rod_entry(rod: Projectile, alpha: float) -> dict[str, Any]:
@@ -81,7 +82,7 @@ def _rod_entry(rod: Projectile, alpha: float) -> dict[str, Any]:
 
 
 def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[str, Any]:
-    """Give each coefficient of the mean motion with both intervals."""
+    """Return each coefficient of the mean motion with its first-order and bootstrap intervals."""
     linear, drawn = first_order(motion, **body), bootstrap(motion, **body)
     return {
         name: {
@@ -94,17 +95,12 @@ def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[st
 
 
 def _scatter(tests: Mapping[str, Floats]) -> dict[str, Any]:
-    """Give mean and SD over the tests of what is finite in all of them."""
+    """Return mean and SD over the tests of the quantities that are finite in all of them."""
     return {
         name: statistic_entry(statistic(values))
         for name, values in tests.items()
         if np.isfinite(values).all()
     }
-
-
-def _critical(mean: Mapping[str, Any], body: Mapping[str, Any], tests: Mapping[str, Floats]) -> float | None:
-    motion = float(mean["v_n"]), float(mean["v_t"])
-    return finite(critical_ratio(*motion, e=max(0.0, float(tests["e"].mean())), **body))
 
 
 def _rows(camera: Camera, tests: Mapping[str, Floats]) -> list[dict[str, Any]]:
@@ -114,8 +110,8 @@ def _rows(camera: Camera, tests: Mapping[str, Floats]) -> list[dict[str, Any]]:
     ]
 
 
-def _notes(camera: Camera, tests: Mapping[str, Floats], found: Mapping[str, Any]) -> list[str]:
-    """Say what a reader should doubt."""
+def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, Any]) -> list[str]:
+    """Return warnings about the data and the moment restitution."""
     notes = [f"columns not used: {', '.join(camera.ignored)}"] if camera.ignored else []
     gains = [t for t, kept in zip(camera.tests, tests["E_r_over_E_0"], strict=True) if kept > 1]
     if gains:
@@ -124,7 +120,7 @@ def _notes(camera: Camera, tests: Mapping[str, Floats], found: Mapping[str, Any]
         )
     if (camera.motion["v_t"] > 0).any():
         notes.append("v_t > 0 in some tests: t points up the slope, and a falling rod has v_t < 0")
-    return [*notes, _moment_note(found["coefficients"]["e_m"]["bootstrap"])]
+    return [*notes, _moment_note(document["coefficients"]["e_m"]["bootstrap"])]
 
 
 def _moment_note(e_m: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""May rigid-body theory be used for a rod: a drop that can vibrate beside one that cannot."""
+"""Whether rigid-body theory may be used for a rod: the drop computed with and without vibration."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from fem_impact.scene.types import Barrier, Impact, ProjectileSpec, Scene
 
 ANGLES = np.radians(np.arange(5.0, 81.0, 5.0))
 FAIR, POOR = 0.02, 0.05
-"""Error of e up to which the answer is yes, and from which it is no."""
+"""Errors of e below which the answer is yes, and from which it is no."""
 
 EFFECTS = ("friction", "rod-plasticity", "barrier-elastoplastic", "large-rotation")
 
 
 def rigid_enough(case: DroppedRod, fidelity: str = "modal") -> dict[str, Any]:
-    """Compute the drop with a rod that vibrates and with one that cannot, on the same contact.
+    """Compute the drop with a vibrating rod and with a rigid one, with the same contact.
 
     Parameters
     ----------
-    case : Case
-        Of the paper's steels: the tip and the plate yield.
+    case : DroppedRod
+        Rod and plate are of the paper's steels; tip and plate yield.
     fidelity : "modal" or "solid"
-        Of the stated angle; the second takes minutes. Other angles are always computed by modes.
+        Model for the stated angle; "solid" takes minutes. Other angles are computed with "modal".
 
     Returns
     -------

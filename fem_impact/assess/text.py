@@ -1,4 +1,4 @@
-"""The assessment as text for the terminal."""
+"""Assessments and coefficients as text for the terminal."""
 
 from __future__ import annotations
 
@@ -10,17 +10,20 @@ from fem_impact.tables.table import Cell, Table
 from fem_impact.tables.text import wrapped
 
 Document = Mapping[str, Any]
-SPANS = (("e", 1.0, 2), ("d_c_m", 1e3, 1))  # of the range that is searched: key, scale, digits
-WORDS = {
+SPANS = (("e", 1.0, 2), ("d_c_m", 1e3, 1))
+"""Quantities of the searched range: key, factor from SI, decimals."""
+
+LABELS = {
     "total": "total loss",
     "E_lt": "tangential E_lt",
     "E_ln": "normal E_ln",
     "E_r": "kept as rigid motion",
 }
+"""Label of each share."""
 
 
 def assess_text(document: Document) -> str:
-    """Lay the document of `assess` out for reading: warnings first, since they bind all that follows."""
+    """Return the document of `assess` as text, warnings before the results."""
     parts = (_case, _warnings, _losses, _worst, _heat, _limits, _rigid)
     return "\n".join(line for part in parts for line in part(document)) + "\n"
 
@@ -56,16 +59,16 @@ def _losses(d: Document) -> Iterator[str]:
         f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
     )
     head = ("", "mean", "95 % of impacts", "mean, J", f"all {b['all_tests']} of the surface")
-    rows = [_loss_row(words, d["losses"][name], energy) for name, words in WORDS.items()]
+    rows = [_loss_row(label, d["losses"][name], energy) for name, label in LABELS.items()]
     yield Table.of(head, rows).terminal(indent="  ")
 
 
-def _loss_row(words: str, s: Mapping[str, Any], energy: float) -> tuple[Cell, ...]:
+def _loss_row(label: str, s: Mapping[str, Any], energy: float) -> tuple[Cell, ...]:
     spread, all_tests = (
         f"{100 * s[low]:.0f} to {100 * s[high]:.0f}"
         for low, high in (("low", "high"), ("all_low", "all_high"))
     )
-    return (words, f"{100 * s['mean']:.1f}", spread, f"{s['mean'] * energy:.3g}", all_tests)
+    return (label, f"{100 * s['mean']:.1f}", spread, f"{s['mean'] * energy:.3g}", all_tests)
 
 
 def _worst(d: Document) -> Iterator[str]:
@@ -79,16 +82,15 @@ def _worst(d: Document) -> Iterator[str]:
     if w["reason"]:
         yield from _wrap(w["reason"])
         return
-    for name, words in (("tangential", "tangential loss (for ignition)"), ("total", "total loss")):
+    for name, label in (("tangential", "tangential loss (for ignition)"), ("total", "total loss")):
         x = w[name]
         yield (
-            f"  {words:<32}{100 * x['over_E_0']:5.1f} % = {x['J']:.3g} J, at mu = {x['mu']:.2f}, e = "
+            f"  {label:<32}{100 * x['over_E_0']:5.1f} % = {x['J']:.3g} J, at mu = {x['mu']:.2f}, e = "
             f"{x['e']:.2f}"
         )
     yield from _wrap(
         f"The critical ratio is {d['mu_c']['mean']:.2f} here; it is no upper bound of mu, since a tip "
-        "that slides back "
-        "exceeds it by about 20 %."
+        "that slides back exceeds it by about 20 %."
     )
 
 
@@ -101,11 +103,10 @@ def _heat(d: Document) -> Iterator[str]:
     )
     for sentence in h["assumptions"]:
         yield from _wrap(f"- {sentence}")
-    words = (
+    yield from _wrap(
         f"Sharper: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
         f"{h['rigid_rod_assumption']}."
     )
-    yield from _wrap(words)
 
 
 def _limits(d: Document) -> Iterator[str]:
@@ -136,13 +137,13 @@ def _rigid(d: Document) -> Iterator[str]:
         "",
     )
     pairs = (("e", "e"), ("mu", "mu"), ("Omega", "Omega_rad_per_s"), ("E_r/E_0", "E_r_over_E_0"))
-    told = ", ".join(f"{words} {free[key]:.3g} ({stiff[key]:.3g})" for words, key in pairs)
-    yield from _wrap(f"with vibration (rigid rod on the same contact): {told}")
+    values = ", ".join(f"{name} {free[key]:.3g} ({stiff[key]:.3g})" for name, key in pairs)
+    yield from _wrap(f"with vibration (rigid rod on the same contact): {values}")
     yield from _wrap(f"vibration {100 * r['E_vib_over_E_0']:.2g} % of E_0, T1/tau = {r['T1_over_tau']:.2f}")
 
 
 def own_text(document: Document) -> str:
-    """Lay the document of `own_coefficients` out for reading."""
+    """Return the document of `own_coefficients` as text."""
     parts = (_head, _coefficients, _scatter, _rest)
     return "\n".join(line for part in parts for line in part(document)) + "\n"
 
@@ -180,11 +181,11 @@ def _coefficients(d: Document) -> Iterator[str]:
 def _scatter(d: Document) -> Iterator[str]:
     yield ""
     yield "Scatter of single tests, mean (SD)"
-    words = [
+    parts = [
         f"{name.replace('_over_E_0', '/E_0')} {s['mean']:.3f} ({s['sd']:.3f})"
         for name, s in d["scatter"].items()
     ]
-    yield from wrapped(", ".join(words), "  ", "")
+    yield from wrapped(", ".join(parts), "  ", "")
 
 
 def _rest(d: Document) -> Iterator[str]:
