@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -46,18 +46,14 @@ def force_figure(
     with figure(path, shape, 3.6 if shape == "wide" else 4.0) as drawn:
         axes = drawn.add_subplot()
         axes.plot(time * 1e6, normal / 1e3, color=PALETTE["blue"], label="normal (out of the barrier)")
-        _dashed(axes, time * 1e6, tangential / 1e3)
+        look: dict[str, Any] = {"color": PALETTE["vermilion"], "linestyle": (0, (5, 1.5))}
+        axes.plot(time * 1e6, tangential / 1e3, **look, label="tangential (up the slope)")
         _shade(axes, contacts)
         axes.set(xlabel="time, µs", ylabel="contact force on the rod, kN")
         axes.grid(axis="y")
         axes.axhline(0.0, color=QUIET, linewidth=0.7)
         drawn.legend(loc="outside lower center", ncols=2 if shape == "wide" else 1)
     return path
-
-
-def _dashed(axes: Axes, time: np.ndarray, force: np.ndarray) -> None:
-    dashes = (0, (5, 1.5))
-    axes.plot(time, force, color=PALETTE["vermilion"], linestyle=dashes, label="tangential (up the slope)")
 
 
 def _shade(axes: Axes, contacts: Sequence[ContactInterval]) -> None:
@@ -77,7 +73,7 @@ def _shade(axes: Axes, contacts: Sequence[ContactInterval]) -> None:
 
 
 def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "wide") -> Path:
-    """Draw where the energy is at every time, as fractions of E_0.
+    """Draw the energy accounts over time as stacked areas, fractions of E_0.
 
     Parameters
     ----------
@@ -113,7 +109,7 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
 
 def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
     ends = {key: percent(float(share[-1])) if len(share) else "-" for key, share in shares.items()}
-    # more corners than a page has pixels would only swell the file; the data keep every row
+    # at most 800 of the times are drawn; the CSV has all
     kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), 800)).astype(int))
     axes.stackplot(
         time[kept],

@@ -1,4 +1,4 @@
-"""Panels of lines and points with their data: the figure of every study that compares curves."""
+"""Figures of panels with lines and points, and their data."""
 
 from __future__ import annotations
 
@@ -24,18 +24,21 @@ if TYPE_CHECKING:
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
 LETTERS = {"wide": 110, "narrow": 52}
 """Letters of a legend that fit across a picture."""
+
 SAMPLE = 8
-"""Letters that the sample of a legend's entry and the space after it are wide."""
+"""Width of the sample and the space of a legend entry, letters."""
+
 NEAR = 0.05
-"""Marks nearer than this share of the axis would write over each other on one side."""
+"""Least distance, share of the axis, of two marks whose labels stand on the same side."""
+
 COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y")
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """A curve or a cloud: ``x`` and ``y`` of one length, a colour by number (in order when None).
+    """A curve or points: ``x`` and ``y`` of equal length, index of the colour (None: the next one).
 
-    One label has one look in all panels of a figure.
+    Series of one label look the same in all panels of a figure.
     """
 
     label: str
@@ -47,7 +50,7 @@ class Series:
 
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A place on the x axis with a word."""
+    """A labelled vertical line at ``x``."""
 
     x: float
     word: str
@@ -77,12 +80,12 @@ def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide
     beside = max(1, LETTERS[shape] // (max(map(len, labels), default=0) + SAMPLE))
     tall = 3.8 if any(panel.names for panel in panels) else 3.2
     with figure(path, shape, tall * down + 0.18 * math.ceil(len(labels) / beside) + 0.1) as drawn:
-        every = _axes(drawn, down, across)
-        for axes, panel in zip(every, panels, strict=False):
+        grid = list(drawn.subplots(down, across, squeeze=False).flat)
+        for axes, panel in zip(grid, panels, strict=False):
             _panel(axes, panel)
-        for axes in every[len(panels) :]:
+        for axes in grid[len(panels) :]:
             axes.set_visible(False)
-        _legend(drawn, every, beside)
+        _legend(drawn, grid, beside)
     return path
 
 
@@ -92,10 +95,6 @@ def _rows(panel: Panel) -> list[list[Cell]]:
         for series in panel.series
         for x, y in zip(np.asarray(series.x, float).tolist(), np.asarray(series.y), strict=True)
     ]
-
-
-def _axes(drawn: Figure, down: int, across: int) -> list[Axes]:
-    return list(drawn.subplots(down, across, squeeze=False).flat)
 
 
 def _panel(axes: Axes, panel: Panel) -> None:
@@ -116,12 +115,12 @@ def _draw(axes: Axes, series: Series, colour: str) -> None:
         axes.plot(series.x, series.y, color=colour, linestyle=style, linewidth=1.4, label=series.label)
     elif series.look == "points":
         axes.plot(series.x, series.y, "o", color=colour, markersize=3.6, label=series.label)
-    else:  # wider than points, which show through where both agree
+    else:  # rings: wider than points, so that both are seen where they agree
         axes.plot(series.x, series.y, "o", color=colour, mfc="none", markersize=5.6, label=series.label)
 
 
 def _marks(axes: Axes, marks: Sequence[Mark]) -> None:
-    """Write each word on the left of its line, on the right where the mark before is near."""
+    """Draw the marks; a label stands left of its line, or right where the mark before is within `NEAR`."""
     for mark in marks:
         axes.axvline(mark.x, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
     low, high = axes.get_xlim()
@@ -142,14 +141,14 @@ def _word(axes: Axes, mark: Mark, side: Literal["left", "right"]) -> None:
         va="top",
         fontsize=7.0,
         color=QUIET,
-        zorder=1.5,  # under the curves: data come first
+        zorder=1.5,  # under the curves
     )
 
 
-def _legend(drawn: Figure, every: Sequence[Axes], beside: int) -> None:
-    """Write one legend under all panels, ``beside`` entries across."""
+def _legend(drawn: Figure, grid: Sequence[Axes], beside: int) -> None:
+    """Draw one legend under all panels with ``beside`` columns, none for a single series."""
     named: dict[str, Artist] = {}
-    for axes in every:
+    for axes in grid:
         for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
             named.setdefault(label, handle)
     if len(named) > 1:

@@ -1,4 +1,4 @@
-"""Where E_0 went, one bar a share."""
+"""Shares of E_0 of one run and of a study's runs, and the comparison of model and measurement."""
 
 from __future__ import annotations
 
@@ -22,7 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-UNSEEN = 1e-5  # of E_0
+UNSEEN = 1e-5
+"""Fraction of E_0 below which a bar is not drawn."""
+
+TITLE = {"wide": 9.5, "narrow": 7.5}
+"""Font size of a panel's title, points, at which the longest title fits."""
 
 
 def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") -> Path:
@@ -44,7 +48,7 @@ def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") 
     write_text(path.with_suffix(".csv"), Table.of(("account", "fraction_of_E_0"), rows).csv())
     with figure(path, shape, 0.9 + 0.27 * max(len(listed), 1)) as drawn:
         axes = drawn.add_subplot()
-        # a bar too thin to be seen is none: one below 0 would have its number on its name
+        # bars below UNSEEN are 0: the number beside a negative one would cover its name
         widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
         bars = axes.barh([share.label for share in listed], widths, height=0.68)
         for bar, share in zip(bars, listed, strict=True):
@@ -103,10 +107,6 @@ def _stack(axes: Axes, rows: Sequence[Outcome]) -> None:
         left += widths
 
 
-TITLE = {"wide": 9.5, "narrow": 7.5}
-"""Sizes of a panel's title, points, at which the longest stays over its panel."""
-
-
 def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide") -> Path:
     """Draw measured means with their 95 % intervals, and the model with its two-mesh band.
 
@@ -125,7 +125,7 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
     columns = min(4 if shape == "wide" else 2, max(len(quantities), 1))
     lines = math.ceil(max(len(quantities), 1) / columns)
     with figure(path, shape, 0.6 + lines * (0.75 + 0.24 * len(sets))) as drawn:
-        panels = _panels(drawn, lines, columns)
+        panels = list(drawn.subplots(lines, columns, sharey=True, squeeze=False).flat)
         for panel, quantity in zip(panels, quantities, strict=False):
             _panel(panel, [row for row in rows if row["quantity"] == quantity], sets, TITLE[shape])
         for panel in panels[len(quantities) :]:
@@ -136,10 +136,6 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
 
 def _distinct(rows: Sequence[Mapping[str, Any]], name: str) -> list[str]:
     return list(dict.fromkeys(row[name] for row in rows))
-
-
-def _panels(drawn: Figure, lines: int, columns: int) -> list[Axes]:
-    return list(drawn.subplots(lines, columns, sharey=True, squeeze=False).flat)
 
 
 def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size: float) -> None:

@@ -1,4 +1,4 @@
-"""One look for all figures: sizes, colours that colour-blind readers can tell apart, and saving."""
+"""Style of all figures: sizes, a palette safe for colour-blind readers, and saving."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ PALETTE = {
     "sand": "#F3CF8E",
     "night": "#1B3A57",
 }
-"""Okabe and Ito's colours and three fillers that keep their lightness apart."""
+"""Colours of Okabe and Ito, and three more of other lightness."""
 
 INK, QUIET = "#1f2328", "#6b7280"
 WIDTH = {"wide": 8.4, "narrow": 4.3}
@@ -62,7 +62,7 @@ _STYLE = {
 
 @contextmanager
 def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
-    """Lend an empty figure in the house style and save it to ``path`` at the end.
+    """Yield an empty figure in the style of the project; it is saved to ``path`` at the end.
 
     Raises
     ------
@@ -79,14 +79,14 @@ def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
 
 
 def new_figure(shape: Shape, height: float) -> Figure:
-    """Return an empty figure, ``height`` in inches, without any global plotting state."""
+    """Return an empty figure, ``height`` in inches, that is not registered with pyplot."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(WIDTH[shape], height), layout="constrained")
 
 
 def save(drawn: Figure, path: Path) -> None:
-    """Write the figure in one step, in the format of the suffix, the same bytes for the same data."""
+    """Write the figure atomically in the format of the suffix; equal data give equal bytes."""
     dated: dict[str, Any] = {"Date": None} if path.suffix in (".svg", ".pdf") else {}
     with atomic_path(path) as draft:
         drawn.savefig(draft, format=path.suffix.lstrip("."), dpi=150, metadata=dated)

@@ -1,4 +1,4 @@
-"""Numbers for JSON and for reading: what is not finite is said so, never written as a number."""
+"""Audit of the paper's tables: every printed number recomputed, as a plain document and as text."""
 
 from __future__ import annotations
 
@@ -22,6 +22,25 @@ from rigid.experiments import (
     set_ids,
 )
 
+Document = Mapping[str, Any]
+
+COEFFICIENTS = ("e", "mu", "e_m")
+SCATTER = (*COEFFICIENTS, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
+CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
+
+CONSTANT_COLUMNS = (
+    Column("set", left=True),
+    *(Column(name) for name in ("table", "d_c", "d_d", "mass", "k2")),
+    Column("other_d_c", "columns with another d_c", left=True),
+)
+
+APART_COLUMNS = (
+    *(Column(name, left=True) for name in ("set", "column", "row")),
+    Column("printed"),
+    Column("recomputed"),
+    Column("tolerance", "rounding", digits=2),
+)
+
 
 def finite(value: Any) -> float | None:
     """Return a float, or None where it is infinite or undefined."""
@@ -29,21 +48,16 @@ def finite(value: Any) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def statistic_entry(found: Statistic) -> dict[str, Any]:
+def statistic_entry(estimate: Statistic) -> dict[str, Any]:
     """Return mean, SD and 95 % interval of the mean by name."""
-    numbers = {name: finite(getattr(found, name)) for name in ("mean", "sd", "low", "high")}
-    return {**numbers, "tests": found.n}
+    numbers = {name: finite(getattr(estimate, name)) for name in ("mean", "sd", "low", "high")}
+    return {**numbers, "tests": estimate.n}
 
 
-def estimate_entry(found: Estimate) -> dict[str, Any]:
-    """Return value, standard uncertainty, 95 % interval and its sources by name."""
-    numbers = {name: finite(getattr(found, name)) for name in ("value", "sd", "low", "high")}
-    return {**numbers, "parts": {name: finite(part) for name, part in found.parts.items()}}
-
-
-COEFFICIENTS = ("e", "mu", "e_m")
-SCATTER = (*COEFFICIENTS, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
-CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
+def estimate_entry(estimate: Estimate) -> dict[str, Any]:
+    """Return value, standard uncertainty, 95 % interval and parts of the uncertainty by source."""
+    numbers = {name: finite(getattr(estimate, name)) for name in ("value", "sd", "low", "high")}
+    return {**numbers, "parts": {name: finite(part) for name, part in estimate.parts.items()}}
 
 
 def audit_document(set_id: str | None = None) -> dict[str, Any]:
@@ -103,21 +117,21 @@ def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:
 
 
 def _is_marker(r: AuditRecord) -> bool:
-    """Tell whether this is a tip velocity of a single test (they belong to a marker, not to the contact)."""
+    """Return whether this is a tip velocity of a single test, measured at a marker, not at the contact."""
     return r.column in ("V_cn", "V_ct") and r.row not in ("mean", "sd")
 
 
 def _columns(records: Sequence[AuditRecord]) -> Iterator[dict[str, Any]]:
-    for which, wanted in (("rows", False), ("mean and SD lines", True)):
-        kept = [r for r in records if (r.row in ("mean", "sd")) is wanted]
-        for name in dict.fromkeys(r.column for r in kept):
-            group = [r for r in kept if r.column == name]
+    for which, summarises in (("rows", False), ("mean and SD lines", True)):
+        lines = [r for r in records if (r.row in ("mean", "sd")) is summarises]
+        for name in dict.fromkeys(r.column for r in lines):
+            group = [r for r in lines if r.column == name]
             agree = sum(r.agrees for r in group)
             yield {"lines": which, "column": name, "numbers": len(group), "agree": agree}
 
 
 def _constants(s: MeasuredSet) -> dict[str, Any]:
-    """Give what a set's columns were worked out with."""
+    """Return the arms, mass and k2 with which a set's columns were computed."""
     return {
         "set": s.id,
         "table": s.table,
@@ -131,7 +145,7 @@ def _constants(s: MeasuredSet) -> dict[str, Any]:
 
 
 def _disagreements(records: Iterable[AuditRecord]) -> Iterator[dict[str, Any]]:
-    """Give what is apart: singly, but the marker's velocities as one entry a set and column."""
+    """Yield the disagreements; the markers' velocities as one entry a set and column."""
     apart = [r for r in records if not r.agrees]
     for r in apart:
         if not _is_marker(r):
@@ -159,14 +173,14 @@ def _entry(r: AuditRecord) -> dict[str, Any]:
 
 
 def _scatter(s: MeasuredSet) -> dict[str, Any]:
-    """Give scatter, error bar of e_m and correlations of one set."""
-    found = s.statistics()
+    """Return scatter, uncertainty of e_m and correlations of one set."""
+    statistics = s.statistics()
     arms: dict[str, Any] = {"d_c": float(s.arms.d_c), "d_d": float(s.arms.d_d), "k2": s.k2}
     rows = s.recomputed()
     pairs = correlations({name: rows[name] for name in COEFFICIENTS})
     return {
         "set": s.id,
-        **{name: statistic_entry(found[name]) for name in SCATTER},
+        **{name: statistic_entry(statistics[name]) for name in SCATTER},
         "e_m_of_mean": estimate_entry(first_order(s.motion, **arms)["e_m"]),
         "correlations": [
             {"pair": f"{a}, {b}", "r": c.r, "low": c.low, "high": c.high, "p": c.p}
@@ -175,11 +189,8 @@ def _scatter(s: MeasuredSet) -> dict[str, Any]:
     }
 
 
-Document = Mapping[str, Any]
-
-
 def audit_text(document: Document) -> str:
-    """Lay the document of `audit_document` out for reading."""
+    """Return the document of `audit_document` as text."""
     parts = (
         _summary_text(document),
         _columns_text(document),
@@ -204,17 +215,10 @@ def _summary_text(document: Document) -> Iterator[str]:
 
 def _columns_text(document: Document) -> Iterator[str]:
     for which in ("rows", "mean and SD lines"):
-        found = [c for c in document["columns"] if c["lines"] == which]
-        if found:
-            words = ", ".join(f"{c['column']} {c['agree']}/{c['numbers']}" for c in found)
-            yield from wrapped(f"{which}: {words}", "  ")
-
-
-CONSTANT_COLUMNS = (
-    Column("set", left=True),
-    *(Column(name) for name in ("table", "d_c", "d_d", "mass", "k2")),
-    Column("other_d_c", "columns with another d_c", left=True),
-)
+        columns = [c for c in document["columns"] if c["lines"] == which]
+        if columns:
+            counts = ", ".join(f"{c['column']} {c['agree']}/{c['numbers']}" for c in columns)
+            yield from wrapped(f"{which}: {counts}", "  ")
 
 
 def _constants_text(document: Document) -> Iterator[str]:
@@ -231,29 +235,18 @@ def _constants_row(c: Mapping[str, Any]) -> tuple[Cell, ...]:
     return (c["set"], c["table"], *arms, f"{c['mass_kg']:.4f}", f"{1e6 * c['k_squared_m2']:.1f}", other)
 
 
-APART_COLUMNS = (
-    *(Column(name, left=True) for name in ("set", "column", "row")),
-    Column("printed"),
-    Column("recomputed"),
-    Column("tolerance", "rounding", digits=2),
-)
-
-
 def _apart(document: Document) -> Iterator[str]:
     yield ""
     yield "Disagreements, by reason"
     apart = document["disagreements"]
     for why in dict.fromkeys(d["explanation"] for d in apart):
         yield from wrapped(f"- {why or 'no explanation is known'}")
-        of = [{**d, "row": _row(d["row"])} for d in apart if d["explanation"] == why]
-        rows = tuple(tuple(d[column.name] for column in APART_COLUMNS) for d in of)
+        group = [d for d in apart if d["explanation"] == why]
+        named = [{**d, "row": f"test {d['row']}" if d["row"].isdecimal() else d["row"]} for d in group]
+        rows = tuple(tuple(d[column.name] for column in APART_COLUMNS) for d in named)
         yield Table(APART_COLUMNS, rows).terminal(indent="    ")
     if not apart:
         yield "  none"
-
-
-def _row(row: str) -> str:
-    return f"test {row}" if row.isdecimal() else row
 
 
 def _scatter_text(document: Document) -> Iterator[str]:
@@ -275,17 +268,17 @@ def _scatter_row(s: Mapping[str, Any]) -> tuple[Cell, ...]:
 
 
 def _correlated(document: Document) -> Iterator[str]:
-    """Name the pairs of coefficients whose correlation leaves out zero."""
+    """Yield the pairs of coefficients whose 95 % interval of correlation excludes zero."""
     pairs = [(s["set"], c) for s in document["scatter"] for c in s["correlations"]]
     real = [f"{name}: {c['pair']} r = {c['r']:+.2f}" for name, c in pairs if c["low"] > 0 or c["high"] < 0]
     yield ""
-    words = (
+    sentence = (
         f"Correlations of e, mu, e_m beyond their 95 % interval: {'; '.join(real) or 'none'}. Chance "
         "alone would "
         f"give about {0.05 * len(pairs):.0f} of {len(pairs)}, and numbers worked out from the same "
         "velocities share errors."
     )
-    yield from wrapped(words, hang="")
+    yield from wrapped(sentence, hang="")
 
 
 def _spread(s: Mapping[str, Any]) -> str:

@@ -1,4 +1,4 @@
-"""What a figure of the paper comes with: its picture, its data, one sentence, and checked statements."""
+"""A figure of the paper: picture, data, one sentence, and checked statements."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A statement of the paper, in our words, and what the data say.
+    """A statement of the paper, in our words, and its check against the data.
 
     Attributes
     ----------
@@ -69,8 +69,7 @@ def write_data(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]
 
 @contextmanager
 def canvas(path: Path, height: float, sentence: str) -> Iterator[Figure]:
-    """Lend a wide figure that has the sentence above it, and save it at the end."""
+    """Yield a wide figure with the sentence above it; it is saved at the end."""
     with figure(path, "wide", height) as drawn:
-        words = textwrap.fill(sentence, 118)
-        drawn.suptitle(words, x=0.012, ha="left", fontsize=9.0, color=INK)
+        drawn.suptitle(textwrap.fill(sentence, 118), x=0.012, ha="left", fontsize=9.0, color=INK)
         yield drawn

@@ -1,4 +1,4 @@
-"""Figure 4: the coefficients of repeated tests against each other."""
+"""Figures 4 and 5: coefficients of repeated tests against each other; mu and mu_c against the angle."""
 
 from __future__ import annotations
 
@@ -32,6 +32,14 @@ NAMES = {"e": "restitution e", "mu": "impulse ratio μ", "e_m": "moment restitut
 COLUMNS_4 = ("test", "e", "mu", "e_m", "e_printed", "mu_printed", "e_m_printed")
 OTHER_ARM = 0.084
 """With this d_c (m) the printed e follow from the velocities; the caption says 0.083."""
+
+FRICTION = 0.57
+"""Sliding friction of steel on steel that the paper quotes (its footnote 2)."""
+
+CONTACT = 0.5e-3
+"""Error of the contact point, m."""
+
+COLUMNS_5 = ("alpha_deg", "mu_mean", "mu_low", "mu_high", "mu_c", "mu_c_low", "mu_c_high")
 
 Pairs = dict[tuple[str, str], Correlation]
 
@@ -80,8 +88,8 @@ def _panel(
     bars: dict[str, Any] = {"xerr": a.high - a.mean, "yerr": b.high - b.mean}
     axes.errorbar(a.mean, b.mean, **bars, color=PALETTE["vermilion"], lw=1.8, label="mean, 95 % interval")
     axes.set(xlabel=NAMES[x], ylabel=NAMES[y])
-    words = f"r = {r.r:+.2f}   (95 %: {r.low:+.2f} to {r.high:+.2f})"
-    axes.set_title(words, fontsize=8.2, weight="normal", color=INK)
+    title = f"r = {r.r:+.2f}   (95 %: {r.low:+.2f} to {r.high:+.2f})"
+    axes.set_title(title, fontsize=8.2, weight="normal", color=INK)
     axes.grid()
 
 
@@ -106,23 +114,14 @@ def _sentence_4(found: Pairs, printed: Pairs) -> str:
 def _with_the_other_arm() -> Correlation:
     """Correlate mu and e_m worked out with the d_c that reproduces the printed e."""
     s = measured_set("t2")
-    found = coefficients(**s.motion, d_c=OTHER_ARM, d_d=s.arms.d_d, k2=s.k2)
-    return correlation(found.mu, found.e_m)
+    ratios = coefficients(**s.motion, d_c=OTHER_ARM, d_d=s.arms.d_d, k2=s.k2)
+    return correlation(ratios.mu, ratios.e_m)
 
 
 def _statement(printed: Pairs) -> Statement:
-    words = ", ".join(f"{x}-{y} {c.r:+.2f} (p = {c.p:.2f})" for (x, y), c in printed.items())
+    values = ", ".join(f"{x}-{y} {c.r:+.2f} (p = {c.p:.2f})" for (x, y), c in printed.items())
     holds = not any(c.is_significant for c in printed.values())
-    return Statement("no significant correlation between the coefficients", words, holds)
-
-
-FRICTION = 0.57
-"""Sliding friction of steel on steel that the paper quotes (its footnote 2)."""
-
-CONTACT = 0.5e-3
-"""Error of the contact point, m."""
-
-COLUMNS_5 = ("alpha_deg", "mu_mean", "mu_low", "mu_high", "mu_c", "mu_c_low", "mu_c_high")
+    return Statement("no significant correlation between the coefficients", values, holds)
 
 
 def figure_5(out: Path) -> Drawn:
@@ -146,14 +145,14 @@ def figure_5(out: Path) -> Drawn:
 
 
 def _row(s: MeasuredSet, mu_c: float) -> list[float]:
-    """Give one line of the data."""
+    """Return one row of `COLUMNS_5`."""
     mu, e = s.statistics()["mu"], s.statistics()["e"]
     low, high = _critical_range(s, e.low, e.high)
     return [round(float(np.degrees(s.alpha)), 6), mu.mean, mu.low, mu.high, float(mu_c), low, high]
 
 
 def _critical_range(s: MeasuredSet, e_low: float, e_high: float) -> tuple[float, float]:
-    """Give the least and largest mu_c over the interval of e and the error of the contact point."""
+    """Return the least and largest mu_c over the interval of e and the error of the contact point."""
     mean = s.statistics()
     shift = CONTACT * np.array([-1.0, 1.0])
     given: dict[str, Any] = {"d_c": s.arms.d_c + shift, "d_d": (s.arms.d_d + shift)[:, None], "k2": s.k2}
@@ -176,8 +175,8 @@ def _curve(axes: Axes, k2: float) -> None:
 def _points(axes: Axes, table: Floats) -> None:
     alpha, mu, mu_low, mu_high, mu_c, c_low, c_high = table.T
     critical: dict[str, Any] = {"fmt": "s", "color": PALETTE["orange"], "markersize": 4.5, "capsize": 3}
-    words = r"critical ratio $\mu_c$: e within its 95 % interval, contact point ± 0.5 mm"
-    axes.errorbar(alpha, mu_c, yerr=(mu_c - c_low, c_high - mu_c), **critical, label=words)
+    label = r"critical ratio $\mu_c$: e within its 95 % interval, contact point ± 0.5 mm"
+    axes.errorbar(alpha, mu_c, yerr=(mu_c - c_low, c_high - mu_c), **critical, label=label)
     measured: dict[str, Any] = {"fmt": "o", "color": PALETTE["blue"], "markersize": 5, "capsize": 3}
     axes.errorbar(
         alpha, mu, yerr=(mu - mu_low, mu_high - mu), **measured, label="measured mean μ, 95 % interval"

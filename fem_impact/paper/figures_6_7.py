@@ -1,4 +1,4 @@
-"""Figure 6: the loss that each impulse ratio would bring, and where it stops being possible."""
+"""Figures 6 and 7: predicted loss against the impulse ratio and against the angle, beside measured losses."""
 
 from __future__ import annotations
 
@@ -37,6 +37,12 @@ COLUMNS_6 = (
     "mu_c",
 )
 
+DEGREES = np.linspace(17.0, 60.0, 173)
+LOOKS = {"total": ("blue", "o"), "E_lt": ("vermilion", "^"), "E_ln": ("green", "s")}
+LABELS = {"total": "total", "E_lt": "tangential $E_{lt}$", "E_ln": "normal $E_{ln}$"}
+ENDS = ("calculated", "low", "high")
+COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS for end in ENDS))
+
 
 def figure_6(out: Path) -> Drawn:
     """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
@@ -58,7 +64,7 @@ def figure_6(out: Path) -> Drawn:
 
 
 def _curve(s: MeasuredSet) -> dict[str, Any]:
-    """Give loss against mu of one set, with the band that the interval of its mean e leaves."""
+    """Return loss against mu of one set, with the band of the 95 % interval of its mean e."""
     mean = s.statistics()
     motion = mean["v_n"].mean, mean["v_t"].mean
     mass = 2.0 / (motion[0] ** 2 + motion[1] ** 2)  # so that losses come as fractions of E_0
@@ -78,7 +84,7 @@ def _rows(curve: dict[str, Any]) -> list[list[float]]:
 
 
 def _share_at_critical(curve: dict[str, Any]) -> float:
-    """Give the loss at mu_c over the largest at mu <= mu_c."""
+    """Return the loss at mu_c over the largest loss at mu <= mu_c."""
     below = MU <= curve["mu_c"]
     there = float(np.interp(curve["mu_c"], MU, curve["total"][0]))
     return there / max(there, float(curve["total"][0][below].max()))
@@ -99,7 +105,7 @@ def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> N
 
 
 def _furnish(axes: Axes) -> None:
-    """Name axes and marks."""
+    """Set axes, grid and legend."""
     axes.axhline(0.0, color=QUIET, linewidth=0.7)
     axes.set(
         xlabel="impulse ratio μ",
@@ -126,7 +132,7 @@ def _near_maximum(share: list[float]) -> Statement:
 
 
 def _gain(curves: list[dict[str, Any]]) -> Statement:
-    """Judge the paper's warning that ratios beyond the critical one can give an energy gain."""
+    """Check the paper's statement that ratios beyond the critical one can give an energy gain."""
     gains = [f"{c['alpha']:.0f}" for c in curves if (c["tangential"][c["mu_c"] < MU] < 0).any()]
     return Statement(
         "beyond the critical ratio a tangential gain of energy becomes possible",
@@ -136,7 +142,7 @@ def _gain(curves: list[dict[str, Any]]) -> Statement:
 
 
 def _surfaces() -> tuple[Statement]:
-    """Judge the rise of the loss with mu from fingermarked to freshly machined surfaces (Table 3)."""
+    """Check the rise of the loss with mu from fingermarked to freshly machined surfaces (Table 3)."""
     dirty, fresh = (measured_set(f"t3-{name}") for name in ("contaminated", "machined"))
     low, high = _loss_of(dirty, 0.32), _loss_of(fresh, 0.72)
     return (
@@ -149,18 +155,11 @@ def _surfaces() -> tuple[Statement]:
 
 
 def _loss_of(s: MeasuredSet, mu: float) -> float:
-    """Give the loss fraction at `mu` with the mean e and e_m of a set."""
+    """Return the loss fraction at `mu` with the mean e and e_m of a set."""
     mean = s.statistics()
     arms: dict[str, Any] = {"d_c": s.arms.d_c, "d_d": s.arms.d_d, "k2": s.k2}
     lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **arms)
     return float(lost.E_ln + lost.E_lt)
-
-
-DEGREES = np.linspace(17.0, 60.0, 173)
-LOOKS = {"total": ("blue", "o"), "E_lt": ("vermilion", "^"), "E_ln": ("green", "s")}
-WORDS = {"total": "total", "E_lt": "tangential $E_{lt}$", "E_ln": "normal $E_{ln}$"}
-ENDS = ("calculated", "low", "high")
-COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS for end in ENDS))
 
 
 def figure_7(out: Path) -> Drawn:
@@ -191,16 +190,16 @@ def figure_7(out: Path) -> Drawn:
 
 
 def _curves() -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Give the calculated losses and those of imagined repetitions."""
+    """Return the calculated losses (173,) and those of resampled tests (draws, 173) by name."""
     x = np.radians(DEGREES)
     best, many = loss_against_angle(x), drawn_losses(x)
     return tuple({"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln} for p in (best, many))  # type: ignore[return-value]
 
 
 def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
-    """Give the measured losses of one set; the total is what is not kept, so that it assumes no e_m."""
-    found = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
-    return {name: statistic(values) for name, values in found.items()}
+    """Return the measured losses of one set; the total is 1 - E_r/E_0, independent of e_m."""
+    losses = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
+    return {name: statistic(values) for name, values in losses.items()}
 
 
 def _band(many: Floats) -> Floats:
@@ -214,14 +213,14 @@ def _curve_rows(curves: dict[str, Floats], many: dict[str, Floats]) -> list[list
 
 def _measured_rows(measured: list[dict[str, Statistic]]) -> list[list[float | str]]:
     rows: list[list[float | str]] = []
-    for s, found in zip(angle_sets(), measured, strict=True):
-        ends = [x for name in LOOKS for x in (found[name].mean, found[name].low, found[name].high)]
+    for s, losses in zip(angle_sets(), measured, strict=True):
+        ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
         rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
     return rows
 
 
 def _peak(best: Floats, many: Floats) -> tuple[float, float, float]:
-    """Give the angle of the largest loss, with its 95 % interval, in degrees."""
+    """Return the angle of the largest loss with its 95 % interval, degrees."""
     low, high = np.percentile(DEGREES[many.argmax(axis=1)], [2.5, 97.5])
     return float(DEGREES[best.argmax()]), float(low), float(high)
 
@@ -229,12 +228,12 @@ def _peak(best: Floats, many: Floats) -> tuple[float, float, float]:
 def _draw_7(axes: Axes, name: str, curve: Floats, many: Floats, measured: list[Statistic]) -> None:
     colour, mark = PALETTE[LOOKS[name][0]], LOOKS[name][1]
     axes.fill_between(DEGREES, *_band(many), color=colour, alpha=0.18, lw=0)
-    axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{WORDS[name]} by Eq 23-25, 95 % band")
+    axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{LABELS[name]} by Eq 23-25, 95 % band")
     angles = [float(np.degrees(s.alpha)) for s in angle_sets()]
     means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
     axes.errorbar(
         angles, means, yerr=half, fmt=mark, color=colour, mec="black", mew=0.5, capsize=3,
-        label=f"{WORDS[name]}, measured mean, 95 %",
+        label=f"{LABELS[name]}, measured mean, 95 %",
     )  # fmt: skip
 
 
