@@ -1,4 +1,4 @@
-"""The picture around the views: title, colour bars, force curve; and the marker that moves on it."""
+"""The still picture around the views, title, colour bars and force curve, and the moving marker."""
 
 from __future__ import annotations
 
@@ -22,16 +22,22 @@ if TYPE_CHECKING:
 
 
 CLOCK, LETTER = 220, 11
-"""Pixels that clock and margins take of the first line, and that a letter of the title takes of it."""
+"""Widths of clock and margins, and of a letter of the title, px."""
+
+Curve = tuple[np.ndarray, np.ndarray]
+"""Times in s and normal contact forces in N."""
+
+Limits = tuple[float, float, float]
+"""The first and last time in s and the largest force in N that are drawn."""
 
 
 @dataclass(frozen=True, slots=True)
 class FilmBackground:
-    """Everything that stays the same over the film.
+    """The parts that are equal in all frames.
 
     Parameters
     ----------
-    layout : Layout
+    layout : FrameLayout
     base : Image
         The still picture that the views are pasted into.
     strip : Strip
@@ -45,7 +51,7 @@ class FilmBackground:
     def make(cls, layout: FrameLayout, motion: FilmData, title: str, curve: Curve) -> FilmBackground:
         """Draw the still parts once."""
         drawn = blank(layout)
-        _words(drawn, layout, motion, title)
+        _captions(drawn, layout, motion, title)
         for view, span in ((layout.rod, motion.far), (layout.close, motion.near)):
             colour_bar(drawn, layout, view, motion.field, span)
         limits = limits_of([curve], motion.fields.times)
@@ -66,20 +72,20 @@ class FilmBackground:
 
 
 def blank(frame: Frame) -> Figure:
-    """Return an empty figure of a frame's pixels."""
+    """Return an empty figure of the size of a frame."""
     from matplotlib.figure import Figure
 
     return Figure(figsize=(frame.width / 100, frame.height / 100), dpi=100, facecolor="white")
 
 
 def heading(drawn: Figure, frame: Frame, title: str) -> None:
-    """Write the title of the film, as much of it as fits beside the clock."""
+    """Write the title of the film, shortened to fit beside the clock."""
     place = (24 / frame.width, 1 - 27 / frame.height)
-    words = shorten(title, (frame.width - CLOCK) // LETTER, placeholder=" …")
-    drawn.text(*place, words, fontsize=14, weight="bold", color=INK, va="center")
+    shown = shorten(title, (frame.width - CLOCK) // LETTER, placeholder=" …")
+    drawn.text(*place, shown, fontsize=14, weight="bold", color=INK, va="center")
 
 
-def _words(drawn: Figure, layout: FrameLayout, motion: FilmData, title: str) -> None:
+def _captions(drawn: Figure, layout: FrameLayout, motion: FilmData, title: str) -> None:
     across, down = layout.width, layout.height
     heading(drawn, layout, title)
     fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
@@ -107,10 +113,10 @@ def colour_bar(drawn: Figure, frame: Frame, view: Rectangle, field: str, span: t
     below(drawn, frame, view, f"{shown.name},\n{shown.unit}", INK)
 
 
-def below(drawn: Figure, frame: Frame, view: Rectangle, words: str, colour: str) -> None:
-    """Write up to two lines under the left corner of a view, which is pasted over what rises above it."""
+def below(drawn: Figure, frame: Frame, view: Rectangle, text: str, colour: str) -> None:
+    """Write up to two lines under the left corner of a view."""
     place = (view.left / frame.width, 1 - (view.top + view.height + 6) / frame.height)
-    drawn.text(*place, words, fontsize=9, color=colour, va="top")
+    drawn.text(*place, text, fontsize=9, color=colour, va="top")
 
 
 def picture(drawn: Figure) -> Image:
@@ -123,7 +129,7 @@ def picture(drawn: Figure) -> Image:
 
 
 def write(pen: Any, place: tuple[int, int], text: str, size: int = 22) -> None:
-    """Write a word that changes from frame to frame; ``place`` is its upper right corner."""
+    """Write a text into a frame; ``place`` is its upper right corner, px."""
     pen.text(place, text, font=_font(size), fill=INK, anchor="ra")
 
 
@@ -140,16 +146,9 @@ def clock(pen: Any, frame: Frame, time: float) -> None:
     write(pen, (frame.width - 24, 15), f"t = {time * 1e6:.1f} µs")
 
 
-Curve = tuple[np.ndarray, np.ndarray]
-"""Times in s and normal contact forces in N."""
-
-Limits = tuple[float, float, float]
-"""The first and last time in s and the largest force in N that are drawn."""
-
-
 @dataclass(frozen=True, slots=True)
 class Strip:
-    """A curve as it was drawn.
+    """A drawn force curve.
 
     Parameters
     ----------
@@ -190,7 +189,7 @@ class Strip:
 
 
 def limits_of(curves: list[Curve], times: np.ndarray) -> Limits:
-    """Return limits that hold several curves over the times of a film."""
+    """Return limits that contain several curves over the times of a film."""
     first, last = float(times[0]), float(max(times[-1], times[0] + 1e-9))
     return first, last, max(1.0, *(float(force.max(initial=0.0)) for _, force in curves))
 

@@ -1,9 +1,13 @@
-"""Frames into a film: MP4 where its encoder is installed, else WebP or GIF, else a folder of PNG."""
+"""Film formats, and the check that off-screen drawing works.
+
+MP4 needs imageio-ffmpeg; the others are WebP, GIF and a folder of PNG files.
+"""
 
 from __future__ import annotations
 
 import functools
 import importlib.util
+import itertools
 import os
 import subprocess
 import sys
@@ -24,7 +28,13 @@ SUFFIXES = (".mp4", ".webp", ".gif", ".png")
 """Formats that can be asked for; ``.png`` makes a folder of numbered frames."""
 
 FAST = ["-preset", "veryfast"]
-"""Of the encoder: half the time of its default for files a twentieth larger."""
+"""Options of the MP4 encoder: half the time of its default for files 5 % larger."""
+
+WINDOW = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
+"""Environment that makes VTK draw off screen."""
+
+PACKAGES = ("libegl1", "libgl1-mesa-dri")
+"""Debian packages that off-screen drawing needs."""
 
 
 def best_suffix() -> str:
@@ -72,7 +82,7 @@ def _write_mp4(frames: Iterator[np.ndarray], path: Path, fps: int) -> None:
     writer = imageio_ffmpeg.write_frames(str(path), (width, height), fps=fps, **how)
     writer.send(None)
     try:
-        for frame in _chain(first, frames):
+        for frame in itertools.chain([first], frames):
             writer.send(np.ascontiguousarray(frame))
     finally:
         writer.close()
@@ -109,15 +119,6 @@ def _write_folder(frames: Iterable[np.ndarray], folder: Path) -> Path:
     return folder
 
 
-def _chain(first: np.ndarray, rest: Iterator[np.ndarray]) -> Iterator[np.ndarray]:
-    yield first
-    yield from rest
-
-
-WINDOW = {"VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow"}
-PACKAGES = ("libegl1", "libgl1-mesa-dri")
-"""Debian packages that off-screen drawing needs."""
-
 # VTK alone: with pyvista the trial takes three times as long
 _TRIAL = """
 import vtkmodules.vtkRenderingOpenGL2
@@ -143,17 +144,17 @@ raise SystemExit(0 if drawn.std() > 0 else 3)
 
 
 def require_gl() -> None:
-    """Return when a picture can be drawn off screen, and choose VTK's window for this process.
+    """Check that a picture can be drawn off screen, and set VTK's window for this process.
 
     Raises
     ------
     MissingLibraryError
         A trial picture in a child process failed; the message names the packages to install.
     """
-    found = _trial(tuple(sorted(WINDOW.items())))
-    if found:
+    fault = _trial(tuple(sorted(WINDOW.items())))
+    if fault:
         raise MissingLibraryError(
-            f"Off-screen drawing does not work here ({found}). Install the packages "
+            f"Off-screen drawing does not work here ({fault}). Install the packages "
             f"{' and '.join(PACKAGES)} (apt-get install {' '.join(PACKAGES)}) and render again; "
             "the computed result is kept."
         )
@@ -173,9 +174,7 @@ def _trial(window: tuple[tuple[str, str], ...]) -> str:
         )
     except (OSError, subprocess.TimeoutExpired) as error:
         return f"the trial picture could not be drawn: {error}"
-    return "" if done.returncode == 0 else _cause(done.returncode, done.stderr)
-
-
-def _cause(code: int, stderr: str) -> str:
-    last = stderr.strip().splitlines()[-1:] or ["no message"]
-    return f"the trial picture ended with code {code}: {last[0][:160]}"
+    if done.returncode == 0:
+        return ""
+    last = done.stderr.strip().splitlines()[-1:] or ["no message"]
+    return f"the trial picture ended with code {done.returncode}: {last[0][:160]}"

@@ -1,4 +1,4 @@
-"""From a result directory to a film."""
+"""Film of one run from its result directory."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class RenderResult:
     path : Path
         The film, or the folder of frames.
     notes : tuple of str
-        Sentences on what a viewer should know: another format than MP4, a missing curve.
+        Warnings: another format than MP4, a missing title or force curve.
     frames : int
         Number of frames.
     """
@@ -51,25 +51,21 @@ def render(
     result_dir : path
         Folder with fields.vtkhdf, and history.csv and outcome.json where they exist.
     out : path, optional
-        The film; its suffix chooses the format (.mp4, .webp, .gif, .png for a folder of frames).
-        Without it ``film`` in the result folder, in the best format available.
+        The film, .mp4, .webp, .gif, or .png for a folder; default ``film`` in the best format available.
     frames : int, optional
-        Draw this many frames, evenly chosen; all when None.
+        Number of frames, evenly chosen; all when None.
     field : "mises", "velocity" or "strain"
         The colours: von Mises stress, speed, or strain along the rod's axis.
     size : tuple of int, px
         Width and height, multiples of 16.
     fps : int, 1/s
-        Frames a second.
 
     Raises
     ------
     ResultError
         The folder holds no readable fields.
-    MissingLibraryError
-        Off-screen drawing or the asked encoder is missing; the result is kept.
-    OutputPathError
-        The film cannot be written.
+    MissingLibraryError, OutputPathError
+        Off-screen drawing or the encoder is missing; the film cannot be written.
     """
     folder = Path(result_dir)
     fields = read_fields(folder / "fields.vtkhdf")
@@ -82,15 +78,16 @@ def render(
     return RenderResult(made, (*notes, *missing), len(chosen))
 
 
-def _choose(held: int, wanted: int | None) -> Sequence[int]:
+def _choose(stored: int, wanted: int | None) -> Sequence[int]:
+    """Return the indices of ``wanted`` frames evenly over the ``stored`` ones; all when None."""
     if wanted is not None and wanted < 1:
         raise ResultError(f"frames = {wanted}: a film needs one frame at least.")
-    count = held if wanted is None else min(wanted, held)
-    return [int(number) for number in np.unique(np.linspace(0, max(held - 1, 0), count).round())]
+    count = stored if wanted is None else min(wanted, stored)
+    return [int(number) for number in np.unique(np.linspace(0, max(stored - 1, 0), count).round())]
 
 
 def require_libraries() -> None:
-    """Return when a film can be drawn here; raises MissingLibraryError."""
+    """Check that a film can be drawn here; raises MissingLibraryError."""
     try:
         import matplotlib  # noqa: F401
         import PIL  # noqa: F401
@@ -100,7 +97,7 @@ def require_libraries() -> None:
 
 
 def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Path, list[str]]:
-    """Return the film's place, and a sentence where it is of another format than MP4."""
+    """Return the film's path, and a note if it is of another format than MP4."""
     if out is not None:
         return Path(out), []
     suffix = best_suffix()
@@ -109,7 +106,7 @@ def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Pa
 
 
 def context(folder: Path, fields: FieldFile) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
-    """Return title, force curve, and a sentence on each of them that is missing."""
+    """Return title, force curve, and a note on each of them that is missing."""
     title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
     try:
         title = Outcome.read(folder / "outcome.json").provenance.scene_title

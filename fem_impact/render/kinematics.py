@@ -1,4 +1,4 @@
-"""Rigid motion of the rod in the plane (t, n) and its deformation magnified for the eye."""
+"""Rigid motion of the rod in the plane (t, n) and its deformation magnified for drawing."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def _jacobian(points: np.ndarray, cells: np.ndarray) -> np.ndarray:
 
 
 def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.ndarray) -> np.ndarray:
-    """Return ``(m,)``: length over first length, |F a|, of a fibre along ``axis`` a at the cell centres.
+    """Return the stretch |F a| ``(m,)`` of a fibre along ``axis`` a at the cell centres, F = dx/dX.
 
-    With F = dx/dX, whatever rigid motion there is.
+    It does not depend on the rigid motion.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def stretch(points: np.ndarray, moved: np.ndarray, cells: np.ndarray, axis: np.n
 
 
 def axis_of(points: np.ndarray) -> np.ndarray:
-    """Return the unit vector ``(3,)`` in the plane (t, n) along which a body's points reach farthest."""
+    """Return the unit vector ``(3,)`` in the plane (t, n) of the largest spread of the points."""
     arm = points[:, [0, 2]] - points[:, [0, 2]].mean(axis=0)
     t, n = np.linalg.svd(arm, full_matrices=False)[2][0]
     return np.array([t, 0.0, n])
@@ -59,7 +59,7 @@ def to_points(cells: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:
 
 
 def rigid_motion(points: np.ndarray, moved: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return ``(n, 3) m``: where the best rigid motion in the plane (t, n) takes the points.
+    """Return the points ``(n, 3) m`` moved by the best-fitting rigid motion in the plane (t, n).
 
     The rotation about b that minimises the weighted square distance to the moved half has the tangent
     ``sum w (X x x)_b / sum w X . x``, with X and x taken from the weighted centres.

@@ -1,4 +1,4 @@
-"""Where things stand on a frame, in pixels from the upper left corner."""
+"""Layout of a frame, in pixels from the upper left corner."""
 
 from __future__ import annotations
 

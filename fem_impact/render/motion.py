@@ -1,4 +1,4 @@
-"""What the film needs of each frame: positions and colours, with ranges fixed over the whole film."""
+"""Positions and colours of each frame, with magnification and ranges fixed over the whole film."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ FIELDS = {
 """The fields that can be shown."""
 
 _VISIBLE = 0.35
-"""Share of the rod's diameter that the largest deformation away from the tip is magnified to."""
+"""Magnified size of the largest deformation away from the tip, share of the rod's diameter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +40,7 @@ class FilmData:
 
     Parameters
     ----------
-    fields : Fields
+    fields : FieldFile
     field : str
         One of ``FIELDS``.
     rod_nodes : (n,) bool
@@ -150,13 +150,13 @@ def _colours(fields: FieldFile, field: str, frame: int) -> np.ndarray:
 
 
 def _strain(fields: FieldFile, frame: int) -> np.ndarray:
-    """Return the strain along the rod's axis ``(m,)``; nothing in the barrier."""
+    """Return the strain along the rod's axis ``(m,)``, zero in the barrier."""
     rod = fields.static.get("body", np.zeros(len(fields.cells))) == 0
-    cells, found = fields.cells[rod], np.zeros(len(rod))
+    cells, strain = fields.cells[rod], np.zeros(len(rod))
     moved = fields.points + fields.point_data("displacement", frame)
     axis = axis_of(fields.points[np.unique(cells)])
-    found[rod] = stretch(fields.points, moved, cells, axis) - 1.0
-    return found
+    strain[rod] = stretch(fields.points, moved, cells, axis) - 1.0
+    return strain
 
 
 def _ranges(

@@ -1,4 +1,4 @@
-"""Several rods side by side at one scale and one time: the waves in each, and its contact force below."""
+"""Film of several runs side by side at one scale and time, with the contact force of each."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def render_side_by_side(
 ) -> RenderResult:
     """Draw one film of several runs: one scale, one magnification, one colour range, one clock.
 
-    A rod whose run is over stays as it was last. Colours are the strain along the rod's axis.
+    A rod whose run has ended keeps its last frame. Colours are the strain along the rod's axis.
 
     Parameters
     ----------
@@ -68,15 +68,15 @@ def render_side_by_side(
         As `fem_impact.render.render`.
     """
     folders = [Path(result) for result in results]
-    held = [read_fields(folder / "fields.vtkhdf") for folder in folders]
-    motions = _alike([prepare(fields, "strain", range(len(fields.times))) for fields in held])
+    files = [read_fields(folder / "fields.vtkhdf") for folder in folders]
+    motions = _alike([prepare(fields, "strain", range(len(fields.times))) for fields in files])
     require_libraries()
     path, notes = target(folders[0], out, "film-side-by-side")
-    told = [context(folder, fields) for folder, fields in zip(folders, held, strict=True)]
-    times = np.linspace(0.0, max(float(fields.times[-1]) for fields in held), frames)
-    board = PairBackground.make(Abreast(*size, len(folders)), motions, [t[:2] for t in told], times)
+    contexts = [context(folder, fields) for folder, fields in zip(folders, files, strict=True)]
+    times = np.linspace(0.0, max(float(fields.times[-1]) for fields in files), frames)
+    board = PairBackground.make(Abreast(*size, len(folders)), motions, [c[:2] for c in contexts], times)
     made = encode(_frames(board, motions, times), path, fps)
-    missing = [sentence for *_, sentences in told for sentence in sentences]
+    missing = [sentence for *_, sentences in contexts for sentence in sentences]
     return RenderResult(made, (*notes, *missing), frames)
 
 
@@ -89,7 +89,7 @@ def _alike(motions: Sequence[FilmData]) -> list[FilmData]:
 
 @dataclass(frozen=True, slots=True)
 class PairBackground:
-    """What stays the same over the film.
+    """The parts that are equal in all frames.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class PairBackground:
         The still picture that the views are pasted into.
     strips : tuple of Strip
     ends : tuple of float
-        When each run is over, s.
+        End of each run, s.
     """
 
     layout: Abreast
@@ -111,20 +111,21 @@ class PairBackground:
         cls,
         layout: Abreast,
         motions: Sequence[FilmData],
-        told: Sequence[tuple[str, Curve]],
+        runs: Sequence[tuple[str, Curve]],
         times: np.ndarray,
     ) -> PairBackground:
-        """Draw the still parts once; ``told`` holds title and force curve of each run."""
+        """Draw the still parts once; ``runs`` holds title and force curve of each run."""
         drawn = blank(layout)
         heading(drawn, layout, TITLE)
-        limits = limits_of([curve for _, curve in told], times)
+        limits = limits_of([curve for _, curve in runs], times)
         strips = []
-        for (title, curve), view, place in zip(told, layout.views, layout.strips, strict=True):
+        for (title, curve), view, place in zip(runs, layout.views, layout.strips, strict=True):
             _title(drawn, layout, view, title)
             strips.append(Strip.draw(drawn, layout, place, curve, limits))
         middle = layout.views[len(layout.views) // 2]
         colour_bar(drawn, layout, middle, "strain", motions[0].far)
-        _scale(drawn, layout, motions[0].peak)
+        scale = f"one scale; deformation × {motions[0].peak:g},\nfading to × 1 at the contact"
+        below(drawn, layout, layout.views[0], scale, QUIET)
         ends = tuple(float(motion.fields.times[-1]) for motion in motions)
         return cls(layout, picture(drawn), tuple(strips), ends)
 
@@ -147,13 +148,8 @@ class PairBackground:
 
 def _title(drawn: Figure, layout: Abreast, view: Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
-    words = fill(title, view.width // 8, max_lines=2, placeholder=" …")
-    drawn.text(*place, words, fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
-
-
-def _scale(drawn: Figure, layout: Abreast, peak: float) -> None:
-    words = f"one scale; deformation × {peak:g},\nfading to × 1 at the contact"
-    below(drawn, layout, layout.views[0], words, QUIET)
+    lines = fill(title, view.width // 8, max_lines=2, placeholder=" …")
+    drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
 
 
 def _frames(board: PairBackground, motions: Sequence[FilmData], times: np.ndarray) -> Iterator[np.ndarray]:

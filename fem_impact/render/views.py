@@ -23,9 +23,9 @@ _MIRROR = np.array([1.0, -1.0, 1.0])
 
 
 class _View:
-    """A closed surface in an off-screen window; each frame moves its points and colours.
+    """A closed surface in an off-screen window; each frame sets its points and colours.
 
-    Its far side is never seen and not drawn, which takes a third off the time of a picture.
+    The faces on the far side are culled, which saves a third of the time of a picture.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class _View:
         }
 
     def close(self) -> None:
-        """Give the window back."""
+        """Close the window."""
         self.plotter.close()
 
     def _put(self, mesh: Any, points: np.ndarray, colours: np.ndarray) -> None:
