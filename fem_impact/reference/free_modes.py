@@ -7,7 +7,7 @@ rho A w^2 + rho I theta^2; kappa of a round section from Hutchinson (2001), doi:
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import cos, pi, sin, sqrt
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -16,6 +16,7 @@ from scipy.linalg import block_diag, eigh
 from fem_impact.arrays import Array
 
 RIGID = 2
+STATIC = 16  # polynomials of a beam under a force at its end, whose deflection is of order 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,15 +58,8 @@ def _legendre_tables(count: int, length: float) -> tuple[Array, Array, Array]:
     return np.asarray(values), np.asarray(slopes * 2 / length), np.asarray(weight * length / 2)
 
 
-def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BeamModes:
-    """Return the lowest elastic bending modes.
-
-    Examples
-    --------
-    >>> bending_modes(219e9, 0.29, 7850.0, 0.24, 9.5e-3).frequency[:3].round().tolist()
-    [1526.0, 4092.0, 7728.0]
-    """
-    n = 2 * count + 12
+def _ritz(E: float, nu: float, rho: float, length: float, radius: float, n: int) -> tuple[Array, Array]:
+    """Return the squares of all circular frequencies (2 n,) and shapes (2 n, 2 n) in ``n`` polynomials."""
     area, second, G = pi * radius**2, pi * radius**4 / 4, E / (2 * (1 + nu))
     P, D, weight = _legendre_tables(n, length)
     shear = np.concatenate([D, -P], axis=1)
@@ -75,8 +69,42 @@ def bending_modes(E: float, nu: float, rho: float, length: float, radius: float,
     single = P.T @ (weight[:, None] * P)
     M = rho * np.block([[area * single, 0 * single], [0 * single, second * single]])
     square, shape = eigh(K, M)
+    return square, shape
+
+
+def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BeamModes:
+    """Return the lowest elastic bending modes.
+
+    Examples
+    --------
+    >>> bending_modes(219e9, 0.29, 7850.0, 0.24, 9.5e-3).frequency[:3].round().tolist()
+    [1526.0, 4092.0, 7728.0]
+    """
+    n = 2 * count + 12
+    square, shape = _ritz(E, nu, rho, length, radius, n)
     chosen = slice(RIGID, RIGID + count)
     return BeamModes(np.sqrt(square[chosen]), shape[:n, chosen].T, shape[n:, chosen].T)
+
+
+def free_bar_flexibility(nu: float, length: float, angle: float, touch: tuple[float, float]) -> Array:
+    """Return the flexibility (2, 2) in n and t of a free bar under a force at ``touch``, E = radius = 1.
+
+    Its own inertia balances the force: bending by all polynomials that statics need, stretching in closed
+    form. ``touch`` is the distance from the axis and from the end, ``angle`` that of the axis to n.
+
+    Examples
+    --------
+    >>> round(float(free_bar_flexibility(0.29, 8.0, 0.0, (0.0, 0.0))[0, 0]) * 3 * pi / 8, 6)
+    1.0
+    """
+    square, shape = _ritz(1.0, nu, 1.0, length, 1.0, STATIC)
+    at = legendre.legvander(np.array([2 * touch[1] / length - 1]), STATIC - 1)[0]
+    w, theta = at @ shape[:STATIC, RIGID:], at @ shape[STATIC:, RIGID:]
+    x = touch[1] / length
+    stretch = length / pi * (1 / 3 - x + x**2)
+    axis, across = np.array([cos(angle), sin(angle)]), np.array([-sin(angle), cos(angle)])
+    bend = np.outer(axis, -touch[0] * theta) + np.outer(across, w)
+    return np.asarray((bend / square[RIGID:]) @ bend.T + stretch * np.outer(axis, axis))
 
 
 Terms = list[tuple[int, int]]

@@ -13,6 +13,7 @@ from fem_impact.arrays import Array
 
 # t_c = HALF_SPAN d / v with HALF_SPAN = 2 int_0^1 (1 - s^(5/2))^(-1/2) ds
 SPAN = 0.8 * float(beta(0.4, 0.5))
+DIRECTIONS = 2000
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,20 +31,39 @@ def contact_modulus(E: float, nu: float, E_2: float = float("inf"), nu_2: float 
     return 1 / ((1 - nu**2) / E + (1 - nu_2**2) / E_2)
 
 
-def equivalent_radius(R_1: float, R_2: float) -> float:
-    """Return the radius, m, of the sphere as stiff as a surface of principal radii R_1 and R_2.
+@dataclass(frozen=True, slots=True)
+class Ellipse:
+    """Contact of principal radii R_1 < R_2 (Johnson, Contact Mechanics, 1985, Eq 4.26 to 4.28).
 
-    The approach of an elliptical contact is that of the mean radius sqrt(R_1 R_2) times F_2 (Johnson, Contact
-    Mechanics, 1985, Eq 4.26 to 4.28), so the force at an approach is that of a radius larger by F_2^-3.
+    Attributes
+    ----------
+    mean : sqrt(R_1 R_2), m; axes : half-axis along R_2 over that along R_1
+    F_1, F_2 : of sqrt(a b) and of the approach over those of a sphere of the mean radius
+    """
+
+    mean: float
+    axes: float
+    F_1: float
+    F_2: float
+
+    def half_axes(self, touch: float) -> tuple[float, float]:
+        """Return those along R_1 and R_2, m, where the equivalent sphere has the contact radius ``touch``."""
+        both = self.F_1 * self.F_2 * touch
+        return both / sqrt(self.axes), both * sqrt(self.axes)
+
+
+def contact_ellipse(R_1: float, R_2: float) -> Ellipse:
+    """Return the contact of a surface of principal radii R_1 <= R_2, m, with a plane.
 
     Examples
     --------
-    >>> round(equivalent_radius(6.0, 6.0), 4), round(equivalent_radius(3.0, 12.2) / (3.0 * 12.2) ** 0.5, 3)
-    (6.0, 1.083)
+    >>> a, b = contact_ellipse(3.0, 12.2).half_axes(1.0)
+    >>> round(a, 2), round(b, 2)
+    (0.6, 1.51)
     """
-    mean, ratio = sqrt(R_1 * R_2), max(R_1, R_2) / min(R_1, R_2)
+    mean, ratio = sqrt(R_1 * R_2), R_2 / R_1
     if ratio < 1 + 1e-6:
-        return mean
+        return Ellipse(mean, 1.0, 1.0, 1.0)
 
     def parts(axes: float) -> tuple[float, float, float]:
         m = 1 - axes**-2
@@ -52,8 +72,42 @@ def equivalent_radius(R_1: float, R_2: float) -> float:
     axes = float(brentq(lambda a: parts(a)[0] / parts(a)[1] - ratio, 1 + 1e-9, 2 * ratio))
     over, under, m = parts(axes)
     F_1 = (4 / (pi * m) * axes**-1.5 * sqrt(over * under)) ** (1 / 3)
-    F_2 = 2 / pi * axes**-0.5 / F_1 * float(ellipk(m))
-    return float(mean * F_2**-3)
+    return Ellipse(mean, axes, F_1, 2 / pi * axes**-0.5 / F_1 * float(ellipk(m)))
+
+
+def equivalent_radius(R_1: float, R_2: float) -> float:
+    """Return the radius, m, of the sphere as stiff as a surface of principal radii R_1 and R_2.
+
+    The approach of an elliptical contact is that of the mean radius times F_2, so the force at an approach
+    is that of a radius larger by F_2^-3.
+
+    Examples
+    --------
+    >>> round(equivalent_radius(6.0, 6.0), 4), round(equivalent_radius(3.0, 12.2) / (3.0 * 12.2) ** 0.5, 3)
+    (6.0, 1.083)
+    """
+    contact = contact_ellipse(min(R_1, R_2), max(R_1, R_2))
+    return float(contact.mean * contact.F_2**-3)
+
+
+def patch_compliance(nu: float, along: float, across: float) -> tuple[float, float]:
+    """Return C_n and C_t of a half-space under Hertz' pressure on an ellipse, E = 1, t along the first axis.
+
+    The mean displacement under the pressure over its force, as an integral of the kernels of Boussinesq and
+    Cerruti over the directions of the wave number; on a circle 3 (1 - nu^2) / (5 a) and
+    3 (2 - nu) (1 + nu) / (10 a) (Johnson, sections 3.4, 3.6).
+
+    Examples
+    --------
+    >>> [round(C, 4) for C in patch_compliance(0.3, 1.0, 1.0)]
+    [0.546, 0.663]
+    """
+    phi = np.arange(DIRECTIONS) * 2 * pi / DIRECTIONS
+    t, b = np.cos(phi) / along, np.sin(phi) / across
+    k = np.hypot(t, b)
+    scale = 3 / (10 * along * across) * 2 * (1 + nu)
+    normal, shear = (1 - nu) / k, (1 - nu * (t / k) ** 2) / k
+    return float(scale * normal.mean()), float(scale * shear.mean())
 
 
 def hertz(E_star: float, radius: float, mass: float, speed: float) -> HertzImpact:
@@ -87,9 +141,19 @@ SPRINGS = 100
 MEAN_PRESSURE = 0.6716  # over the largest: 3/4 weighted by itself over the contact, 0.896 over the impulse
 
 
-def tangential_ratio(nu: float) -> float:
-    """Return G* / E* of two bodies with the same elastic constants."""
-    return 2 * (1 - nu) / (2 - nu)
+def tangential_ratio(nu: float, axes: float = 1.0) -> float:
+    """Return G* / E* of two bodies with the same elastic constants, along the first axis of an ellipse.
+
+    ``axes`` is the second half-axis over the first. Stick and slip areas of an ellipse are ellipses of its
+    shape (Vermeulen & Johnson 1964, doi:10.1115/1.3629610), so that one ratio holds throughout.
+
+    Examples
+    --------
+    >>> round(tangential_ratio(0.3), 4) == round(2 * 0.7 / 1.7, 4), round(tangential_ratio(0.3, 2.6), 3)
+    (True, 0.858)
+    """
+    normal, shear = patch_compliance(nu, 1.0, axes)
+    return normal / shear
 
 
 def sliding_ratio(f: float, nu: float, G: float, pressure: float) -> float:
@@ -108,6 +172,24 @@ def sliding_ratio(f: float, nu: float, G: float, pressure: float) -> float:
     return (f - lean) / (1 + f * lean)
 
 
+def row_lean(E_star: float, nu: float, G: float, radius: float, ellipse: Ellipse) -> float:
+    """Return the slope of a sliding interface over f times the radius of the equivalent round contact, 1/m.
+
+    As in `sliding_ratio`, at each moment; on an ellipse the waves of the traction that run along t, which
+    alone lean, have the share b / (a + b) in place of a half, and the largest pressure is 3 F / (2 pi a b).
+
+    Examples
+    --------
+    >>> E_star, touch = 1.2e11, 0.1  # of the radius: a largest pressure of 7.6 GPa
+    >>> slope = 0.896 * 0.5 * touch * row_lean(E_star, 0.29, 85e9, 1.0, Ellipse(1.0, 1.0, 1.0, 1.0))
+    >>> round((0.5 - slope) / (1 + 0.5 * slope), 4) == round(sliding_ratio(0.5, 0.29, 85e9, 7.64e9), 4)
+    True
+    """
+    share = ellipse.axes / (1 + ellipse.axes)
+    largest = 2 * E_star / (pi * radius * (ellipse.F_1 * ellipse.F_2) ** 2)
+    return 0.75 * (1 - 2 * nu) / (2 * G) * share * largest
+
+
 @dataclass(slots=True)
 class SpringRow:
     """Normal and tangential force of one contact, moved in small increments.
@@ -116,6 +198,7 @@ class SpringRow:
     ----------
     E_star, G_star : Pa; radius : m; friction : Coulomb's coefficient
     reach : largest contact radius to come, m
+    lean : slope of the interface over friction times contact radius, 1/m (`sliding_ratio`, `row_lean`)
     """
 
     E_star: float
@@ -123,6 +206,7 @@ class SpringRow:
     radius: float
     friction: float
     reach: float
+    lean: float = 0.0
     profile: Array = field(init=False)
     width: Array = field(init=False)
     shift: Array = field(init=False)
@@ -139,11 +223,26 @@ class SpringRow:
         """Return the normal force, N, at an approach, m: Hertz', by the springs that also carry friction."""
         return float(self.E_star * (self.width @ np.maximum(depth - self.profile, 0.0)))
 
+    def stiffness(self, depth: float) -> float:
+        """Return the slope of the normal force, N/m."""
+        return float(self.E_star * self.width[self.profile < depth].sum())
+
+    def grip(self, depth: float) -> float:
+        """Return the slope of the tangential force, N/m: that of the springs that stick."""
+        sticks = abs(self.shift) < self._limit(depth)
+        return float(self.G_star * self.width[sticks].sum())
+
     def slide(self, depth: float, step: float) -> float:
         """Move the contact tangentially by ``step``, m; return the force against it, N."""
-        limit = self.friction * self.E_star / self.G_star * np.maximum(depth - self.profile, 0.0)
+        limit = self._limit(depth)
         self.shift = np.clip(self.shift + step, -limit, limit)
         return float(self.G_star * (self.width @ self.shift))
+
+    def _limit(self, depth: float) -> Array:
+        """Return how far each spring can be shifted before it slides, m."""
+        lean = self.lean * self.friction * sqrt(self.radius * max(depth, 0.0))
+        ratio = (self.friction - lean) / (1 + self.friction * lean)
+        return ratio * self.E_star / self.G_star * np.maximum(depth - self.profile, 0.0)
 
 
 # mean pressure of a fully plastic contact over yield stress, the E* a / (Y R) from which it has stopped

@@ -117,10 +117,11 @@ def rayleigh_speed(nu: float) -> float:
 
 
 @cache
-def _lamb(nu: float) -> float:
-    """Return 2 pi G c_s D: the imaginary part of Lamb's integral, wave number of shear waves 1.
+def _lamb(nu: float, shear: bool) -> float:
+    """Return the imaginary part of Lamb's integral, wave number of shear waves 1.
 
-    Its kernel k a / ((2 k^2 - 1)^2 - 4 k^2 a b), a^2 = k^2 - q, b^2 = k^2 - 1, q = (c_s / c_d)^2, is complex
+    With a^2 = k^2 - q, b^2 = k^2 - 1, q = (c_s / c_d)^2 and R = (2 k^2 - 1)^2 - 4 k^2 a b the kernel is
+    k a / R for a normal force and k b / R for one along the surface (in the plane of a wave). It is complex
     up to k = 1 (body waves) and has Rayleigh's pole beyond.
     """
     q = (1 - 2 * nu) / (2 - 2 * nu)
@@ -128,11 +129,12 @@ def _lamb(nu: float) -> float:
 
     def both(k: float) -> float:
         a, b = sqrt(max(q - k * k, 0.0)), sqrt(1 - k * k)
-        return k * a / ((2 * k * k - 1) ** 2 + 4 * k * k * a * b)
+        return k * (b if shear else a) / ((2 * k * k - 1) ** 2 + 4 * k * k * a * b)
 
-    def shear(k: float) -> float:
-        a, b = sqrt(max(k * k - q, 0.0)), sqrt(max(1 - k * k, 0.0))
-        return 4 * k**3 * a * a * b / ((2 * k * k - 1) ** 4 + (4 * k * k * a * b) ** 2)
+    def one(k: float) -> float:
+        a, b, even = sqrt(max(k * k - q, 0.0)), sqrt(max(1 - k * k, 0.0)), (2 * k * k - 1) ** 2
+        cross = 4 * k * k * a * b
+        return k * (b * even if shear else a * cross) / (even**2 + cross**2)
 
     def rayleigh(k: float) -> float:
         return (2 * k * k - 1) ** 2 - 4 * k * k * sqrt((k * k - q) * (k * k - 1))
@@ -140,12 +142,12 @@ def _lamb(nu: float) -> float:
     pole = brentq(rayleigh, 1 + 1e-9, 2.0, xtol=1e-15)
     step = 1e-6
     slope = (rayleigh(pole + step) - rayleigh(pole - step)) / (2 * step)
-    waves = -pi * pole * sqrt(pole**2 - q) / slope
-    return float(quad(both, 0, p)[0] + quad(shear, p, 1)[0] + waves)
+    waves = -pi * pole * sqrt(pole**2 - (1 if shear else q)) / slope
+    return float(quad(both, 0, p)[0] + quad(one, p, 1)[0] + waves)
 
 
 def radiation_resistance(E: float, nu: float, rho: float) -> float:
-    """Return D, W s^2/N^2: radiated power over the square of the rate of the force.
+    """Return D, W s^2/N^2, of a normal force: radiated power over the square of the force's rate.
 
     Examples
     --------
@@ -153,7 +155,22 @@ def radiation_resistance(E: float, nu: float, rho: float) -> float:
     '5.316e-16'
     """
     G = E / (2 * (1 + nu))
-    return _lamb(nu) / (2 * pi * G * sqrt(G / rho))
+    return _lamb(nu, False) / (2 * pi * G * sqrt(G / rho))
+
+
+def shear_resistance(E: float, nu: float, rho: float) -> float:
+    """Return D, W s^2/N^2, of a force along the surface.
+
+    Half of the directions of a wave number see its plane, half the waves across it, whose kernel k / b has
+    the imaginary part 1.
+
+    Examples
+    --------
+    >>> round(shear_resistance(210e9, 0.29, 7850.0) / radiation_resistance(210e9, 0.29, 7850.0), 3)
+    0.904
+    """
+    G = E / (2 * (1 + nu))
+    return (_lamb(nu, True) + 1) / (4 * pi * G * sqrt(G / rho))
 
 
 def radiated_energy(impact: HertzImpact, E: float, nu: float, rho: float) -> float:

@@ -1,29 +1,32 @@
 """``oblique-rod``: an elastic rod with a rounded edge striking obliquely, beside modes and Hertz.
 
-The reference takes the contact point of the rounded edge, where the rod of the run touches. The printed
-restitutions hold for the sharp corner of a plain cylinder (Eq 6-7) with the rounded edge's Hertz contact,
-0.9 mm farther out; that reading is shown beside it. Without friction the two agree; with friction its longer
-arm counts, and the difference vanishes with the radius of the edge. e of the 0.24 m rod at 45 degrees:
+The reference (`reference.oblique`) takes bending and stretching modes of the beam of the rod's volume, the
+static flexibility of the rounded edge that they leave out (`reference.rod_edge`), Hertz' elliptical contact
+with friction and local slip on an interface that leans, waves into the barrier, and the rod's turning. What
+each matters, in e of 0.24 m rods (37 degrees: 2.1 m/s straight down) and in the bending of an 0.08 m rod:
 
-====  =======  ===========  ============  ======
-f     printed  corner       rounded edge  solver
-====  =======  ===========  ============  ======
-0     0.853    0.855        0.851
-0.34  0.396    0.392        0.379         0.363
-0.55  0.733    0.734        0.692         0.668
-====  =======  ===========  ============  ======
+============================  ==========  =============  ================
+reference                     37, f = 0   37, f = 0.57   0.08 m, f = 0
+============================  ==========  =============  ================
+beam as long as the rod       0.379       1.074          0.0155
+beam of the rod's volume      0.431       1.073          0.0155
+and the edge's static give    0.434       1.034          0.0176
+and an interface that leans   0.434       1.025          0.0176
+and waves into the barrier    0.436       1.022          0.0175
+solver, cells of 0.15 mm      0.431       1.025          0.0171
+============================  ==========  =============  ================
 
-No rod has both: a sharp edge of its own, with cells of 0.5 mm on the block, has a softer contact that lasts
-twice as long (304 and 362 us in place of 165 and 179 at f = 0.34 and 0.55), and e of 0.590 and 0.769.
+What errors of the mesh (`discretisation`) make of the reference is the allowed difference.
 
-On a block the interface leans under friction (`sliding_ratio`), mu is 0.545 for f = 0.55: 0.007 of the last
-difference.
+The printed restitutions (the tests hold the reference to them) are those of the fixed arms of a plain
+cylinder's corner (Eq 6-7) with the rounded edge's Hertz contact. No rod has both: a sharp edge of its own,
+with cells of 0.5 mm on the block, has a softer contact that lasts twice as long (304 and 362 us in place of
+165 and 179 at f = 0.34 and 0.55), and e of 0.590 and 0.769.
 """
 
 from __future__ import annotations
 
-from dataclasses import replace
-from math import inf, pi, sin, sqrt
+from math import pi, sqrt
 
 import numpy as np
 
@@ -31,34 +34,21 @@ import rigid
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import plan
-from fem_impact.reference.hertz import SpringRow, contact_modulus, equivalent_radius, hertz, tangential_ratio
-from fem_impact.reference.oblique import ObliqueRebound, oblique_drop, oblique_rod
+from fem_impact.reference.oblique import ObliqueRebound
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
 from fem_impact.verify import setups as steel
-from fem_impact.verify.problem import Check, Problem, Solved, Values
+from fem_impact.verify.problem import Check, Problem, Solved, Values, within
+from fem_impact.verify.rod_drop import Change, RodDrop
 from fem_impact.verify.setups import rod_scene
-from rigid import Projectile
 
-E_TOLERANCE, BENDING_RELATIVE, BENDING_ABSOLUTE = 0.04, 0.15, 1e-3
-CORNER = "a plain cylinder that touches with its corner, as the printed ones do"
+LEDGER = 1e-4  # of E_0
+COUPLED = "sticking on a rigid plane: pressing shifts the rod's skin sideways, which the reference leaves out"
+UNSURE = "the reference itself counts {} within the errors of the mesh"
 SLENDER = (2.5, 100.0)  # length over diameter: a stubbier rod is no beam
+SLIDING = 0.999  # of Coulomb's ratio
 FAINT = 1e-3  # of the impulse: a touch below it is no contact
-
-
-def _reference(p: Values, edge: Projectile, rod: Projectile) -> ObliqueRebound:
-    """Return the drop of ``rod``, which touches with the curvatures of ``edge``."""
-    R, (rho, z) = p["diameter"] / 2, map(float, rod.contact_point(p["angle"]))
-    d_c, d_d = map(float, rod.arms(p["angle"]))
-    size = (p["E"], p["nu"], p["rho"], p["length"], R, p["angle"])
-    modal = oblique_rod(*size, (rod.mass, rod.k2), (d_c, d_d), (rho, z))
-    E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["elastic_barrier"] else inf, p["nu"])
-    around = float(edge.contact_point(p["angle"])[0]) / sin(p["angle"])
-    tip = equivalent_radius(p["tip_radius"], around)
-    reach = 1.1 * hertz(E_star, tip, rod.mass, p["v_n"]).radius
-    row = SpringRow(E_star, tangential_ratio(p["nu"]) * E_star, tip, p["f"], reach)
-    return oblique_drop(modal, row, -p["v_n"], -p["v_t"], p["max_time"])
 
 
 def bending_energy(result: SolidResult) -> float:
@@ -72,24 +62,60 @@ def bending_energy(result: SolidResult) -> float:
     return float(result.flight.energies[across > along].sum())
 
 
-def _checks(result: SolidResult, exact: ObliqueRebound, corner: ObliqueRebound) -> tuple[Check, ...]:
-    impact, rod = result.plan.scene.impact, projectile(result.plan.scene)
-    d_c = rod.arms(impact.angle)[0]
-    e = float(rigid.restitution(impact.v_n, result.motion.V_n, result.motion.Omega, d_c, impact.omega))
+def _values(after: ObliqueRebound) -> tuple[float, float, float]:
+    """Return restitution, impulse ratio and bending energy over E_0."""
+    return after.restitution, after.ratio, after.bending / after.E_0
+
+
+def _contacts(result: SolidResult, exact: ObliqueRebound, around: list[ObliqueRebound]) -> Check:
+    """Compare the number of contacts; one that errors of the mesh change in the reference is only shown."""
     intervals = result.model.book.intervals
     total = sum(i.impulse_n for i in intervals)
     contacts = sum(i.impulse_n > FAINT * total for i in intervals)
-    bending = exact.bending / exact.E_0
-    allowed = max(BENDING_RELATIVE * bending, BENDING_ABSOLUTE)
-    mu = (result.motion.V_t - impact.v_t) / (result.motion.V_n - impact.v_n)
+    counts = sorted({len(each.contacts) for each in (exact, *around)})
+    if len(counts) == 1:
+        return Check("contacts", "1", contacts, counts[0], 0.0, "absolute")
+    note = UNSURE.format(" or ".join(map(str, counts)))
+    return Check.shown("contacts", "1", contacts, len(exact.contacts), note)
+
+
+def _checks(result: SolidResult, drop: RodDrop) -> tuple[Check, ...]:
+    """Compare with the reference; the allowed is the sum of what errors of the mesh make of it."""
+    impact, motion = result.plan.scene.impact, result.motion
+    d_c = drop.rod.arms(impact.angle)[0]
+    e = float(rigid.restitution(impact.v_n, motion.V_n, motion.Omega, d_c, impact.omega))
+    mu = (motion.V_t - impact.v_t) / (motion.V_n - impact.v_n)
+    exact = drop.rebound(Change())
+    around = [drop.rebound(change) for change in drop.errors(result.model.geometry.tip_size)]
+    values = _values(exact)
+    spread = [sum(abs(v - x) for v in each) for x, *each in zip(values, *map(_values, around), strict=True)]
+    names = ("restitution e", "impulse ratio mu", "bending energy / E_0")
+    computed = (e, mu, bending_energy(result) / result.E_0)
+    sticks = not drop.p["elastic_barrier"] and exact.ratio < SLIDING * drop.p["f"]
     return (
-        Check("restitution e", "1", e, exact.restitution, E_TOLERANCE, "absolute"),
-        Check.shown("restitution e, sharp corner", "1", e, corner.restitution, CORNER),
-        Check("contacts", "1", contacts, len(exact.contacts), 0.0, "absolute"),
-        Check("bending energy / E_0", "1", bending_energy(result) / result.E_0, bending, allowed, "absolute"),
-        Check("impulse ratio mu", "1", mu, exact.ratio, E_TOLERANCE, "absolute"),
-        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-4, "at most"),
+        *(
+            Check.shown(name, "1", value, wanted, COUPLED)
+            if sticks
+            else Check(name, "1", value, wanted, LEDGER + allowed, "absolute")
+            for name, value, wanted, allowed in zip(names, computed, values, spread, strict=True)
+        ),
+        _contacts(result, exact, around),
+        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, LEDGER, "at most"),
     )
+
+
+def _allow(p: Values, drop: RodDrop) -> None:
+    """Refuse a contact wider than the rounded edge or narrower than a cell."""
+    half = drop.ellipse.half_axes(drop.touch())[0]
+    arc = p["tip_radius"] * min(p["angle"], pi / 2 - p["angle"])
+    if half > arc:
+        raise SceneError(
+            f"the contact would reach {half * 1e3:.2g} mm to either side, over the end of the rounded edge.",
+            key="v_n",
+            value=p["v_n"],
+            remedy="Take a lower speed, a larger tip_radius or an angle nearer to 45 degrees.",
+        )
+    within(p, "tip_size", 0.0, half, "m", "the contact is as narrow on either side of its middle.")
 
 
 def solve(p: Values) -> Solved:
@@ -98,21 +124,22 @@ def solve(p: Values) -> Solved:
     Raises
     ------
     SceneError
-        If the rod is too short for the beams of the reference, or ``max_time`` ends within a contact.
+        If the rod is too short for beams, the contact larger than the rounded edge or smaller than a cell, or
+        ``max_time`` ends within a contact.
     """
     steel.slender(p, "diameter", *SLENDER)
     barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
     effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
+    drop = RodDrop(p, projectile(scene))
+    _allow(p, drop)
     result = run_solid(plan(scene))
     if result.model.book.touching:
         remedy = "Give a longer time."
         raise SceneError("ends in mid contact.", key="max_time", value=f"{p['max_time']:g} s", remedy=remedy)
     geometry = result.model.geometry
     elements = len(geometry.rod.mesh.cells) + (len(geometry.barrier.cells) if geometry.barrier else 0)
-    edge = projectile(scene)
-    exact, corner = (_reference(p, edge, rod) for rod in (edge, replace(edge, tip="plain", tip_radius=0.0)))
-    return Solved(_checks(result, exact, corner), result.steps, elements)
+    return Solved(_checks(result, drop), result.steps, elements)
 
 
 PARAMETERS = (

@@ -41,11 +41,16 @@ KEPT = {0.24: (17, 9), 0.08: (5, 3)}  # modes below the section's own frequency,
 
 
 def beam_of(scene):
-    """Return the same rod by Timoshenko's and Love's theory, with the modes that the reduced model keeps."""
+    """Return the same rod by Timoshenko's and Love's theory, with the modes that the reduced model keeps.
+
+    The beam ends where a flat end gives the rod its volume.
+    """
     body, alpha = projectile(scene), scene.impact.angle
-    touch, arms = (tuple(map(float, found(alpha))) for found in (body.contact_point, body.arms))
-    mass, modes = (body.mass, body.k2), KEPT[body.length]
-    return oblique_rod(219e9, 0.29, 7850.0, body.length, 9.5e-3, alpha, mass, arms, touch, modes)
+    (rho, z), arms = (tuple(map(float, found(alpha))) for found in (body.contact_point, body.arms))
+    mass, modes, length = (body.mass, body.k2), KEPT[body.length], body.mass / (7850.0 * pi * 9.5e-3**2)
+    touch = rho, z - (body.length - length)
+    flat = oblique_rod(219e9, 0.29, 7850.0, length, 9.5e-3, alpha, mass, arms, touch, modes)
+    return replace(flat, edge=scene.projectile.tip_radius)
 
 
 def reference(scene):
@@ -72,17 +77,17 @@ DROPS = [
 
 @pytest.mark.parametrize(("length", "speed", "f", "e", "contacts"), DROPS)
 def test_oblique_drops(length, speed, f, e, contacts):
-    """Printed e to .052 (the reference itself is .04 off at f = .55); the reference's much closer."""
+    """Printed e, whose contact is a fixed sharp corner, to .052; the reference's to .001."""
     scene = rod(length, speed, f)
     found, beam = solve(planned(scene)), reference(scene)
     assert restitution(scene, found) == pytest.approx(e, abs=0.052)
-    assert restitution(scene, found) == pytest.approx(beam.restitution, abs=0.012)
+    assert restitution(scene, found) == pytest.approx(beam.restitution, abs=2e-3)
     assert len(found.contacts) == len(beam.contacts) == contacts
     vibration = (beam.bending + beam.stretching) / beam.E_0
-    assert found.vibration / found.E_0 == pytest.approx(vibration, rel=0.09, abs=2e-4)
+    assert found.vibration / found.E_0 == pytest.approx(vibration, rel=0.06, abs=2e-4)
     assert (found.Omega, found.V_t) == (
-        pytest.approx(beam.Omega, abs=0.6),
-        pytest.approx(beam.V_t, abs=0.02),
+        pytest.approx(beam.Omega, abs=0.2),
+        pytest.approx(beam.V_t, abs=5e-3),
     )
 
 

@@ -1,16 +1,20 @@
 """References of the contact problems against printed numbers and limits."""
 
+from dataclasses import replace
 from math import pi, sqrt
 
 import numpy as np
 import pytest
 
+from fem_impact.reference import oblique, rod_edge
 from fem_impact.reference.finite_sphere import ball_excess, ball_impact, ball_shear, bounce, local_law
+from fem_impact.reference.free_modes import free_bar_flexibility
 from fem_impact.reference.hertz import SpringRow, contact_modulus, hertz, radiated_share
-from fem_impact.reference.oblique import ObliqueRod, oblique_drop
+from fem_impact.reference.oblique import ObliqueRod, oblique_drop, oblique_rod
+from fem_impact.reference.rod_edge import edge_excess
 from fem_impact.reference.rod_end import end_excess, end_law, rod_impact, sears
 from fem_impact.reference.sphere import oblique_ball, oblique_sphere
-from fem_impact.reference.waves import radiated_energy
+from fem_impact.reference.waves import radiated_energy, radiation_resistance, shear_resistance
 
 R, RHO, E = 9.5e-3, 7850.0, 210e9
 MASS = 4 / 3 * pi * R**3 * RHO
@@ -111,3 +115,76 @@ def test_a_fast_oblique_ball_takes_more_tangential_impulse():
     blow = (0.23, radius, 4 / 3 * pi * radius**3 * 4000, 0.092, 3.9, 0.34)
     plain, found = oblique_sphere(own / 2, *blow), oblique_ball(own / 2, own, *blow)
     assert (found.centre_t - plain.centre_t) / 0.34 == pytest.approx(-0.0196, abs=1e-3)
+
+
+def test_the_excess_of_an_edge_is_its_own():
+    """It hardly depends on the rod behind it, which the free beam takes off."""
+    patch = ((0.06, 0.15),)
+    found = edge_excess(0.29, 0.316, 0.785, patch)[0]
+    assert found[0, 1] == pytest.approx(found[1, 0], abs=1e-9)
+    for radii in (5.0, 12.0):
+        with pytest.MonkeyPatch.context() as monkey:
+            monkey.setattr(rod_edge, "LENGTH", radii)
+            other = edge_excess.__wrapped__(0.29, 0.316, 0.785, patch)[0]
+        assert other == pytest.approx(found, abs=0.04)
+
+
+def lamb(nu, shear):
+    """Return the imaginary part of Lamb's integral for waves that fade by a thousandth, wave number 1."""
+    q = (1 - 2 * nu) / (2 - 2 * nu)
+    k = np.linspace(0.0, 60.0, 6_000_001)[1:]
+    s = (1 - 1e-3j) ** 2
+    a, b = np.sqrt(k**2 - q * s), np.sqrt(k**2 - s)
+    R = (2 * k**2 - s) ** 2 - 4 * k**2 * a * b
+    plane = -s * k * (b if shear else a) / R
+    return np.trapezoid((plane + k / b if shear else plane).imag, k)
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.29])
+@pytest.mark.parametrize(("resistance", "shear"), [(radiation_resistance, False), (shear_resistance, True)])
+def test_what_a_force_radiates_is_lambs_integral(resistance, shear, nu):
+    G = E / (2 * (1 + nu))
+    unit = (4 if shear else 2) * pi * G * sqrt(G / RHO)
+    assert resistance(E, nu, RHO) * unit == pytest.approx(-lamb(nu, shear), rel=5e-3)
+
+
+def lump(v, waves=(0.0, 0.0)):
+    """Return the rebound of a mass behind a spherical tip, and Hertz' impact."""
+    E_star = contact_modulus(E, 0.29, E, 0.29)
+    touch = hertz(E_star, R, MASS, v)
+    mass = ObliqueRod(MASS, 1.0, 0.0, 0.0, np.ones(1), np.zeros(1), np.zeros(1), bending=0)
+    row = SpringRow(E_star, E_star, R, 0.0, 1.2 * touch.radius)
+    return oblique_drop(mass, row, -v, 0.0, 1.3 * touch.duration, waves), touch
+
+
+def test_a_barrier_that_radiates_takes_the_energy_of_hunter():
+    waves = (radiation_resistance(E, 0.29, RHO), 0.0)
+    found, touch = lump(1.0, waves)
+    share = radiated_energy(touch, E, 0.29, RHO) / (0.5 * MASS)
+    assert 1 - found.restitution**2 == pytest.approx(share, rel=0.01)
+    assert lump(1.0)[0].restitution == pytest.approx(1.0, abs=1e-6)
+
+
+def sticking(modes, steps=1000):
+    """Return the 0.24 m rod at 37 degrees, which sticks, with so many modes and the give that they leave."""
+    angle, radius, length = 37 * pi / 180, 9.5e-3, 0.24 - 0.378e-3
+    touch, mass = (8.305e-3, 0.604e-3 - 0.378e-3), RHO * pi * radius**2 * length
+    rod = oblique_rod(219e9, 0.29, RHO, length, radius, angle, (mass, 4.8e-3), (0.0656, 0.1005), touch, modes)
+    static = free_bar_flexibility(0.29, length / radius, angle, (touch[0] / radius, touch[1] / radius))
+    rod = replace(rod, edge=3e-3, give=static / (219e9 * radius) - rod.static())
+    E_star = contact_modulus(219e9, 0.29, 206e9, 0.29)
+    with pytest.MonkeyPatch.context() as monkey:
+        monkey.setattr(oblique, "STEPS", steps)
+        return oblique_drop(rod, SpringRow(E_star, 0.83 * E_star, 7e-3, 0.57, 1.5e-3), -1.677, -1.264, 3e-4)
+
+
+def test_the_modes_that_are_left_out_give_way_statically():
+    few, many = sticking((6, 3)), sticking((17, 10))
+    assert few.restitution == pytest.approx(many.restitution, abs=2e-4)
+    assert few.bending == pytest.approx(many.bending, rel=5e-3)
+
+
+def test_a_contact_that_sticks_does_not_depend_on_the_step():
+    """With friction moved by the last velocity, not by the place, e was 0.033 too high."""
+    coarse, fine = sticking((12, 8), 500), sticking((12, 8), 2000)
+    assert coarse.restitution == pytest.approx(fine.restitution, abs=3e-4)

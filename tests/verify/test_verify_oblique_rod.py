@@ -1,76 +1,83 @@
 """Oblique drops of an elastic rod beside modes, Hertz and friction."""
 
+from math import cos, radians, sin
+
 import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.verify.catalogue import verify
+
+SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
+COARSE = SHORT | {"tip_size": "0.3 mm", "max_time": "0.3 ms"}
 
 
 def checks(found):
     return {c.name: c for c in found.checks}
 
 
+def drop(degrees, **changes):
+    """Return a rod that falls straight down at 2.1 m/s onto a slope."""
+    angle = radians(degrees)
+    return {"angle": angle, "v_n": 2.1 * cos(angle), "v_t": 2.1 * sin(angle)} | changes
+
+
 def test_a_coarse_tip_on_a_rigid_plane():
-    found = verify("oblique-rod", {"elastic_barrier": 0, "tip_size": "0.8 mm", "across": 6})
+    found = verify("oblique-rod", COARSE | {"elastic_barrier": 0})
     assert found.passed
-    values = {c.name: c.computed for c in found.checks}
-    assert 0.10 < values["bending energy / E_0"] < 0.13
-    assert values["impulse ratio mu"] == pytest.approx(0.34, abs=1e-3)
+    values = checks(found)
+    assert values["restitution e"].tolerance < 0.01
+    assert values["impulse ratio mu"].computed == pytest.approx(0.34, abs=1e-3)
+
+
+def test_a_coarse_tip_on_a_block_leans_and_bends():
+    """A reference without them, its contacts half-spaces, has mu = 0.55 and a bending energy of 0.0058."""
+    found = verify("oblique-rod", COARSE | {"f": 0.55})
+    assert found.passed
+    values = checks(found)
+    assert values["impulse ratio mu"].computed < 0.546
+    assert values["impulse ratio mu"].tolerance < 0.01
 
 
 @pytest.mark.validation
-@pytest.mark.parametrize(("f", "e"), [(0.0, 0.853), (0.34, 0.396), (0.55, 0.733)])
-def test_the_long_rod_on_an_elastic_block(f, e):
-    """Printed are the numbers of the sharp corner, whose arm of friction the rounded edge has not."""
+@pytest.mark.parametrize("f", [0.0, 0.34, 0.55])
+def test_the_long_rod_on_an_elastic_block(f):
     found = verify("oblique-rod", {"f": f})
     assert found.passed
-    shown = checks(found)["restitution e, sharp corner"]
-    assert shown.reference == pytest.approx(e, abs=5e-3)
-
-
-SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
+    assert checks(found)["restitution e"].tolerance < 0.011
 
 
 @pytest.mark.validation
-@pytest.mark.parametrize(
-    ("f", "e", "bending"), [(0.0, 0.975, 0.014), (0.34, 1.001, 0.0001), (0.55, 1.009, 0.0065)]
-)
-def test_the_short_rod_on_an_elastic_block(f, e, bending):
-    found = verify("oblique-rod", SHORT | {"f": f})
-    assert found.passed
-    values = {c.name: c.computed for c in found.checks}
-    assert values["restitution e"] == pytest.approx(e, abs=0.04)
-    assert values["bending energy / E_0"] == pytest.approx(bending, rel=0.25, abs=1e-3)
+@pytest.mark.parametrize("f", [0.0, 0.34, 0.55])
+def test_the_short_rod_on_an_elastic_block(f):
+    assert verify("oblique-rod", SHORT | {"f": f}).passed
 
 
 @pytest.mark.validation
 def test_the_short_rod_comes_nearer_with_smaller_cells():
-    """It ends 5 % beside the reference, whose contact is that of half-spaces; coarse cells hardly bend it."""
+    """Without the static give of its edge the reference lies 13 % below the solver's limit."""
     errors = [
         checks(verify("oblique-rod", SHORT | {"f": 0.0, "tip_size": h}))["bending energy / E_0"].error
-        for h in (1.2e-3, 6e-4, 3e-4)
+        for h in (6e-4, 3e-4, 1.5e-4)
     ]
-    assert abs(errors[0]) > 10 * max(abs(error) for error in errors[1:])
+    assert errors == sorted(errors, key=abs, reverse=True)
+    assert abs(errors[-1]) < 1e-3
 
 
 @pytest.mark.validation
 @pytest.mark.parametrize(
     "changes",
     [
+        drop(37, f=0.0),
+        drop(37, f=0.57),
+        {"f": 0.34, "angle": "60 deg"},
+        {"f": 0.1, "angle": "60 deg"},
+        SHORT | {"tip_size": "0.15 mm"},
         {"length": "120 mm", "f": 0.0, "angle": "30 deg"},
         {"length": "80 mm", "f": 0.2, "angle": "20 deg"},
     ],
 )
 def test_other_lengths_and_angles(changes):
     assert verify("oblique-rod", changes).passed
-
-
-@pytest.mark.validation
-def test_a_release_of_a_moment_may_be_missed():
-    """The reference lets go for 12 us after 159; with a sharp corner, and in the solver, it does not."""
-    found = checks(verify("oblique-rod", {"f": 0.1, "angle": "60 deg"}))
-    assert found.pop("contacts").computed in (2, 3)
-    assert all(check.passed for check in found.values())
 
 
 @pytest.mark.validation
@@ -81,11 +88,21 @@ def test_a_graze_between_two_contacts_with_a_rigid_plane():
     assert checks(found)["contacts"].computed == 3
 
 
+@pytest.mark.validation
+def test_a_rod_that_sticks_to_a_rigid_plane_is_shown():
+    found = verify("oblique-rod", drop(37, f=0.57, elastic_barrier=0, tip_size="0.3 mm"))
+    assert found.passed
+    assert checks(found)["restitution e"].kind == "shown"
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"length": "25 mm"}, "2.5 to 100 times the diameter"),
-        ({"max_time": 2e-5, "f": 0.0, "elastic_barrier": 0, "tip_size": "1 mm"}, "ends in mid contact"),
+        ({"max_time": 2e-5, "f": 0.0, "elastic_barrier": 0, "tip_size": "0.3 mm"}, "ends in mid contact"),
+        ({"tip_size": "0.8 mm"}, "as narrow on either side"),
+        ({"angle": "6 deg"}, "over the end of the rounded edge"),
+        ({"v_n": 20.0}, "over the end of the rounded edge"),
     ],
 )
 def test_what_the_reference_is_not_for_is_refused(changes, words):
