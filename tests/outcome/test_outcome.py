@@ -151,7 +151,7 @@ def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
         ({"mu": "0.5"}, r'"mu" = 0.5 must be a number'),
         ({"mu": float("nan")}, r'"mu" = nan must be finite'),
         ({"mu": True}, r'"mu" = True must be a number'),
-        ({"mu": None}, r'"mu" = None must not be null'),
+        ({"E_0_J": None}, r'"E_0_J" = None must not be null'),
         ({"steps": -1}, r'"steps" = -1 must be a whole number'),
         ({"finished": None}, r'"finished" = None must not be null'),
         ({"fidelity": "liquid"}, r'"fidelity" = liquid must be one of rigid, modal, solid'),
