@@ -63,7 +63,7 @@ def test_a_case_that_ends_otherwise_than_expected_has_not_passed(tmp_path, monke
 def test_the_start_and_the_step_of_a_case_are_its_own():
     case = replace(CASES["between-nodes"], step=0.45)
     scene = case.scene()
-    own, plain = model_of(case, plan(scene)), build(plan(scene))
+    own, plain = model_of(case, plan(scene)), build(plan(scene), case.gap)
     moved = own.start[0] - plain.start[0]
     assert moved[own.layout.rod[:, 0]] == pytest.approx(4e-4)
     assert own.step == pytest.approx(0.5 * plain.step)

@@ -89,7 +89,7 @@ def test_what_gravity_adds_is_told_and_closes_the_sum():
     outcome = simulate(replace_all(load("quick"), slow), "modal")
     parts = ("E_r", "E_vib", "W_friction", "E_plastic_rod", "E_plastic_barrier", "residual")
     assert outcome.energy.gravity > 0.01
-    total = sum(outcome.to_dict()[f"{part}_over_E_0"] for part in parts)
+    total = sum(outcome.to_dict()[f"{part}_over_E_0"] or 0.0 for part in parts)
     assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-9)
     assert isinstance(simulate(load("quick"), "modal").energy.gravity, Unknown)
 

@@ -45,7 +45,7 @@ def test_a_contact_that_is_cut_off_holds_energy_in_an_account_of_its_own(time):
     assert not outcome.validity.finished
     assert 1e-4 < energy.contact
     assert abs(energy.residual) < 2e-6
-    parts = (energy.rigid, energy.vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
+    parts = (energy.rigid, energy.vibration, energy.friction, energy.plastic)
     assert sum(parts) + energy.contact == pytest.approx(1, abs=2e-6)
     assert "nothing touches" in outcome_of(scene).energy.contact.reason
 

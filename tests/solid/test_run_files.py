@@ -45,6 +45,7 @@ def test_what_gravity_adds_closes_the_sum():
         "impact.v_n": "-0.1 m/s",
         "impact.v_t": "-0.1 m/s",
         "accuracy.tip_size": "0.8 mm",
+        "accuracy.unresolved": "report",
         "save.frames": 0,
     }
     outcome = simulate(replace_all(load("quick"), slow))
