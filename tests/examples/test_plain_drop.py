@@ -20,7 +20,7 @@ import plain_elastic_drop as plain
 def scene():
     """A short rod that slides, then sticks, on cells as coarse at the tip as elsewhere."""
     base = load("t5b")
-    accuracy = replace(base.accuracy, tip_size=base.projectile.diameter / 8, across=8)
+    accuracy = replace(base.accuracy, tip_size=base.projectile.diameter / 8, across=8, unresolved="report")
     surface = replace(base.surface, state="custom", friction=0.57, friction_low=0.57, friction_high=0.57)
     save = replace(base.save, frames=0)
     return replace(

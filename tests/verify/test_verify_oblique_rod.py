@@ -7,6 +7,8 @@ import pytest
 from fem_impact.errors import SceneError
 from fem_impact.verify.catalogue import verify
 
+pytestmark = pytest.mark.validation  # minutes of solver time, with a reference that is still being mended
+
 SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
 COARSE = SHORT | {"tip_size": "0.3 mm", "max_time": "0.3 ms"}
 
