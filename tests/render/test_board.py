@@ -5,10 +5,11 @@ from itertools import pairwise
 import pytest
 from matplotlib.figure import Figure
 
-from fem_impact.render.board import blank, clock, colour_bar, heading
+from fem_impact.figures.style import QUIET
+from fem_impact.render.board import below, blank, clock, colour_bar, heading
 from fem_impact.render.layout import Abreast, FrameLayout
 from fem_impact.render.motion import FIELDS
-from fem_impact.render.side_by_side import TITLE, _scale, _title
+from fem_impact.render.side_by_side import TITLE, _title
 
 LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3
 
@@ -28,7 +29,8 @@ def test_words_under_a_view_clear_the_view_the_bar_and_the_strip(field, count):
     drawn = blank(frame)
     colour_bar(drawn, frame, view, field, (-1.0, 1.0))
     if count:
-        _scale(drawn, frame, 1000.0)
+        words = "one scale; deformation × 1000,\nfading to × 1 at the contact"
+        below(drawn, frame, frame.views[0], words, QUIET)
     for left, top, right, bottom in boxes(drawn):
         assert view.top + view.height <= top
         assert bottom < frame.height - 176
