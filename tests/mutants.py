@@ -97,6 +97,20 @@ MUTANTS = (
         "tests/modal/test_modal.py::test_friction_takes_energy_whatever_the_step",
     ),
     Mutant(
+        "gravity half a step ahead in the flight of the reduced model",
+        "fem_impact/modal/march.py",
+        "rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n)",
+        "rigid[HEIGHT] += dt * (rigid[V_N] + dt * g_n)",
+        "tests/modal/test_modal_limits.py::test_the_ledger_closes_with_gravity",
+    ),
+    Mutant(
+        "a solid run set down above the barrier, falling before it touches",
+        "fem_impact/solid/build.py",
+        "START_GAP = 1e-10",
+        "START_GAP = 2e-6",
+        "tests/solid/test_gravity.py::test_gravity_adds_to_the_rebound_what_the_contact_bears_and_says_so",
+    ),
+    Mutant(
         "energies of the half model not doubled",
         "fem_impact/solid/ledger.py",
         "HALVES = 2.0",

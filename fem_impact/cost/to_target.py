@@ -28,6 +28,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.plan.choose import active
 from fem_impact.plan.measured import summary, yardsticks
+from fem_impact.plan.plan import plan
 from fem_impact.run import simulate as run
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Material, Scene
@@ -114,13 +115,14 @@ def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
 
 def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     """Return the largest difference over the allowed one, and its name; infinite for another model."""
+    latest, its_latest = (plan(one, "modal").max_time for one in (scene, other))
     for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", active(scene), active(other)),
         ("element", scene.accuracy.element, other.accuracy.element),
         ("step", scene.accuracy.step, other.accuracy.step),
         ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
-        ("max_time", min(scene.accuracy.max_time, other.accuracy.max_time), other.accuracy.max_time),
+        ("max_time", min(latest, its_latest), its_latest),
     ):
         if mine != others:
             return inf, name

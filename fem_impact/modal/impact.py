@@ -83,7 +83,7 @@ class ModalResult:
 def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles."""
     if progress is not None and not compiled_before("march.drop"):
-        progress(compiling(plan.scene.accuracy.max_time, COMPILE))
+        progress(compiling(plan.max_time, COMPILE))
     scene = plan.scene
     rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
     dt = contact_estimate(plan.bodies).duration / STEPS
@@ -91,7 +91,7 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     contacts = np.zeros((MOST_CONTACTS, 4))
     start, modes = _start(plan, rod), Modes(rod.omega, rod.along_t, rod.along_n)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
-    bounds = Bounds(dt, horizon(scene), scene.accuracy.max_time, reach(law, E_0))
+    bounds = Bounds(dt, horizon(scene), plan.max_time, reach(law, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
     drop(start, law, modes, rod.others, bounds._replace(horizon=0.0), contacts)
     wall, cpu = time.perf_counter(), time.process_time()

@@ -150,6 +150,13 @@ def press(depth: float, peak: float, law: ContactLaw) -> tuple[float, float]:
     return 4 / 3 * law.E_star * np.sqrt(R_p) * above**1.5, np.sqrt(R_p * above)
 
 
+@allocating_kernel
+def springs_over(radius: float) -> Springs:
+    """Return springs over a contact radius, m, in even steps of area: close at the rim, where slip begins."""
+    edge = radius * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
+    return Springs(0.5 * (edge[1:] + edge[:-1]), 2 * np.diff(edge), np.zeros(SPRINGS))
+
+
 @inlined
 def grip(springs: Springs, moved: float, F: float, a: float, law: ContactLaw) -> float:
     """Move the contact's tangential springs by ``moved``, m, and return their force, N.
@@ -329,9 +336,7 @@ def drop(
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
     rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0])
     now = ModalState(rigid, np.zeros(k), np.zeros(k))
-    # even steps of area: slip begins at the rim, where the springs then lie closer together
-    edge = bounds.reach * np.sqrt(np.linspace(0.0, 1.0, SPRINGS + 1))
-    springs = Springs(0.5 * (edge[1:] + edge[:-1]), 2 * np.diff(edge), np.zeros(SPRINGS))
+    springs = springs_over(bounds.reach)
     gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), start.centre_t, False, 0.0
     time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
     depth, force = 0.0, (0.0, 0.0)

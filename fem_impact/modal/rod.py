@@ -83,7 +83,7 @@ def _other_edges(scene: Scene) -> list[tuple[str, float, float, float]]:
     return [
         *(("tail", x, body.length, 0.0) for x in (-R, R)),
         *(("shoulder", x, nose.z_side, 0.0) for x in shoulders),
-        *(("other edge", x, nose.r, nose.r) for x in sorted(arcs)),
+        *(("nose" if on_shoulder else "other edge", x, nose.r, nose.r) for x in sorted(arcs)),
     ]
 
 

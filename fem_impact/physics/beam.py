@@ -14,7 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
-from fem_impact.physics.contact import projectile, section_frequency, shear_speed
+from fem_impact.physics.contact import (
+    ContactBodies,
+    contact_estimate,
+    projectile,
+    section_frequency,
+    shear_speed,
+)
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -153,3 +159,14 @@ class BeamFlight:
 def horizon(scene: Scene) -> float:
     """Return the time, s, that a free flight is looked ahead for a further contact by the rod's bending."""
     return max(HORIZON, PERIODS * bending_period(scene))
+
+
+LATEST, SPAN = 2.5e-3, 2.8  # s, and over the bending period and the contact time, if longer
+
+
+def max_time(bodies: ContactBodies) -> float:
+    """Return the latest time of a run, s: stated, or such that long rods touch again and slow ones leave."""
+    stated = bodies.scene.accuracy.max_time
+    if stated is not None:
+        return stated
+    return max(LATEST, SPAN * (bending_period(bodies.scene) + float(contact_estimate(bodies).duration)))

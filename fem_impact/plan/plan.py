@@ -8,6 +8,7 @@ from fem_impact.effects.registry import EFFECTS
 from fem_impact.effects.slots import ModelSpec, bodies_of
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
+from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.limits import coarse_tip, require_approach, require_shallow, validity
@@ -35,6 +36,11 @@ class Plan:
     slots: ModelSpec
     bodies: ContactBodies
     zones: Zones
+
+    @property
+    def max_time(self) -> float:
+        """Return the latest time at which the run stops, s."""
+        return max_time(self.bodies)
 
     @property
     def choices(self) -> tuple[Choice, ...]:

@@ -19,7 +19,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.physics.beam import bending_period
+from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, projectile
 from fem_impact.plan.zones import Zones, lowest_point, zones_of
 from fem_impact.scene.types import Material, Scene
@@ -69,7 +69,7 @@ def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
     barrier = _block_elements(scene, zones) if slots.meshed_barrier else 0.0
     yielding = _yielding_rod(scene, zones) if slots.rod_law else 0.0
     yielding += _yielding_block(zones) if slots.barrier_law else 0.0
-    step, latest = _step(scene, zones, slots), scene.accuracy.max_time
+    step, latest = _step(scene, zones, slots), max_time(bodies)
     touch, swing = UNTIL_APART
     apart = touch * contact_estimate(bodies).duration + swing * bending_period(scene)
     elements = rod + barrier

@@ -14,7 +14,9 @@ _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
 def check_numbers(part: object, parameters: tuple[Parameter, ...]) -> None:
     """Check every number of a frozen dataclass against its table and store it as int or float."""
     for parameter in parameters:
-        object.__setattr__(part, parameter.key, parameter.checked(getattr(part, parameter.key)))
+        value = getattr(part, parameter.key)
+        if value is not None or not parameter.derived:
+            object.__setattr__(part, parameter.key, parameter.checked(value))
 
 
 def check_text(value: Any, key: str, longest: int = 300) -> str:

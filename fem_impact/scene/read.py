@@ -226,7 +226,7 @@ def _number(table: Table, field: Parameter, default: Any) -> Any:
             )
         return parse_number(table[field.si_key], field.si_key)
     if field.key not in table:
-        return default if default is not None else _needed(table, field.key)
+        return default if default is not None or field.derived else _needed(table, field.key)
     value = table[field.key]
     if field.dimension:
         return parse_quantity(value, field.dimension, field.key)

@@ -118,6 +118,7 @@ class Accuracy:
     ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
+    ``max_time`` that is not stated follows from the rod's bending and the contact time, see `Plan.max_time`.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
@@ -125,7 +126,7 @@ class Accuracy:
     across: int = 8
     grid_shift: float = 0.0
     block_margin: float = 6e-3
-    max_time: float = 2.5e-3
+    max_time: float | None = None
     step: float = 0.9
     element: fields.Element = "incompatible"
     unresolved: fields.Unresolved = "withhold"

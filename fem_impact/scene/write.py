@@ -62,7 +62,8 @@ def _material(material: Material) -> dict[str, Any]:
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
-    return {f.key: f.write(getattr(part, f.key)) for f in wanted}
+    values = {parameter: getattr(part, parameter.key) for parameter in wanted}
+    return {p.key: p.write(value) for p, value in values.items() if value is not None}
 
 
 def _lines(table: Mapping[str, Any], path: str) -> list[str]:

@@ -104,7 +104,7 @@ class Watchers:
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(plan, model, view, out, go_on)]
-        stop = Separation(model, view, scene.accuracy.max_time, horizon(scene), _untouchable(scene, model))
+        stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
         skin, peak = SkinWatch(model), PeakForce(model.book)
         heat = _heat_watch(model) if plan.slots.heat else None
         return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
