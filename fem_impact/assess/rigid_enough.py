@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin
+from math import cos, sin
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from fem_impact.assess.drop import DroppedRod
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
-from fem_impact.reference.free_modes import bending_modes
+from fem_impact.reference.free_modes import bending_period
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import materials, surface
 from fem_impact.scene.types import Barrier, Impact, ProjectileSpec, Scene
@@ -45,12 +45,14 @@ def rigid_enough(case: DroppedRod, fidelity: str = "modal") -> dict[str, Any]:
     errors = {angle: abs(_e(a) - _e(b)) for angle, (a, b) in pairs.items()}
     worst = max(errors, key=lambda angle: errors[angle])
     touch = known(stiff.contact.intervals)[0]
+    steel, rod = materials()["rod-steel"], case.rod
+    period = bending_period(steel.E, steel.nu, steel.rho, rod.length, rod.diameter / 2)
     return {
         "fidelity": fidelity,
         "with_vibration": _shown(free),
         "rigid": _shown(stiff),
         "E_vib_over_E_0": known(free.energy.vibration),
-        "T1_over_tau": _first_period(case) / touch.duration,
+        "T1_over_tau": period / touch.duration,
         "error_of_e": errors[alpha],
         "worst_angle_rad": worst,
         "worst_fidelity": fidelity if worst == alpha else "modal",
@@ -91,12 +93,6 @@ def _scene(case: DroppedRod, angle: float, effects: tuple[str, ...]) -> Scene:
         impact=Impact(angle, -case.speed * cos(angle), -case.speed * sin(angle)),
         effects=effects,
     )
-
-
-def _first_period(case: DroppedRod) -> float:
-    steel, rod = materials()["rod-steel"], case.rod
-    modes = bending_modes(steel.E, steel.nu, steel.rho, rod.length, rod.diameter / 2, 1)
-    return 2 * pi / float(modes.omega[0])
 
 
 def _answer(error: float) -> str:

@@ -7,6 +7,7 @@ rho A w^2 + rho I theta^2; kappa of a round section from Hutchinson (2001), doi:
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from math import cos, pi, sin, sqrt
 
 import numpy as np
@@ -84,6 +85,12 @@ def bending_modes(E: float, nu: float, rho: float, length: float, radius: float,
     square, shape = _ritz(E, nu, rho, length, radius, n)
     chosen = slice(RIGID, RIGID + count)
     return BeamModes(np.sqrt(square[chosen]), shape[:n, chosen].T, shape[n:, chosen].T)
+
+
+@cache
+def bending_period(E: float, nu: float, rho: float, length: float, radius: float) -> float:
+    """Return the first bending period of a round bar, s; SI units."""
+    return 2 * pi / float(bending_modes(E, nu, rho, length, radius, 1).omega[0])
 
 
 def free_bar_flexibility(nu: float, length: float, angle: float, touch: tuple[float, float]) -> Array:

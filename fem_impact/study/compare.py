@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from fem_impact.outcome.keys import Key, Num, Unknown, known, or_none
+from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
 from rigid.experiments import Statistic, measured_set
@@ -43,6 +43,10 @@ MEASURED = (
     ComparedQuantity("E_r/E_0", KEY_TABLE["E_r_over_E_0"], "E_r_over_E_0"),
 )
 UNSEEN = tuple(ComparedQuantity(share.title, share.key) for share in shares("comparison"))
+COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
+"""Quantities of the tables that set model and measurement beside each other."""
+STATISTICS = {f"measured_{name}": name for name in ("mean", "sd", "low", "high")} | {"n": "n"}
+"""Columns of a measured quantity, and their attributes of `rigid.experiments.Statistic`."""
 
 
 def verdict(model: float, band: float | None, measured: Statistic) -> str:
@@ -85,37 +89,19 @@ def compare(outcome: Outcome) -> list[Row]:
     With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,
     model is the run's own value and band is None.
     """
-    statistics = measured_set(outcome.provenance.scene_id).statistics()
-    return [
-        _row(outcome, quantity, statistics[quantity.measured] if quantity.measured else None)
-        for quantity in (*MEASURED, *UNSEEN)
-    ]
-
-
-def _row(outcome: Outcome, quantity: ComparedQuantity, measured: Statistic | None) -> Row:
-    model, band = outcome.estimate(quantity.key)
-    return {
-        "set": outcome.provenance.scene_id,
-        "quantity": quantity.name,
-        "unit": quantity.key.unit,
-        "model": or_none(model),
-        "band": band,
-        "measured_mean": measured and measured.mean,
-        "measured_sd": measured and measured.sd,
-        "measured_low": measured and measured.low,
-        "measured_high": measured and measured.high,
-        "n": measured and measured.n,
-        "verdict": _verdict(outcome, quantity, model, band, measured),
-    }
-
-
-def _verdict(
-    outcome: Outcome, quantity: ComparedQuantity, model: Num, band: float | None, measured: Statistic | None
-) -> str:
-    """Return `verdict`, or why there is none."""
-    if isinstance(model, Unknown):
-        return f"not known: {model.reason}"
-    if measured is not None:
-        return verdict(model, band, measured)
-    vibration = quantity.key.path == ("energy", "vibration")
-    return "below floor" if vibration and known(outcome.energy.below_floor) else "not measurable by camera"
+    set_id, rows = outcome.provenance.scene_id, []
+    statistics = measured_set(set_id).statistics()
+    for quantity in (*MEASURED, *UNSEEN):
+        key, (model, band) = quantity.key, outcome.estimate(quantity.key)
+        computed = {"set": set_id, "quantity": quantity.name, "unit": key.unit, "model": or_none(model)}
+        measured = statistics[quantity.measured] if quantity.measured else None
+        if isinstance(model, Unknown):
+            judged = f"not known: {model.reason}"
+        elif measured is not None:
+            judged = verdict(model, band, measured)
+        else:
+            below = key.path == ("energy", "vibration") and known(outcome.energy.below_floor)
+            judged = "below floor" if below else "not measurable by camera"
+        values = {column: measured and getattr(measured, name) for column, name in STATISTICS.items()}
+        rows.append({**computed, "band": band, **values, "verdict": judged})
+    return rows

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import astuple
 from itertools import combinations
 from statistics import fmean
 from typing import TYPE_CHECKING, Any
@@ -21,7 +22,6 @@ from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
-    from fem_impact.scene.types import Scene
 
 
 Row = dict[str, Any]
@@ -47,12 +47,13 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     """
     plain = replace_all(load(name), {"save.frames": 0})
     meshes, positions = (FAMILY[:-1], 1) if quick else (FAMILY, None)
-    return [[_job(scene) for scene in placed(plain, mesh)[:positions]] for mesh in meshes]
-
-
-def _job(scene: Scene) -> Job:
-    """Return the job of a scene, named by tip size, mm, and shift of the barrier's grid."""
-    return Job(f"{scene.id}-{scene.accuracy.tip_size * 1e3:.3f}-{scene.accuracy.grid_shift:g}", scene)
+    return [
+        [
+            Job(f"{name}-{scene.accuracy.tip_size * 1e3:.3f}-{scene.accuracy.grid_shift:g}", scene)
+            for scene in placed(plain, mesh)[:positions]
+        ]
+        for mesh in meshes
+    ]
 
 
 def plan(request: Request, results: Results) -> list[Job]:
@@ -67,7 +68,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         runs = [[results[job.name] for job in mesh] for mesh in jobs_of(name, request.quick)]
         done = [[run for run in mesh if isinstance(run, Outcome)] for mesh in runs]
         rows += convergence_rows(name, [mesh for mesh in done if mesh])
-    panels = tuple(_panel(name, [row for row in rows if row["quantity"] == name]) for name in QUANTITIES)
+    panels = tuple(_panel(name, rows) for name in QUANTITIES)
     report = StudyReport(
         "convergence",
         "What vanishing elements would give",
@@ -88,91 +89,63 @@ def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row
     """
     if len(meshes) < 3:
         return []
-    sizes = [known(runs[0].cost.tip_size) for runs in meshes]
-    costs = [sum(run.cost.cpu for run in runs) for runs in meshes]
-    return [
-        {"set": name, "quantity": quantity, "tip_size_m": sizes, "cpu_s": costs}
-        | _limit_of(sizes, [[known(key.of(run)) for run in runs] for runs in meshes])
-        for quantity, key in QUANTITIES.items()
-    ]
-
-
-def _limit_of(sizes: list[float], values: list[list[float]]) -> Row:
-    """Return the limit of each mesh's mean over the grid positions, and the range over them (apart)."""
-    means = [fmean(on_mesh) for on_mesh in values]
-    fit = limit(sizes, means)
-    return {
-        "values": means,
-        "limit": fit.value,
-        "order": fit.order,
-        "band": fit.band,
-        "scatter": fit.scatter,
-        "apart": [max(on_mesh) - min(on_mesh) for on_mesh in values],
-    }
+    sizes, rows = [known(runs[0].cost.tip_size) for runs in meshes], []
+    for quantity, key in QUANTITIES.items():
+        values = [[known(key.of(run)) for run in runs] for runs in meshes]
+        means = [fmean(on_mesh) for on_mesh in values]
+        row = {"set": name, "quantity": quantity, "tip_size_m": sizes, "values": means}
+        apart = [max(on_mesh) - min(on_mesh) for on_mesh in values]
+        rows.append({**row, "fit": limit(sizes, means), "apart": apart})
+    return rows
 
 
 def _sentence(row: Row) -> str:
     """Return the sentence of a row: value on the finest mesh, limit, distance of the usual mesh from it."""
-    size, value = row["tip_size_m"][-1] * 1e3, row["values"][-1]
+    size, value, fit = row["tip_size_m"][-1] * 1e3, row["values"][-1], row["fit"]
     nearest = min(range(len(row["values"])), key=lambda i: abs(row["tip_size_m"][i] - USUAL_TIP_SIZE))
-    order = "no clear order" if row["order"] is None else f"order {row['order']:.1f}"
+    order = "no clear order" if fit.order is None else f"order {fit.order:.1f}"
     return (
-        f"{row['set']}, {row['quantity']}: {value:.4g} ± {row['band']:.2g} at {size:.3g} mm, "
-        f"limit {row['limit']:.4g} ({order}); at {USUAL_TIP_SIZE * 1e3:.3g} mm, the usual mesh, "
-        f"{row['values'][nearest] - row['limit']:+.2g} off the limit."
+        f"{row['set']}, {row['quantity']}: {value:.4g} ± {fit.band:.2g} at {size:.3g} mm, "
+        f"limit {fit.value:.4g} ({order}); at {USUAL_TIP_SIZE * 1e3:.3g} mm, the usual mesh, "
+        f"{row['values'][nearest] - fit.value:+.2g} off the limit."
     )
 
 
 def _pairs(rows: list[Row]) -> list[str]:
     """Return the sentence on how many pairs of meshes have the limit of all meshes in their band."""
-    inside = [_pair_holds(row, *pair) for row in rows for pair in combinations(range(len(row["values"])), 2)]
+    inside = []
+    for row in rows:
+        meshes = zip(row["tip_size_m"], row["values"], strict=True)
+        for (coarse_size, coarse), (fine_size, fine) in combinations(meshes, 2):
+            extrapolated, band = pair_limit(fine, coarse, coarse_size / fine_size)
+            inside.append(abs(extrapolated - row["fit"].value) <= band + 1e-9 * abs(extrapolated))
     if not inside:
         return []
     return [f"Two meshes, extrapolated: {sum(inside)} of {len(inside)} bands hold the limit of all."]
 
 
-def _pair_holds(row: Row, coarse: int, fine: int) -> bool:
-    """Return whether the limit of all meshes lies in the band of two of them, given by index."""
-    size, value = row["tip_size_m"], row["values"]
-    extrapolated, band = pair_limit(value[fine], value[coarse], size[coarse] / size[fine])
-    return bool(abs(extrapolated - row["limit"]) <= band + 1e-9 * abs(extrapolated))
-
-
 def _sheet(rows: list[Row]) -> Sheet:
     """Return one row per set and quantity: value on each mesh, limit, order, band and scatter."""
     sizes = sorted({size for row in rows for size in row["tip_size_m"]}, reverse=True)
-    columns = (
-        "set",
-        "quantity",
-        *(f"{size * 1e3:.3g} mm" for size in sizes),
-        "limit",
-        "order",
-        "band",
-        "scatter",
-        "places apart",
-    )
+    head = ("set", "quantity", *(f"{size * 1e3:.3g} mm" for size in sizes))
+    lines: list[list[Cell]] = []
+    for row in rows:
+        values = dict(zip(row["tip_size_m"], row["values"], strict=True))
+        by_size, fit = map(values.get, sizes), astuple(row["fit"])
+        lines.append([row["set"], row["quantity"], *by_size, *fit, row["apart"][-1]])
     return Sheet(
         "convergence",
         "Values by the element at the tip, means over places of the barrier's grid; order – is none; "
         "places apart: their largest difference on the finest mesh",
-        Table.of(columns, [_cells(row, sizes) for row in rows]),
+        Table.of((*head, "limit", "order", "band", "scatter", "places apart"), lines),
     )
-
-
-def _cells(row: Row, sizes: list[float]) -> list[Cell]:
-    """Return the cells of a row of `_sheet`; None where it has no mesh of a tip size."""
-    values = dict(zip(row["tip_size_m"], row["values"], strict=True))
-    fit = (row[key] for key in ("limit", "order", "band", "scatter"))
-    return [row["set"], row["quantity"], *(values.get(size) for size in sizes), *fit, row["apart"][-1]]
 
 
 def _panel(name: str, rows: list[Row]) -> Panel:
     """Return the panel of a quantity: one line per set, and its limit at element size 0."""
-    lines = [
-        Series(row["set"], [1e3 * size for size in row["tip_size_m"]], row["values"], colour=at)
-        for at, row in enumerate(rows)
-    ]
-    limits = [
-        Series(f"{row['set']}, limit", [0.0], [row["limit"]], "rings", at) for at, row in enumerate(rows)
-    ]
+    lines, limits = [], []
+    for at, row in enumerate(row for row in rows if row["quantity"] == name):
+        sizes = [1e3 * size for size in row["tip_size_m"]]
+        lines.append(Series(row["set"], sizes, row["values"], colour=at))
+        limits.append(Series(f"{row['set']}, limit", [0.0], [row["fit"].value], "rings", at))
     return Panel(name, "element at the tip, mm", name, (*lines, *limits))

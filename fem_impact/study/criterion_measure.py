@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import pi, sqrt
+from operator import attrgetter
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.plan.plan import plan
-from fem_impact.reference.free_modes import bending_modes
+from fem_impact.reference.free_modes import bending_period
 from fem_impact.reference.hertz import SPAN
 from fem_impact.reference.oblique import ObliqueRod, oblique_rod
 from fem_impact.study.point_mass import contact_time, spring_drop
@@ -72,54 +73,51 @@ class Rod:
 
 Rods = list[Rod]
 Measure = Callable[[Rod], float]
+error_of, spread_of = attrgetter("error"), attrgetter("spread")
 
 
 def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
-    """Return the rods of a family; angles whose runs failed are left out."""
-    by_rod: dict[tuple[float, float], list[tuple[Drop, Outcome, Outcome]]] = {}
-    for drop in drops:
-        run, stiff = results[drop.name], results[replace(drop, vibrates=False).name]
-        if isinstance(run, Outcome) and isinstance(stiff, Outcome):
-            by_rod.setdefault((drop.diameter, drop.length), []).append((drop, run, stiff))
-    return [_rod(at_angles) for at_angles in by_rod.values()]
-
-
-def _rod(at_angles: Sequence[tuple[Drop, Outcome, Outcome]]) -> Rod:
-    """Return a rod from, at each angle, its drop and the outcomes of the vibrating and the rigid rod."""
-    drop = at_angles[0][0]
-    T1, level = first_period(drop), replace(drop, angle=45.0).scene()
-    return Rod(
-        drop,
-        np.array([drop.angle for drop, _, _ in at_angles]),
-        np.array([known(run.restitution.edge.e) for _, run, _ in at_angles]),
-        np.array([known(stiff.restitution.edge.e) for _, _, stiff in at_angles]),
-        np.array([T1 / known(stiff.contact.intervals)[0].duration for _, _, stiff in at_angles]),
-        T1 / contact_time(contact_law(plan(level, "modal").bodies), projectile(level).mass, drop.speed),
-    )
+    """Return the rods of a family, drops sorted by rod; angles whose runs failed are left out."""
+    rods = []
+    for _, same in groupby(drops, lambda drop: (drop.diameter, drop.length)):
+        pairs = [(drop, results[drop.name], results[replace(drop, vibrates=False).name]) for drop in same]
+        done = [
+            (
+                drop,
+                known(run.restitution.edge.e),
+                known(stiff.restitution.edge.e),
+                known(stiff.contact.intervals),
+            )
+            for drop, run, stiff in pairs
+            if isinstance(run, Outcome) and isinstance(stiff, Outcome)
+        ]
+        if done:
+            drop = done[0][0]
+            T1, level = first_period(drop), replace(drop, angle=45.0).scene()
+            angles, e, e_rigid, groups = np.array(
+                [(d.angle, e, e_rigid, T1 / touches[0].duration) for d, e, e_rigid, touches in done]
+            ).T
+            tau = contact_time(contact_law(plan(level, "modal").bodies), projectile(level).mass, drop.speed)
+            rods.append(Rod(drop, angles, e, e_rigid, groups, T1 / tau))
+    return rods
 
 
 def linear_rods(drops: Iterable[Drop]) -> Rods:
-    """Return rods on one linear spring, as stiff as gives Hertz' contact time at the limit of Eq 29."""
+    """Return rods on one linear spring, as stiff as gives Hertz' contact time at the limit of Eq 29.
+
+    Drops are sorted by rod; the restitution of a rod that cannot vibrate is 1.
+    """
     reference = Drop(length_of(LIMIT, BODY))
     k = _effective(slender(reference)) * (pi / _hertz_time(reference)) ** 2
-    by_rod: dict[tuple[float, float], list[Drop]] = {}
-    for drop in drops:
-        by_rod.setdefault((drop.diameter, drop.length), []).append(drop)
-    return [_linear_rod(at_angles, k) for at_angles in by_rod.values()]
-
-
-def _linear_rod(drops: Sequence[Drop], k: float) -> Rod:
-    """Return one rod on a spring, k in N/m, at the angles of its drops; its rigid restitution is 1."""
-    bodies = [slender(drop) for drop in drops]
-    T1 = first_period(drops[0])
-    return Rod(
-        drops[0],
-        np.array([drop.angle for drop in drops]),
-        np.array([spring_drop(body, k).restitution for body in bodies]),
-        np.ones(len(drops)),
-        np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies]),
-        T1 / (pi * sqrt(bodies[0].mass / k)),
-    )
+    rods = []
+    for _, group in groupby(drops, lambda drop: (drop.diameter, drop.length)):
+        same = list(group)
+        bodies, T1 = [slender(drop) for drop in same], first_period(same[0])
+        e = np.array([spring_drop(body, k).restitution for body in bodies])
+        groups = np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies])
+        angles, whole = np.array([drop.angle for drop in same]), T1 / (pi * sqrt(bodies[0].mass / k))
+        rods.append(Rod(same[0], angles, e, np.ones(len(same)), groups, whole))
+    return rods
 
 
 def _effective(rod: ObliqueRod) -> float:
@@ -148,16 +146,10 @@ def slender(drop: Drop) -> ObliqueRod:
     )
 
 
-@lru_cache(maxsize=256)
-def _period(E: float, nu: float, rho: float, length: float, radius: float) -> float:
-    """Return the first bending period of a cylinder, s; SI units."""
-    return 2 * pi / float(bending_modes(E, nu, rho, length, radius, 1).omega[0])
-
-
 def first_period(drop: Drop) -> float:
     """Return the first bending period of a rod, s."""
     steel = drop.scene().projectile.material
-    return _period(steel.E, steel.nu, steel.rho, drop.length, drop.diameter / 2)
+    return bending_period(steel.E, steel.nu, steel.rho, drop.length, drop.diameter / 2)
 
 
 def blind_ratio(drop: Drop) -> float:
@@ -166,14 +158,9 @@ def blind_ratio(drop: Drop) -> float:
     return float(-rod.along_n[0] / rod.along_t[0])
 
 
-def error_of(rod: Rod) -> float:
-    """Return the error of rigid theory in e."""
-    return rod.error
-
-
-def spread_of(rod: Rod) -> float:
-    """Return the spread of e over the angles."""
-    return rod.spread
+def of_body(rods: Rods) -> Rods:
+    """Return the rods of 19 mm, in order of slenderness."""
+    return sorted((r for r in rods if r.drop.diameter == BODY), key=lambda r: r.drop.gamma)
 
 
 def gamma_at(rods: Rods, diameter: float, level: float, measure: Measure = error_of) -> float | None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
 
 import numpy as np
 
+from fem_impact.arrays import Array
 from fem_impact.figures.lines import Mark, Panel, Series
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
@@ -13,12 +15,12 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.study.criterion_measure import (
     LEVELS,
     Measure,
-    Rod,
     Rods,
     blind_ratio,
     error_of,
     exponent,
     gamma_at,
+    of_body,
     spread_of,
 )
 from fem_impact.study.document import Picture, Sheet, StudyReport
@@ -34,6 +36,7 @@ KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 JUDGED = 0.05  # error of e that the verdict on the limit of Eq 29 allows
 HERTZ = ("Hertz, one tip radius", "Hertz, tip in proportion")
 YIELDING = "yielding, frictionless"
+GROUP, WHOLE = attrgetter("group"), attrgetter("whole")  # T1/tau in both meanings of tau
 Families = Mapping[str, Rods]
 """Rods by the name of their family."""
 ASSUMPTIONS = (
@@ -73,12 +76,10 @@ def _angles(families: Families) -> Picture:
     """Return e against inclination, one panel per family with up to six of its 19 mm rods."""
     panels = []
     for name, rods in families.items():
-        same = [r for r in rods if r.drop.diameter == BODY]
-        chosen = [same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int))]
-        series = tuple(
-            Series(f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "line", i) for i, r in enumerate(chosen)
-        )
-        panels.append(Panel(name, "inclination, degrees", "e", series))
+        same = of_body(rods)
+        chosen = (same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int)))
+        series = [Series(f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "line", i) for i, r in enumerate(chosen)]
+        panels.append(Panel(name, "inclination, degrees", "e", tuple(series)))
     return Picture("angles", "Restitution against inclination, 19 mm rods.", tuple(panels))
 
 
@@ -86,8 +87,8 @@ def _onset(families: Families) -> Picture:
     """Return the largest error of e against gamma, 19 mm, one line per family."""
     series = []
     for at, (name, rods) in enumerate(families.items()):
-        same = sorted((r.drop.gamma, r.error) for r in rods if r.drop.diameter == BODY)
-        series.append(Series(name, [g for g, _ in same], [e for _, e in same], "line", at))
+        same = of_body(rods)
+        series.append(Series(name, [r.drop.gamma for r in same], [r.error for r in same], "line", at))
     marks = (Mark(LIMIT, "limit of Eq 29"),)
     label = "largest error of e by rigid theory"
     panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, LEVELS)
@@ -97,18 +98,17 @@ def _onset(families: Families) -> Picture:
 def _master(families: Families) -> Picture:
     """Return 1 - largest error of e against T1/tau in both meanings of tau and against gamma."""
     independent = Series("independent reference", *KNOWN, "rings", 6)
-    groups: tuple[tuple[str, str, Measure, tuple[Series, ...]], ...] = (
-        ("by T1/tau, tau of the inclined rod", "T1/tau", lambda r: r.group, ()),
-        ("by T1/tau, tau of the whole mass", "T1/tau", lambda r: r.whole, (independent,)),
-        ("by gamma", "gamma, m^-0.3815", lambda r: r.drop.gamma, ()),
+    groups: tuple[tuple[str, str, Measure, tuple[Series, ...], tuple[Mark, ...]], ...] = (
+        ("by T1/tau, tau of the inclined rod", "T1/tau", GROUP, (), ()),
+        ("by T1/tau, tau of the whole mass", "T1/tau", WHOLE, (independent,), ()),
+        ("by gamma", "gamma, m^-0.3815", attrgetter("drop.gamma"), (), (Mark(LIMIT, "limit"),)),
     )
     panels = []
-    for title, axis, group, more in groups:
+    for title, axis, group, more, marks in groups:
         series = [
             Series(name, [group(r) for r in rods], [1 - r.error for r in rods], "points", at)
             for at, (name, rods) in enumerate(families.items())
         ]
-        marks = (Mark(LIMIT, "limit"),) if title == "by gamma" else ()
         panels.append(Panel(title, axis, "1 - largest error of e", (*series, *more), marks))
     caption = "One group or the other: all diameters, contacts and slendernesses."
     return Picture("master", caption, tuple(panels), 3)
@@ -119,18 +119,18 @@ def _blind(blind: Sequence[Drop], results: Results) -> Picture:
     series, marks = [], []
     for at, (rod, length) in enumerate(PAPER_RODS.items()):
         f, share = _over_friction(blind, results, length)
-        series.append(Series(rod, f, [100 * s for s in share], "line", at))
+        series.append(Series(rod, f, 100 * share, "line", at))
         marks.append(Mark(blind_ratio(Drop(length)), f"mu* of {rod}"))
     panel = Panel("elastic, 45 degrees", "f", "vibration, % of E_0", tuple(series), tuple(marks))
     caption = "A contact force of ratio mu* does not excite the first bending mode."
     return Picture("blind-direction", caption, (panel,), 1)
 
 
-def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> tuple[list[float], list[float]]:
-    """Return f and E_vib/E_0 of the drops of a rod length, m, without the failed ones."""
+def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> Array:
+    """Return f and E_vib/E_0 (2, n) of the drops of a rod length, m, without the failed ones."""
     runs = [(d.friction, results[d.name]) for d in blind if d.length == length]
-    shares = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
-    return [f for f, _ in shares], [share for _, share in shares]
+    pairs = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
+    return np.reshape(pairs, (-1, 2)).T
 
 
 def _origin(families: Families) -> list[str]:
@@ -139,15 +139,18 @@ def _origin(families: Families) -> list[str]:
     for name, rods in families.items():
         powers = [(level, exponent(rods, level)) for level in LEVELS]
         exponents = ", ".join(f"{p:.2f} at {level:.0%}" for level, p in powers if p is not None)
-        onset = [(level, gamma_at(rods, BODY, level)) for level in LEVELS]
-        where = ", ".join(f"{level:.0%} beyond gamma {g:.1f}" for level, g in onset if g is not None)
-        passes = where or "no level within the map"
-        power = exponents or "that the map does not show"
         sentences.append(
-            f"{name}: the error of e passes {passes} (19 mm); the length at which it does grows with the "
-            f"diameter to the power {power} (published {EXPONENT})."
+            f"{name}: the error of e passes {_levels_passed(rods, error_of) or 'no level within the map'} "
+            "(19 mm); the length at which it does grows with the diameter to the power "
+            f"{exponents or 'that the map does not show'} (published {EXPONENT})."
         )
     return sentences
+
+
+def _levels_passed(rods: Rods, measure: Measure) -> str:
+    """Return from which slenderness a measure of the 19 mm rods exceeds each level."""
+    onset = [(level, gamma_at(rods, BODY, level, measure)) for level in LEVELS]
+    return ", ".join(f"{level:.0%} beyond gamma {g:.1f}" for level, g in onset if g is not None)
 
 
 def _verdicts(families: Families) -> list[str]:
@@ -156,7 +159,7 @@ def _verdicts(families: Families) -> list[str]:
     for name, rods in families.items():
         onset = gamma_at(rods, BODY, JUDGED)
         if onset is None:
-            safe = max((r.error for r in rods if r.drop.diameter == BODY), default=0.0) < JUDGED
+            safe = max((r.error for r in of_body(rods)), default=0.0) < JUDGED
             where = "never reaches" if safe else "is always above"
             sentences.append(f"{name}: the error {where} {JUDGED:.0%} in the map.")
             continue
@@ -172,11 +175,8 @@ def _group(families: Families) -> list[str]:
     rods = [r for family in families.values() for r in family if r.error > 0.005]
     if len(rods) < 8:
         return []
-    error = np.array([r.error for r in rods])
-    inclined, whole, gamma = (
-        _scatter(np.array(group), error)
-        for group in ([r.group for r in rods], [r.whole for r in rods], [r.drop.gamma for r in rods])
-    )
+    error, *groups = np.array([(r.error, r.group, r.whole, r.drop.gamma) for r in rods]).T
+    inclined, whole, gamma = (_scatter(group, error) for group in groups)
     return [
         f"Over all contacts and diameters the error of e scatters by {inclined:.3f} about one curve of "
         f"T1/tau, tau of the inclined rod, by {whole:.3f} with tau of the whole mass, and by {gamma:.3f} "
@@ -186,10 +186,14 @@ def _group(families: Families) -> list[str]:
 
 def _known(families: Families) -> list[str]:
     """Return the distance of Hertz' contacts from the independent points, for each meaning of tau."""
-    rods = [r for name in HERTZ for r in families[name] if r.drop.diameter == BODY]
+    rods = [r for name in HERTZ for r in of_body(families[name])]
     if len(rods) < 8:
         return []
-    inclined, whole = (_apart(rods, lambda r: r.group), _apart(rods, lambda r: r.whole))
+    apart = []
+    for group in (GROUP, WHOLE):
+        x, e = np.array(sorted((group(r), 1 - r.error) for r in rods)).T
+        apart.append(np.abs(np.interp(KNOWN[0], x, e) - KNOWN[1]).max())
+    inclined, whole = apart
     return [
         "The independent points (worst e of elastic drops) are those of Hertz' contact with tau of the whole "
         f"mass: e differs by at most {whole:.2f}. With tau of the inclined rod it differs by up to "
@@ -197,23 +201,15 @@ def _known(families: Families) -> list[str]:
     ]
 
 
-def _apart(rods: Sequence[Rod], group: Measure) -> float:
-    """Return the largest distance of the independent points from the rods' curve of a group."""
-    x, e = np.array(sorted((group(r), 1 - r.error) for r in rods)).T
-    return float(np.abs(np.interp(KNOWN[0], x, e) - KNOWN[1]).max())
-
-
 def _invariance(families: Families) -> list[str]:
     """Return, per family, where the spread of e over the angles (published criterion) passes a level."""
     sentences = []
     for name in (HERTZ[1], YIELDING):
-        rods = [r for r in families[name] if r.drop.diameter == BODY]
-        stiff = max(np.ptp(r.e_rigid) for r in rods)
-        onset = [(level, gamma_at(rods, BODY, level, spread_of)) for level in LEVELS]
-        where = ", ".join(f"{level:.0%} beyond gamma {g:.1f}" for level, g in onset if g is not None)
+        rods = of_body(families[name])
+        passed = _levels_passed(rods, spread_of) or "every level from the first rod on"
         sentences.append(
-            f"{name}: the spread of e over the angles passes {where or 'every level from the first rod on'}; "
-            f"it is up to {stiff:.2f} for rods that cannot vibrate."
+            f"{name}: the spread of e over the angles passes {passed}; it is up to "
+            f"{max(np.ptp(r.e_rigid) for r in rods):.2f} for rods that cannot vibrate."
         )
     return sentences
 
@@ -231,10 +227,11 @@ def _blind_sentences(blind: Sequence[Drop], results: Results) -> list[str]:
     sentences = []
     for rod, length in PAPER_RODS.items():
         f, share = _over_friction(blind, results, length)
-        least = f[int(np.argmin(share))] if share else float("nan")
+        if not share.size:
+            continue
         sentences.append(
             f"{rod} rod at 45 degrees: mu* = {blind_ratio(Drop(length)):.2f}; elastic drops vibrate least "
-            f"at f = {least:.2f} ({100 * min(share, default=0.0):.2g} % of E_0)."
+            f"at f = {f[share.argmin()]:.2f} ({100 * share.min():.2g} % of E_0)."
         )
     return sentences
 
@@ -259,20 +256,10 @@ def _rods(families: Families) -> Sheet:
     rows: list[list[Cell]] = [
         [name, r.drop.gamma, r.drop.diameter, r.drop.length, r.group, r.whole, r.error, r.spread]
         for name, rods in families.items()
-        for r in rods
-        if r.drop.diameter == BODY
+        for r in of_body(rods)
     ]
-    head = (
-        "contact",
-        "gamma",
-        "diameter_m",
-        "length_m",
-        "T1_over_tau",
-        "T1_over_tau_whole",
-        "error_of_e",
-        "spread_of_e",
-    )
-    return Sheet("rods", "Rods of 19 mm", Table.of(head, rows))
+    head = ("contact", "gamma", "diameter_m", "length_m", "T1_over_tau", "T1_over_tau_whole")
+    return Sheet("rods", "Rods of 19 mm", Table.of((*head, "error_of_e", "spread_of_e"), rows))
 
 
 def _curves(families: Families) -> Sheet:

@@ -139,7 +139,13 @@ class StudyReport:
 
 def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
     """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, phone width) with its data."""
-    ledger = [_ledger_row(name, run) for name, run in results.items() if isinstance(run, Outcome)]
+    ledger: list[list[Cell]] = []
+    for name, run in results.items():
+        if isinstance(run, Outcome):
+            intervals = or_none(run.contact.intervals)
+            contacts = None if intervals is None else len(intervals)
+            values = {**run.to_dict(), "run": name, "contacts": contacts}
+            ledger.append([values[column] for column in LEDGER])
     document = _document(report, request, results)
     for picture in report.pictures:
         _draw(picture, make_directory(request.out / "figures"))
@@ -163,25 +169,20 @@ def _document(report: StudyReport, request: Request, results: Results) -> dict[s
         "assumptions": list(report.assumptions),
         "sources": list(report.sources),
         "figures": [{"name": p.name, "caption": p.caption} for p in report.pictures],
-        "sheets": [_sheet(sheet) for sheet in report.sheets],
+        "sheets": [
+            {
+                "name": sheet.name,
+                "caption": sheet.caption,
+                "columns": [column.title for column in sheet.table.columns],
+                "rows": list(map(list, sheet.table.rows)) if sheet.shown else [],
+            }
+            for sheet in report.sheets
+        ],
         "runs": len(results),
         "failures": failures_of(results),
         "rows": [outcome.to_dict() for outcome in report.outcomes],
         "comparison": [dict(row) for row in report.comparison],
     }
-
-
-def _sheet(sheet: Sheet) -> dict[str, Any]:
-    rows = [list(row) for row in sheet.table.rows] if sheet.shown else []
-    titles = [column.title for column in sheet.table.columns]
-    return {"name": sheet.name, "caption": sheet.caption, "columns": titles, "rows": rows}
-
-
-def _ledger_row(name: str, run: Outcome) -> list[Cell]:
-    intervals = or_none(run.contact.intervals)
-    contacts = None if intervals is None else len(intervals)
-    values = {**run.to_dict(), "run": name, "contacts": contacts}
-    return [values[column] for column in LEDGER]
 
 
 def _draw(picture: Picture, place: Path) -> None:

@@ -160,18 +160,19 @@ def _vibration(run: Outcome) -> float:
 
 
 def _scenes(request: Request) -> dict[str, Scene]:
-    """Return the requested scenes by name, with ``auto`` effects and a coarse tip."""
+    """Return the requested scenes by name, with ``auto`` effects.
+
+    Their tip size is `TIP`, or the largest that their contact allows if that is less.
+    """
     scenes = {name: load(name) for name in MEASURED_SETS}
     scenes |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
     wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(scenes))
-    return {name: _coarse(scenes[name]) for name in wanted}
-
-
-def _coarse(scene: Scene) -> Scene:
-    """Return the scene with ``auto`` effects and a tip size of `TIP` or the largest its contact allows."""
-    scene = replace_all(scene, {"effects": "auto", "save.frames": 0})
-    size = min(TIP, widest_tip_size(plan_of(scene, "modal").bodies))
-    return replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
+    coarse = {}
+    for name in wanted:
+        scene = replace_all(scenes[name], {"effects": "auto", "save.frames": 0})
+        size = min(TIP, widest_tip_size(plan_of(scene, "modal").bodies))
+        coarse[name] = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
+    return coarse
 
 
 def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:

@@ -15,7 +15,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.gamma_tell import Maps, first_only, study_report
+from fem_impact.study.gamma_tell import FIRST, SOLID, Maps, study_report
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
 
 if TYPE_CHECKING:
@@ -76,20 +76,15 @@ def plan(request: Request, results: Results) -> list[Job]:
     chosen = anchors(request.quick)
     drops = {drop.name: drop for drop in (*line(request.quick), *grid(request.quick), *chosen)}
     jobs = {name: Job(name, drop.scene(), "modal") for name, drop in drops.items()}
-    solid = [Job(f"solid-{drop.name}", drop.scene(tip), "solid") for drop in chosen]
-    runs = {drop.name: results.get(drop.name) for drop in line(request.quick)}
-    cut = [
-        _cut(jobs[name], run)
-        for name, run in runs.items()
-        if isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1
-    ]
+    solid = [Job(f"{SOLID}{drop.name}", drop.scene(tip), "solid") for drop in chosen]
+    cut = []
+    for drop in line(request.quick):
+        run = results.get(drop.name)
+        if isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1:
+            scene, end = drop.scene(), known(run.contact.intervals)[0].end + SLACK
+            scene = replace(scene, accuracy=replace(scene.accuracy, max_time=end))
+            cut.append(Job(f"{FIRST}{drop.name}", scene, "modal"))
     return [*jobs.values(), *solid, *cut]
-
-
-def _cut(job: Job, run: Outcome) -> Job:
-    """Return a run's job that ends after the first of its contacts."""
-    accuracy = replace(job.scene.accuracy, max_time=known(run.contact.intervals)[0].end + SLACK)
-    return Job(first_only(job.name), replace(job.scene, accuracy=accuracy), "modal")
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:

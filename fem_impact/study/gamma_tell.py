@@ -47,6 +47,10 @@ DRAWN = {
     "plastic work, % of E_0": PLASTIC,
 }
 COMPARED = {"e": RESTITUTION, "mu": MU, "vibration/E_0": VIBRATION, "friction/E_0": FRICTION}
+SOLID, FIRST = (
+    "solid-",
+    "first-",
+)  # before a drop's name: its finite-element job, the one cut at a second contact
 Curve = tuple[list[float], list[float]]
 KINDS = {False: "elastic", True: "yielding"}
 
@@ -74,17 +78,23 @@ class Maps:
         return [max(group, key=lambda d: self.value(d, VIBRATION) or 0.0) for group in groups.values()]
 
 
-def first_only(name: str) -> str:
-    """Return the name of the job that stops at a drop's second contact."""
-    return f"first-{name}"
+def among(drops: Iterable[Drop], **values: float | bool) -> list[Drop]:
+    """Return the drops whose attributes have the given values."""
+    return [d for d in drops if all(getattr(d, name) == value for name, value in values.items())]
 
 
 def study_report(maps: Maps, tip: float) -> StudyReport:
     """Return the study."""
-    by = [_by(maps, "diameter", 1e3, "mm"), _by(maps, "speed", 1.0, "m/s")]
+    by = [_by(maps, "diameter", 1e3, "mm", speed=2.1), _by(maps, "speed", 1.0, "m/s", diameter=BODY)]
     pictures = [*_line_pictures(maps), _second_picture(maps), _worst_picture(maps), *by]
-    worst = Sheet("worst", "The angle that vibrates most", _points(maps, maps.worst()), shown=False)
-    sheets = [_anchor_sheet(maps), _rod_sheet(maps), worst, _map_sheet(maps)]
+    rods = [d for d in among(maps.anchors, angle=45.0) if d.length in PAPER_RODS.values()]
+    mapped = [*maps.line, *maps.grid]
+    sheets = [
+        _anchor_sheet(maps),
+        Sheet("rods", "The paper's rods (modes)", _points(maps, rods)),
+        Sheet("worst", "The angle that vibrates most", _points(maps, maps.worst()), shown=False),
+        Sheet("map", "Every point of the maps (modes)", _points(maps, mapped), shown=False),
+    ]
     peaks, back, away = _peaks(maps), _given_back(maps), _differences(maps)
     anchored = f"Anchors: finite elements of {tip * 1e3:g} mm at the tip, one mesh, so without a mesh band."
     return StudyReport(
@@ -114,8 +124,8 @@ def _curve(maps: Maps, drops: Iterable[Drop], measure: Measure, prefix: str = ""
 def _line_pictures(maps: Maps) -> list[Picture]:
     made = []
     for yields, kind in KINDS.items():
-        shown = {w: m for w, m in DRAWN.items() if yields or m is not PLASTIC}
-        panels = tuple(_line_panel(maps, yields, words, measure) for words, measure in shown.items())
+        shown = {label: m for label, m in DRAWN.items() if yields or m is not PLASTIC}
+        panels = tuple(_line_panel(maps, yields, label, measure) for label, measure in shown.items())
         caption = (
             f"{kind.capitalize()} contact, 19 mm rods at 45 degrees and 2.1 m/s: modes (lines) and finite "
             "elements (rings); the paper's rods are marked."
@@ -124,34 +134,33 @@ def _line_pictures(maps: Maps) -> list[Picture]:
     return made
 
 
-def _line_panel(maps: Maps, yields: bool, words: str, measure: Measure) -> Panel:
+def _line_panel(maps: Maps, yields: bool, label: str, measure: Measure) -> Panel:
     series = []
     for at, (state, f) in enumerate(STATES.items()):
-        same = [d for d in maps.line if d.friction == f and d.yields == yields]
+        same = among(maps.line, friction=f, yields=yields)
         series.append(Series(f"{state}, f = {f:g}", *_curve(maps, same, measure), "line", at))
-        anchored = [d for d in maps.anchors if (d.friction, d.yields, d.angle) == (f, yields, 45.0)]
-        gamma, value = _curve(maps, anchored, measure, "solid-")
+        anchored = among(maps.anchors, friction=f, yields=yields, angle=45.0)
+        gamma, value = _curve(maps, anchored, measure, SOLID)
         if gamma:
             series.append(Series(f"{state}, finite elements", gamma, value, "rings", at))
-    return Panel(words.split(",")[0], X, words, tuple(series), MARKS)
+    return Panel(label.split(",")[0], X, label, tuple(series), MARKS)
 
 
 def _second_picture(maps: Maps) -> Picture:
     panels = []
     for yields, kind in KINDS.items():
-        same = [d for d in maps.line if d.friction == 0.0 and d.yields == yields]
+        same = among(maps.line, friction=0.0, yields=yields)
         end = Series("after the last contact", *_curve(maps, same, VIBRATION))
-        first = [(d.gamma, 100 * _after_first(maps, d)) for d in same]
-        before = Series("after the first contact", [g for g, _ in first], [v for _, v in first], "dashed")
+        gamma, first = [d.gamma for d in same], [100 * _after_first(maps, d) for d in same]
+        before = Series("after the first contact", gamma, first, "dashed")
         panels.append(Panel(f"{kind}, frictionless", X, "vibration, % of E_0", (before, end), MARKS))
     return Picture("second-contacts", "What later contacts give back to the rigid motion.", tuple(panels))
 
 
 def _after_first(maps: Maps, drop: Drop) -> float:
     """Return E_vib/E_0 after the first contact: of the cut run, or of the full run with one contact only."""
-    cut = maps.value(drop, VIBRATION, "first-")
-    end = maps.value(drop, VIBRATION)
-    return cut if cut is not None else end if end is not None else float("nan")
+    known_values = (maps.value(drop, VIBRATION, prefix) for prefix in (FIRST, ""))
+    return next((value for value in known_values if value is not None), float("nan"))
 
 
 def _worst_picture(maps: Maps) -> Picture:
@@ -159,11 +168,7 @@ def _worst_picture(maps: Maps) -> Picture:
     for yields, kind in KINDS.items():
         series = []
         for at, (state, f) in enumerate(STATES.items()):
-            chosen = [
-                d
-                for d in maps.worst()
-                if (d.diameter, d.speed) == (BODY, 2.1) and (d.friction, d.yields) == (f, yields)
-            ]
+            chosen = among(maps.worst(), diameter=BODY, speed=2.1, friction=f, yields=yields)
             series.append(Series(state, *_curve(maps, chosen, VIBRATION), "line", at))
         panels.append(Panel(f"{kind}, worst angle", X, "vibration, % of E_0", tuple(series), MARKS))
     return Picture(
@@ -171,27 +176,18 @@ def _worst_picture(maps: Maps) -> Picture:
     )
 
 
-def _by(maps: Maps, name: str, scale: float, unit: str) -> Picture:
+def _by(maps: Maps, name: str, scale: float, unit: str, **fixed: float) -> Picture:
     """Return vibration at 45 degrees by diameter or speed, frictionless elastic and machined yielding."""
-    other = "speed" if name == "diameter" else "diameter"
     panels = []
     for yields, state in ((False, "frictionless"), (True, "machined")):
-        same = [d for d in maps.grid if (d.angle, d.friction, d.yields) == (45.0, STATES[state], yields)]
-        same = [d for d in same if getattr(d, other) == (BODY if other == "diameter" else 2.1)]
+        same = among(maps.grid, angle=45.0, friction=STATES[state], yields=yields, **fixed)
         series = [
-            Series(f"{value * scale:g} {unit}", *_curve(maps, drops, VIBRATION))
-            for value, drops in _grouped(same, name).items()
+            Series(f"{value * scale:g} {unit}", *_curve(maps, among(same, **{name: value}), VIBRATION))
+            for value in sorted({getattr(drop, name) for drop in same})
         ]
         title = f"{KINDS[yields]}, {state}"
         panels.append(Panel(title, X, "vibration, % of E_0", tuple(series), MARKS))
     return Picture(f"by-{name}", f"Vibration at 45 degrees by {name}.", tuple(panels))
-
-
-def _grouped(drops: Iterable[Drop], name: str) -> dict[float, list[Drop]]:
-    groups: dict[float, list[Drop]] = {}
-    for drop in drops:
-        groups.setdefault(getattr(drop, name), []).append(drop)
-    return dict(sorted(groups.items()))
 
 
 def _peaks(maps: Maps) -> list[str]:
@@ -199,7 +195,7 @@ def _peaks(maps: Maps) -> list[str]:
     sentences = []
     for yields, kind in KINDS.items():
         for state, f in STATES.items():
-            same = [d for d in maps.line if d.friction == f and d.yields == yields]
+            same = among(maps.line, friction=f, yields=yields)
             gamma, share = _curve(maps, same, VIBRATION)
             if gamma:
                 top = int(np.argmax(share))
@@ -213,7 +209,7 @@ def _peaks(maps: Maps) -> list[str]:
 
 def _given_back(maps: Maps) -> list[str]:
     """Return how many drops touch again, and how much vibration that returns to the rigid motion."""
-    twice = [d for d in maps.line if maps.value(d, VIBRATION, "first-") is not None]
+    twice = [d for d in maps.line if maps.value(d, VIBRATION, FIRST) is not None]
     if not twice:
         return []
     back = [(_after_first(maps, d) - (maps.value(d, VIBRATION) or 0.0), d) for d in twice]
@@ -230,7 +226,7 @@ def _differences(maps: Maps) -> list[str]:
     """Return the differences between modal and finite-element results over the anchors."""
     sentences = []
     for quantity, measure in COMPARED.items():
-        pairs = [(maps.value(d, measure), maps.value(d, measure, "solid-")) for d in maps.anchors]
+        pairs = [(maps.value(d, measure), maps.value(d, measure, SOLID)) for d in maps.anchors]
         away = [m - s for m, s in pairs if m is not None and s is not None]
         if away:
             sentences.append(
@@ -242,35 +238,22 @@ def _differences(maps: Maps) -> list[str]:
 
 
 def _anchor_sheet(maps: Maps) -> Sheet:
+    measures = {**COMPARED, "contacts": CONTACTS}
     rows: list[list[Cell]] = []
     for drop in maps.anchors:
-        pairs = [maps.value(drop, measure, p) for measure in COMPARED.values() for p in ("", "solid-")]
-        counts = [maps.value(drop, CONTACTS, p) for p in ("", "solid-")]
-        rows.append([drop.gamma, KINDS[drop.yields], drop.friction, drop.angle, *pairs, *counts])
-    pairs_head = [f"{w}_{p}" for w in COMPARED for p in ("modal", "solid")]
-    head = ("gamma", "contact", "f", "angle_deg", *pairs_head, "contacts_modal", "contacts_solid")
+        pairs = [maps.value(drop, measure, p) for measure in measures.values() for p in ("", SOLID)]
+        rows.append([drop.gamma, KINDS[drop.yields], drop.friction, drop.angle, *pairs])
+    pairs_head = [f"{name}_{fidelity}" for name in measures for fidelity in ("modal", "solid")]
+    head = ("gamma", "contact", "f", "angle_deg", *pairs_head)
     return Sheet("anchors", "Modes beside finite elements", Table.of(head, rows))
-
-
-def _rod_sheet(maps: Maps) -> Sheet:
-    """Return the modal results of those anchors at 45 degrees that are the paper's rods."""
-    rods = [d for d in maps.anchors if d.length in PAPER_RODS.values() and d.angle == 45.0]
-    return Sheet("rods", "The paper's rods (modes)", _points(maps, rods))
-
-
-def _map_sheet(maps: Maps) -> Sheet:
-    return Sheet(
-        "map", "Every point of the maps (modes)", _points(maps, [*maps.line, *maps.grid]), shown=False
-    )
 
 
 def _points(maps: Maps, drops: Iterable[Drop]) -> Table:
     """Return one row per drop: its parameters and its quantities."""
     listed = (VIBRATION, RESTITUTION, MU, CONTACTS, FRICTION, PLASTIC)
     head = ("gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact")
-    rows = [_row(d, [maps.value(d, measure) for measure in listed]) for d in drops]
+    rows: list[list[Cell]] = []
+    for d in drops:
+        values = [maps.value(d, measure) for measure in listed]
+        rows.append([d.gamma, d.diameter, d.length, d.speed, d.angle, d.friction, KINDS[d.yields], *values])
     return Table.of((*head, *(measure.name for measure in listed)), rows)
-
-
-def _row(d: Drop, values: list[float | None]) -> list[Cell]:
-    return [d.gamma, d.diameter, d.length, d.speed, d.angle, d.friction, KINDS[d.yields], *values]

@@ -19,7 +19,7 @@ from fem_impact.jobs.job import Failure, Job
 from fem_impact.outcome.keys import Num, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import replace_all
-from fem_impact.study.compare import MEASURED, UNSEEN, Row
+from fem_impact.study.compare import COMPARED, MEASURED, UNSEEN, Row
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
@@ -34,8 +34,11 @@ BACKING = (0.5, 1.0)  # times the plate's modulus
 LEVELS = 5  # tip radii of the sample: few, as each needs its own modes
 STRONGER = 1.5  # hardness and tensile test of the two steels bound the yield stress within this factor
 WIDER = 1.5  # times the margin of the barrier's block around the fine zone
-CHANGED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0", "vibration/E_0", "friction/E_0")
-SHOWN = {q.name: q.key for q in (*MEASURED, *UNSEEN) if q.name in CHANGED}
+SHOWN = {
+    quantity.name: quantity.key
+    for quantity in (*MEASURED, *UNSEEN)
+    if quantity.name in (*COMPARED, "vibration/E_0", "friction/E_0")
+}
 """Quantities whose change by an input is listed: name to key."""
 
 
@@ -45,7 +48,7 @@ class UncertainInput:
 
     Attributes
     ----------
-    name, words : str
+    name, description : str
         Short name, and the range with its source.
     varies : bool
         Whether it can differ from test to test of a set; else it is one unknown value for all of them.
@@ -54,7 +57,7 @@ class UncertainInput:
     """
 
     name: str
-    words: str
+    description: str
     varies: bool
     span: Callable[[Scene, MeasuredSet], tuple[float, float]]
 
@@ -152,7 +155,7 @@ class InputChange:
     """A change of one uncertain input: its name, description, and the changed scene keys."""
 
     name: str
-    words: str
+    description: str
     changes: Callable[[Scene], dict[str, Any]]
 
 
@@ -193,42 +196,40 @@ INPUT_CHANGES = (
 )
 # the unchanged run evaluated with other lever arms of the impulse
 ARMS = {"arms-edge": "arms of the tip's edge radius", "arms-impulse": "arms of the impulse"}
-WORDS = {i.name: i.words for i in INPUT_CHANGES} | ARMS
+DESCRIPTIONS = {i.name: i.description for i in INPUT_CHANGES} | ARMS
 
 
 def sensitivity_jobs(coarse: Job, out: Path) -> dict[str, Job]:
     """Return the job of the coarser mesh with each input changed, by the change's name."""
-    scenes = {i.name: replace_all(coarse.scene, i.changes(coarse.scene)) for i in INPUT_CHANGES}
-    names = {name: f"{coarse.name}-{name}" for name in scenes}
-    return {name: Job(names[name], scene, out=out / names[name]) for name, scene in scenes.items()}
+    jobs = {}
+    for change in INPUT_CHANGES:
+        name, scene = f"{coarse.name}-{change.name}", coarse.scene
+        jobs[change.name] = Job(name, replace_all(scene, change.changes(scene)), out=out / name)
+    return jobs
 
 
 def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]) -> list[Row]:
     """Return one row per input and quantity: set, input, quantity, base and changed value."""
     if not isinstance(coarse, Outcome):
         return []
-    runs = {name: run for name, run in changed.items() if isinstance(run, Outcome)}
-    rows = [
-        _row(coarse, name, quantity, key.of(run))
-        for name, run in runs.items()
+    values: list[tuple[str, str, Num]] = [
+        (name, quantity, key.of(run))
+        for name, run in changed.items()
+        if isinstance(run, Outcome)
         for quantity, key in SHOWN.items()
     ]
-    arms = {"arms-edge": coarse.restitution.edge, "arms-impulse": coarse.restitution.impulse}
-    return rows + [
-        _row(coarse, name, quantity, value)
-        for name, rebound in arms.items()
-        for quantity, value in (("e", rebound.e), ("E_ln/E_0", rebound.E_ln), ("E_lt/E_0", rebound.E_lt))
+    for name, arms in (("arms-edge", coarse.restitution.edge), ("arms-impulse", coarse.restitution.impulse)):
+        values += [(name, "e", arms.e), (name, "E_ln/E_0", arms.E_ln), (name, "E_lt/E_0", arms.E_lt)]
+    return [
+        {
+            "set": coarse.provenance.scene_id,
+            "input": name,
+            "quantity": quantity,
+            "base": known(SHOWN[quantity].of(coarse)),
+            "changed": known(value),
+        }
+        for name, quantity, value in values
     ]
-
-
-def _row(coarse: Outcome, name: str, quantity: str, changed: Num) -> Row:
-    return {
-        "set": coarse.provenance.scene_id,
-        "input": name,
-        "quantity": quantity,
-        "base": known(SHOWN[quantity].of(coarse)),
-        "changed": known(changed),
-    }
 
 
 def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> list[Row]:
@@ -242,26 +243,15 @@ def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> lis
     for row in sensitivities:
         change = row["changed"] - row["base"]
         changes_of.setdefault((row["set"], row["quantity"]), {})[row["input"]] = change
-    measured = [row for row in comparison if row["measured_mean"] is not None]
-    outside = [row for row in measured if row["verdict"] != "inside"]
-    return [
-        _explanation(row, changes_of[key])
-        for row in outside
-        if (key := (row["set"], row["quantity"])) in changes_of
-    ]
-
-
-def _explanation(row: Row, changes: Mapping[str, float]) -> Row:
-    """Return the row of a quantity: each input's share of the miss, and the inputs that could explain it."""
-    model, mean = row["model"], row["measured_mean"]
-    edge = row["measured_low"] if model < row["measured_low"] else row["measured_high"]
-    shares = {name: change / (mean - model) for name, change in changes.items()}
-    enough = (edge - model) / (mean - model)
-    return {
-        "set": row["set"],
-        "quantity": row["quantity"],
-        "model": model,
-        "measured_mean": mean,
-        "shares": shares,
-        "could": [name for name, share in shares.items() if share >= enough],
-    }
+    explained = []
+    for row in comparison:
+        change_by_input = changes_of.get((row["set"], row["quantity"]))
+        model, mean, low = row["model"], row["measured_mean"], row["measured_low"]
+        if mean is None or row["verdict"] == "inside" or change_by_input is None:
+            continue
+        shares = {name: change / (mean - model) for name, change in change_by_input.items()}
+        enough = ((low if model < low else row["measured_high"]) - model) / (mean - model)
+        could = [name for name, share in shares.items() if share >= enough]
+        known_values = {name: row[name] for name in ("set", "quantity", "model", "measured_mean")}
+        explained.append({**known_values, "shares": shares, "could": could})
+    return explained

@@ -106,10 +106,6 @@ class _System:
         v_t = rate[:, None] * cosine - (self.omega**2 * q)[:, None] * sine
         return self.shape @ x_t, self.shape @ v_t
 
-    def gap(self, x: Array, v: Array, t: float) -> float:
-        """Return the contact point's normal displacement at a time."""
-        return float(self.c @ self.at(x, v, np.array([t]))[0][:, 0])
-
     def until(self, x: Array, v: Array, rising: bool, horizon: float) -> tuple[Array, Array, bool]:
         """Return x, v at the gap's next rise (or fall) through 0, and whether it is in the horizon, s."""
         dt = 2 * np.pi / float(self.omega.max()) / SAMPLES
@@ -117,15 +113,10 @@ class _System:
         passed = (self.c @ self.at(x, v, t)[0] >= 0.0) == rising
         first = int(passed.argmax())
         touched = bool(passed[first])
-        end = self._refine(x, v, float(t[first]) - dt, float(t[first])) if touched else float(t[-1])
+        low, end = (float(t[first]) - dt, float(t[first])) if touched else (0.0, float(t[-1]))
+        for _ in range(40 if touched else 0):  # bisection; the bracket's later end is taken
+            middle = 0.5 * (low + end)
+            gap = self.c @ self.at(x, v, np.array([middle]))[0][:, 0]
+            low, end = (low, middle) if (gap >= 0.0) == rising else (middle, end)
         state = self.at(x, v, np.array([end]))
         return state[0][:, 0], state[1][:, 0], touched
-
-    def _refine(self, x: Array, v: Array, low: float, high: float) -> float:
-        """Return the time, s, of the gap's change of sign, by bisection: the last bracket's later end."""
-        at_end = self.gap(x, v, high) >= 0.0
-        for _ in range(40):
-            middle = 0.5 * (low + high)
-            same = (self.gap(x, v, middle) >= 0.0) == at_end
-            low, high = (low, middle) if same else (middle, high)
-        return high

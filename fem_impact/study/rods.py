@@ -66,8 +66,13 @@ class Drop:
 
     def scene(self, tip_size: float | None = None) -> Scene:
         """Return the scene; ``tip_size``, m, is for the solid fidelity."""
-        steels, angle = materials(), radians(self.angle)
-        f = self.friction
+        steels, angle, f = materials(), radians(self.angle), self.friction
+        names = (
+            *(("vibration",) if self.vibrates else ()),
+            *(("friction",) if f else ()),
+            *(("rod-plasticity", "barrier-elastoplastic") if self.yields else ("barrier-elastic",)),
+            "large-rotation",
+        )
         accuracy = Accuracy(max_time=LATEST)
         return Scene(
             id=self.name,
@@ -76,13 +81,7 @@ class Drop:
             barrier=Barrier(steels["plate-steel"]),
             surface=Surface("custom", f, f, f, "point of a map"),
             impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
-            effects=self._effects(),
+            effects=names,
             accuracy=replace(accuracy, tip_size=tip_size) if tip_size else accuracy,
             save=Save(frames=0),
         )
-
-    def _effects(self) -> tuple[str, ...]:
-        """Return the names of the scene's effects."""
-        barrier = ("rod-plasticity", "barrier-elastoplastic") if self.yields else ("barrier-elastic",)
-        friction = ("friction",) if self.friction else ()
-        return (*(("vibration",) if self.vibrates else ()), *friction, *barrier, "large-rotation")

@@ -27,7 +27,7 @@ from fem_impact.study.document import Picture, Request, Sheet, StudyReport, Stud
 from fem_impact.study.inputs import UNCERTAIN_INPUTS, UncertainInput, changes, sample_values
 from fem_impact.tables.table import Table
 from rigid import coefficients
-from rigid.experiments import correlation, measured_set
+from rigid.experiments import correlations, measured_set
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -45,7 +45,7 @@ AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
 SetScatter = dict[str, Any]
 """Scatter of one set.
 
-"set": its name; "every", "tests" (n, 4): `OUTPUTS` of the finished runs with all inputs sampled, and with
+"set": its name; "all", "tests" (n, 4): `OUTPUTS` of the finished runs with all inputs sampled, and with
 those that vary from test to test; "measured" (m, 3): `MEASURED` of the single tests; "indices": `_indices`.
 """
 
@@ -58,7 +58,7 @@ def plan(request: Request, results: Results) -> list[Job]:
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Return the study: spread and correlations beside the measured ones, and the rank of the inputs."""
     scatters = [_set_scatter(name, request, results) for name in _sets(request)]
-    scatters = [s for s in scatters if min(len(s["every"]), len(s["tests"])) >= FEWEST]
+    scatters = [s for s in scatters if min(len(s["all"]), len(s["tests"])) >= FEWEST]
     return publish(study_report(scatters, UNCERTAIN_INPUTS, _fidelity(request)), request, results)
 
 
@@ -113,13 +113,13 @@ def _set_scatter(name: str, request: Request, results: Results) -> SetScatter:
         for part in design(n)
     }
     tests = np.concatenate([parts["tests-A"], parts["tests-B"]])
-    every = np.concatenate([parts["A"], parts["B"]])
+    sampled = np.concatenate([parts["A"], parts["B"]])
     measured = measured_set(name).recomputed()
     return {
         "set": name,
-        "every": every[np.isfinite(every).all(axis=1)],
+        "all": sampled[np.isfinite(sampled).all(axis=1)],
         "tests": tests[np.isfinite(tests).all(axis=1)],
-        "measured": np.column_stack([measured[key] for key in ("e", "mu", "Omega")]),
+        "measured": np.column_stack([measured[key] for key in MEASURED]),
         "indices": _indices(parts),
     }
 
@@ -176,7 +176,10 @@ def study_report(
             _index_sheet(scatters, names),
             _sample_sheet(scatters),
         ],
-        [f"{i.name}: {i.words}" + ("" if i.varies else "; one value for all tests of a set") for i in inputs],
+        [
+            f"{i.name}: {i.description}" + ("" if i.varies else "; one value for all tests of a set")
+            for i in inputs
+        ],
         ["sobol", "qmc"],
         sentences,
     )
@@ -204,7 +207,7 @@ def _cloud(scatter: SetScatter) -> Picture:
     panels = []
     for a, b in combinations(range(3), 2):
         x, y = MEASURED[a], MEASURED[b]
-        model = Series("model, all inputs", scatter["every"][:, a], scatter["every"][:, b], "points", 5)
+        model = Series("model, all inputs", scatter["all"][:, a], scatter["all"][:, b], "points", 5)
         tests = Series("model, test to test", scatter["tests"][:, a], scatter["tests"][:, b], "points", 0)
         seen = Series("measured tests", scatter["measured"][:, a], scatter["measured"][:, b], "rings", 1)
         panels.append(Panel(f"{x} and {y}", AXES[x], AXES[y], (model, tests, seen)))
@@ -238,14 +241,10 @@ def _spread_sheet(scatters: Sequence[SetScatter]) -> Sheet:
     rows = []
     for scatter in scatters:
         for i, quantity in enumerate(OUTPUTS):
-            seen = scatter["measured"][:, i] if i < 3 else None
-            measured = [None, None] if seen is None else [float(seen.mean()), float(seen.std(ddof=1))]
-            model = [
-                float(f)
-                for name in ("tests", "every")
-                for f in (scatter[name][:, i].mean(), scatter[name][:, i].std(ddof=1))
-            ]
-            rows.append([scatter["set"], quantity, *model, *measured])
+            known_in = ("tests", "all", "measured") if quantity in MEASURED else ("tests", "all")
+            columns = [scatter[name][:, i] for name in known_in]
+            spreads = [float(f) for column in columns for f in (column.mean(), column.std(ddof=1))]
+            rows.append([scatter["set"], quantity, *spreads, *([] if quantity in MEASURED else [None, None])])
     head = ("set", "quantity", "mean_tests", "sd_tests", "mean_all", "sd_all", "measured_mean", "measured_sd")
     return Sheet(
         "spread",
@@ -257,20 +256,13 @@ def _spread_sheet(scatters: Sequence[SetScatter]) -> Sheet:
 def _correlation_sheet(scatters: Sequence[SetScatter]) -> Sheet:
     rows = []
     for scatter in scatters:
-        for a, b in combinations(range(3), 2):
-            model = correlation(scatter["tests"][:, a], scatter["tests"][:, b])
-            seen = correlation(scatter["measured"][:, a], scatter["measured"][:, b])
-            rows.append(
-                [
-                    scatter["set"],
-                    f"{MEASURED[a]}, {MEASURED[b]}",
-                    model.r,
-                    seen.r,
-                    seen.low,
-                    seen.high,
-                    seen.n,
-                ]
-            )
+        model, measured = (
+            correlations(dict(zip(MEASURED, scatter[name].T[:3], strict=True)))
+            for name in ("tests", "measured")
+        )
+        for pair, of_tests in measured.items():
+            interval = (of_tests.low, of_tests.high)
+            rows.append([scatter["set"], ", ".join(pair), model[pair].r, of_tests.r, *interval, of_tests.n])
     head = ("set", "pair", "model_r", "measured_r", "measured_low", "measured_high", "tests")
     return Sheet(
         "correlations",
@@ -297,7 +289,7 @@ def _sample_sheet(scatters: Sequence[SetScatter]) -> Sheet:
     rows = [
         [scatter["set"], kind, *map(float, row)]
         for scatter in scatters
-        for kind in ("tests", "every")
+        for kind in ("tests", "all")
         for row in scatter[kind]
     ]
     head = ("set", "inputs", "e", "mu", "Omega_rad_per_s", "E_vib_over_E_0")

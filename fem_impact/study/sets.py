@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,9 +15,15 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.study.compare import Row, compare
+from fem_impact.study.compare import COMPARED, Row, compare
 from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
-from fem_impact.study.inputs import INPUT_CHANGES, WORDS, explanations, sensitivity_jobs, sensitivity_rows
+from fem_impact.study.inputs import (
+    DESCRIPTIONS,
+    INPUT_CHANGES,
+    explanations,
+    sensitivity_jobs,
+    sensitivity_rows,
+)
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import Table
 
@@ -73,22 +79,19 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
 
 def with_limits(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
     """Return the outcome with the limits of two meshes and their bands, and store it."""
+    limits: Mapping[str, float] | Unknown
+    bands: Mapping[str, float] | Unknown
     if isinstance(coarse, Failure):
-        return _without_limits(fine, f"the coarser mesh failed: {coarse.reason}")
-    if known(coarse.cost.tip_size) <= known(fine.cost.tip_size):
-        return _without_limits(fine, "the second mesh is not coarser: give a smaller accuracy.tip_size")
-    limits, bands = mesh_limits([fine], [coarse])
+        limits = bands = Unknown(f"the coarser mesh failed: {coarse.reason}")
+    elif known(coarse.cost.tip_size) <= known(fine.cost.tip_size):
+        limits = bands = Unknown("the second mesh is not coarser: give a smaller accuracy.tip_size")
+    else:
+        limits, bands = mesh_limits([fine], [coarse])
     limited = replace(fine, validity=replace(fine.validity, mesh_limit=limits, mesh_band=bands))
     limited.write(out / "outcome.json")
     return limited
 
 
-def _without_limits(fine: Outcome, reason: str) -> Outcome:
-    missing = Unknown(reason)
-    return replace(fine, validity=replace(fine.validity, mesh_limit=missing, mesh_band=missing))
-
-
-COMPARED = ("e", "mu", "Omega", "E_ln/E_0", "E_lt/E_0", "E_r/E_0")
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")
 
 
@@ -109,7 +112,7 @@ def sets_report(
             *_limits(outcomes),
             *(_input_sheets(changed, explained) if changed else ()),
         ],
-        assumptions=[f"{name}: {meaning}." for name, meaning in WORDS.items()] if changed else (),
+        assumptions=[f"{name}: {text}." for name, text in DESCRIPTIONS.items()] if changed else (),
         sources=sorted({effect for outcome in outcomes for effect in outcome.provenance.effects}),
         conclusions=[("", sentence) for sentence in sentences],
         outcomes=outcomes,
@@ -126,7 +129,7 @@ def inside_sentence(comparison: Sequence[Row]) -> str:
 
 def miss_sentence(explained: Sequence[Row]) -> str:
     """Return the sentence on how many misses each input could explain, and how many none could."""
-    counts = {name: sum(name in row["could"] for row in explained) for name in WORDS}
+    counts = {name: sum(name in row["could"] for row in explained) for name in DESCRIPTIONS}
     ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
     listed = ", ".join(f"{name} {counts[name]}" for name in ranked) or "none"
     lost = sum(not row["could"] for row in explained)
@@ -188,18 +191,18 @@ def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
 
 def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     """Return one row per set with two meshes: limits and bands of e and E_vib, CPU time of the finer mesh."""
-    rows = [_limit_row(o) for o in outcomes if or_none(o.validity.mesh_band)]
+    rows = []
+    for outcome in outcomes:
+        if or_none(outcome.validity.mesh_band):
+            cells = [outcome.provenance.scene_id]
+            for key, scale in (("e_edge", 1), ("E_vib_over_E_0", 100)):
+                limit = known(outcome.validity.mesh_limit)[key]
+                band = known(outcome.validity.mesh_band)[key]
+                cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", f"{100 * band / abs(limit):.2g}"]
+            rows.append([*cells, f"{outcome.cost.cpu:.0f}"])
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
-
-
-def _limit_row(o: Outcome) -> tuple[str, ...]:
-    limits, bands = known(o.validity.mesh_limit), known(o.validity.mesh_band)
-    (e, e_band), (vib, vib_band) = ((limits[k], bands[k]) for k in ("e_edge", "E_vib_over_E_0"))
-    of_e, of_vib = (f"{100 * band / abs(value):.2g}" for value, band in ((e, e_band), (vib, vib_band)))
-    share = f"{100 * vib:.3f} ± {100 * vib_band:.3f}"
-    return (o.provenance.scene_id, f"{e:.3f} ± {e_band:.3f}", of_e, share, of_vib, f"{o.cost.cpu:.0f}")
 
 
 def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Sheet]:
@@ -220,15 +223,12 @@ def _changes(changed: Sequence[Row]) -> Table:
     by_quantity: dict[tuple[str, str], dict[str, Row]] = {}
     for row in changed:
         by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
-    rows = [
-        (*key, f"{next(iter(of.values()))['base']:.3g}", *(_change(of.get(name)) for name in WORDS))
-        for key, of in by_quantity.items()
-    ]
-    return Table.of(("set", "quantity", "coarser mesh", *WORDS), rows)
-
-
-def _change(row: Row | None) -> str:
-    return "" if row is None else f"{row['changed'] - row['base']:+.2g}"
+    rows = []
+    for key, by_input in by_quantity.items():
+        base = next(iter(by_input.values()))["base"]
+        shown = {name: f"{row['changed'] - row['base']:+.2g}" for name, row in by_input.items()}
+        rows.append((*key, f"{base:.3g}", *(shown.get(name, "") for name in DESCRIPTIONS)))
+    return Table.of(("set", "quantity", "coarser mesh", *DESCRIPTIONS), rows)
 
 
 def _explanations(explained: Sequence[Row]) -> Table:

@@ -17,11 +17,11 @@ from scipy.optimize import brentq
 from fem_impact.figures.lines import Panel, Series
 from fem_impact.modal.impact import plastic_work
 from fem_impact.modal.rod import modal_rod
-from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.physics.contact_law import contact_law
 from fem_impact.plan.plan import plan
-from fem_impact.study.criterion_measure import Rod, Rods
+from fem_impact.study.criterion_measure import Rod, Rods, of_body
 from fem_impact.study.document import Picture, Sheet
-from fem_impact.study.rods import BODY, PAPER_RODS, Drop
+from fem_impact.study.rods import PAPER_RODS, Drop
 from fem_impact.tables.table import Cell, Table
 
 SHORT = 14.5  # gamma, m^-0.3815: below it vibration takes less than 0.5 % of E_0 at any angle
@@ -32,9 +32,9 @@ Gives = Sequence[tuple[Rod, NDArray[np.float64]]]
 
 def gives_of(rods: Rods) -> Gives:
     """Return the 19 mm rods by slenderness, and their e by static give alone at every angle."""
-    same = sorted((r for r in rods if r.drop.diameter == BODY), key=lambda r: r.drop.gamma)
     return [
-        (r, np.array([static_restitution(replace(r.drop, angle=float(a))) for a in r.angles])) for r in same
+        (r, np.array([static_restitution(replace(r.drop, angle=float(a))) for a in r.angles]))
+        for r in of_body(rods)
     ]
 
 
@@ -62,17 +62,6 @@ def give_sentences(gives: Gives) -> list[str]:
         return []
     error = max(r.error for r, _ in short)
     left = max(float(np.abs(r.e - e).max()) for r, e in short)
-    return [
-        f"Yielding, frictionless: below gamma {SHORT:g} the error, up to {error:.3f}, is no loss to "
-        "vibration. A rod that gives way elastically stores part of the blow and hands it back, so that less "
-        "flows plastically and it bounces more than a rigid one; that static give alone predicts e within "
-        f"{left:.3f}, and it goes to zero with gamma.",
-        _paper_rods_sentence(gives),
-    ]
-
-
-def _paper_rods_sentence(gives: Gives) -> str:
-    """Return e of the paper's rods at 45 degrees: rigid, by static give, vibrating."""
     values = []
     for name, length in PAPER_RODS.items():
         rod, give = next((r, e) for r, e in gives if r.drop.length == length)
@@ -80,10 +69,14 @@ def _paper_rods_sentence(gives: Gives) -> str:
         values.append(
             f"{name} rod: rigid {rod.e_rigid[at]:.2f}, give {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
         )
-    return (
+    return [
+        f"Yielding, frictionless: below gamma {SHORT:g} the error, up to {error:.3f}, is no loss to "
+        "vibration. A rod that gives way elastically stores part of the blow and hands it back, so that less "
+        "flows plastically and it bounces more than a rigid one; that static give alone predicts e within "
+        f"{left:.3f}, and it goes to zero with gamma.",
         "Without friction this makes long rods bounce more than short ones, which no contact law does; e at "
-        f"45 degrees: {'; '.join(values)}."
-    )
+        f"45 degrees: {'; '.join(values)}.",
+    ]
 
 
 def give_sheet(gives: Gives) -> Sheet:
@@ -110,14 +103,12 @@ def static_restitution(drop: Drop) -> float:
     flexibility = float((rod.along_n**2 / rod.omega**2).sum())
 
     def surplus(depth: float) -> float:
-        force, work = _loading(law, depth)
-        return work + 0.5 * flexibility * force**2 - energy
+        """Return the energy of the loading to a depth, m, less the impact's, J."""
+        # first loading: Hertz, then linear beyond yield
+        elastic = min(depth, law.yield_depth)
+        beyond, force = depth - elastic, law.stiffness * elastic**1.5
+        work = 0.4 * force * elastic + (force + 0.5 * law.slope * beyond) * beyond
+        total: float = work + 0.5 * flexibility * (force + law.slope * beyond) ** 2 - energy
+        return total
 
     return sqrt(1 - plastic_work(law, brentq(surplus, 0.0, drop.radius)) / energy)
-
-
-def _loading(law: ContactLaw, depth: float) -> tuple[float, float]:
-    """Return force, N, and work, J, of first loading to a depth, m: Hertz, then linear beyond yield."""
-    elastic = min(depth, law.yield_depth)
-    beyond, force = depth - elastic, law.stiffness * elastic**1.5
-    return force + law.slope * beyond, 0.4 * force * elastic + (force + 0.5 * law.slope * beyond) * beyond

@@ -5,6 +5,7 @@ import json
 import pytest
 from study_fakes import outcome
 
+from fem_impact.cost.limits import Limit
 from fem_impact.jobs.job import Failure
 from fem_impact.progress import NullMeter
 from fem_impact.study.convergence import QUANTITIES, _pairs, conclude, convergence_rows, jobs_of, plan
@@ -45,14 +46,15 @@ def test_every_quantity_has_its_limit():
     rows = {row["quantity"]: row for row in convergence_rows("t5b", meshes)}
     assert rows["e"]["values"] == pytest.approx([0.36, 0.37, 0.38])
     assert rows["e"]["apart"] == pytest.approx([0.02] * 3)
-    assert rows["e"]["limit"] == pytest.approx(0.4)
-    assert rows["e"]["order"] == pytest.approx(1.0, abs=1e-3)
-    assert rows["e"]["band"] == pytest.approx(1.25 * 0.02, rel=1e-3)
-    assert rows["mu"]["limit"] == pytest.approx(0.5)
+    assert rows["e"]["fit"].value == pytest.approx(0.4)
+    assert rows["e"]["fit"].order == pytest.approx(1.0, abs=1e-3)
+    assert rows["e"]["fit"].band == pytest.approx(1.25 * 0.02, rel=1e-3)
+    assert rows["mu"]["fit"].value == pytest.approx(0.5)
 
 
 def test_two_meshes_are_held_to_the_limit_of_all():
-    row = {"tip_size_m": [4.0, 2.0, 1.0], "values": [0.5, 0.3, 0.2], "limit": 0.1}
+    fit = Limit(0.1, 1.0, 0.1, 0.0)
+    row = {"tip_size_m": [4.0, 2.0, 1.0], "values": [0.5, 0.3, 0.2], "fit": fit}
     assert _pairs([row]) == ["Two meshes, extrapolated: 3 of 3 bands hold the limit of all."]
     astray = row | {"values": [0.5, 0.45, 0.2]}  # .45 and .5 lead to .4 and leave .1 open, the others not
     assert _pairs([astray]) == ["Two meshes, extrapolated: 2 of 3 bands hold the limit of all."]
