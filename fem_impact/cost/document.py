@@ -23,15 +23,8 @@ WIDE = 400
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
 SCALARS = ("name", "kind", "fidelity", "tip_size_m")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
-COLUMNS = (
-    *SCALARS,
-    *COSTS,
-    *(f"value_{name}" for name in NAMES),
-    *(f"error_{name}" for name in NAMES),
-    *(f"scatter_{name}" for name in NAMES),
-    *(f"band_{name}" for name in NAMES),
-    "front",
-)
+NUMBERS = tuple(f"{kind}_{name}" for kind in ("value", "error", "scatter", "band") for name in NAMES)
+COLUMNS = (*SCALARS, *COSTS, *NUMBERS, "front")
 LOOKS = {
     "rigid": ("rigid", "s", "purple"),
     "modal": ("modal", "D", "orange"),
@@ -56,11 +49,9 @@ def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
 
 
 def _row(setting: Judged) -> list[Cell]:
-    data = setting.to_dict()
-    errors = [setting.error[name] for name in NAMES]
-    values = [setting.value[name] for name in NAMES]
-    own = [shares.get(name) for shares in (setting.scatter, setting.band) for name in NAMES]
-    return [*(data[key] for key in (*SCALARS, *COSTS)), *values, *errors, *own, " ".join(setting.front)]
+    fields = [getattr(setting, key) for key in (*SCALARS, *COSTS)]
+    by_name = (setting.value, setting.error, setting.scatter, setting.band)
+    return [*fields, *(values.get(name) for values in by_name for name in NAMES), " ".join(setting.front)]
 
 
 COST_COLUMNS = (
@@ -121,10 +112,9 @@ def _line(
     """Return name and cost of a setting, and some of its values in per cent."""
     memory = setting.peak_memory_MB
     costs = (setting.wall_s, setting.cpu_s, setting.element_steps, None if memory is None else round(memory))
-    shares = [(name, values.get(name)) for name in names]
     shown = [
-        None if share is None else f"{'*' if name in front else ''}{100 * share:.3g}"
-        for name, share in shares
+        None if (share := values.get(name)) is None else f"{'*' if name in front else ''}{100 * share:.3g}"
+        for name in names
     ]
     return (setting.name, *costs, *shown)
 
@@ -142,6 +132,8 @@ def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path)
 
 
 def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
+    from matplotlib.ticker import MaxNLocator, NullFormatter
+
     best = front(settings, [name])
     axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
     for kind, (label, marker, colour) in LOOKS.items():
@@ -149,20 +141,13 @@ def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
         axes.plot(*_points(of_kind, name), marker, color=PALETTE[colour], label=label, markersize=5)
     axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
     axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
-    _plain(axes)
-    axes.grid(alpha=0.5)
-
-
-def _plain(axes: Axes) -> None:
-    """Label ticks with plain numbers; an error axis of less than a decade has ticks at even round steps."""
-    from matplotlib.ticker import MaxNLocator, NullFormatter
-
     low, high = axes.get_ylim()
-    if high < 10 * low:
+    if high < 10 * low:  # less than a decade: ticks at even round steps
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(NullFormatter())
+    axes.grid(alpha=0.5)
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
@@ -179,7 +164,10 @@ def summary_markdown(document: dict[str, Any]) -> str:
         name: (cost["quantities"], [Judged(**setting) for setting in cost["settings"]])
         for name, cost in document["scenes"].items()
     }
-    columns = _columns([settings for _, settings in scenes.values()])
+    # in order of cost, without pairs and settings that leave an effect out
+    kinds = ("rigid", "modal", "mesh", "numerics")
+    named = {one.name: one for _, settings in scenes.values() for one in settings if one.kind in kinds}
+    columns = sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
     head = ["set", *(f"{name}, limit" for name in TARGETED), *columns]
     body = [
         [
@@ -231,26 +219,17 @@ def _best(name: str, quantities: dict[str, Any], settings: list[Judged]) -> tupl
     return [value, f"{band} {scatter}", sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"], met
 
 
-def _columns(groups: list[list[Judged]]) -> list[str]:
-    """Return names of settings in order of cost, without pairs and those that leave an effect out."""
-    kinds = ("rigid", "modal", "mesh", "numerics")
-    named = {one.name: one for settings in groups for one in settings if one.kind in kinds}
-    return sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
-
-
 def _markdown_cell(settings: list[Judged], name: str) -> str:
+    """Return errors with scatter, in per cent, and CPU time of a setting; empty where it was not run."""
     setting = next((one for one in settings if one.name == name), None)
     if setting is None:
         return ""
-    errors = " / ".join(_off(setting, quantity) for quantity in TARGETED)
-    return f"{errors}, {setting.cpu_s:.2g} s"
-
-
-def _off(setting: Judged, quantity: str) -> str:
-    """Return the error and, where it was measured, the scatter, in per cent."""
-    error, scatter = setting.error[quantity], setting.scatter.get(quantity)
-    shown = "-" if error is None else _percent(error)
-    return shown if scatter is None else f"{shown} ± {_percent(scatter)}"
+    errors = []
+    for quantity in TARGETED:
+        error, scatter = setting.error[quantity], setting.scatter.get(quantity)
+        shown = "-" if error is None else _percent(error)
+        errors.append(shown if scatter is None else f"{shown} ± {_percent(scatter)}")
+    return f"{' / '.join(errors)}, {setting.cpu_s:.2g} s"
 
 
 def _percent(error: float) -> str:

@@ -19,7 +19,7 @@ Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """A setting with what it gave and what it took; times in s, memory in 1e6 bytes.
+    """A setting with its results and costs; times in s, memory in 1e6 bytes.
 
     Settings are compared by CPU time: a run has one thread, so this is its wall time on a free core and does
     not depend on other programs.
@@ -31,7 +31,11 @@ class Judged:
         its band where that is less; where an effect is left out, the change by that on the same mesh
     scatter : standard error of the value over the scale, of a solid setting with all effects
     band : of a pair, uncertainty of its extrapolation over the scale, scatter included
-    two_cores_s : CPU time of the longer half when the runs are divided between two cores
+    wall_s, cpu_s : wall and processor time of all runs, each with its set-up, which an outcome states apart
+        from its own ``wall_s`` and ``cpu_s`` (``setup_wall_s``, ``setup_cpu_s``)
+    two_cores_s : ``cpu_s`` of the longer half when the runs are divided between two cores
+    element_steps : elements times time steps, None for a reduced model
+    peak_memory_MB : of the largest run
     meshes : of a solid setting, the finer first
     front : names of the quantities on whose Pareto front the setting lies
     """
@@ -51,10 +55,6 @@ class Judged:
     element_steps: int | None
     peak_memory_MB: float | None
     front: list[str] = field(default_factory=list)
-
-    def to_dict(self) -> dict[str, Any]:
-        """Return plain data."""
-        return asdict(self)
 
 
 def judge(
@@ -93,7 +93,7 @@ def judge(
         wall_s=sum(wall_seconds(run) for run in flat),
         cpu_s=sum(cpu_seconds(run) for run in flat),
         two_cores_s=max(sum(cpu_seconds(run) for run in lane) for lane in (flat[0::2], flat[1::2])),
-        element_steps=_total(or_none(run.cost.element_steps) for run in flat),
+        element_steps=sum(or_none(run.cost.element_steps) or 0 for run in flat) or None,
         peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in flat), default=0.0) or None,
     )
 
@@ -114,11 +114,6 @@ def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float
         return None
     bound = abs(value - truth.value) + truth.uncertainty
     return (min(bound, own.uncertainty) if own else bound) / truth.scale
-
-
-def _total(counts: Iterable[int | None]) -> int | None:
-    present = [count for count in counts if count is not None]
-    return sum(present) if present else None
 
 
 def worst(judged: Judged, names: Iterable[str]) -> float:
@@ -144,14 +139,12 @@ def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
 
 def cheapest(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the quickest setting whose worst error is at most the target, None if there is none."""
-    good = [one for one in front(settings, names) if worst(one, names) <= target]
-    return min(good, key=lambda one: one.cpu_s, default=None)
+    return next((one for one in front(settings, names) if worst(one, names) <= target), None)
 
 
 def best_within(settings: Sequence[Judged], names: Sequence[str], budget: float) -> Judged | None:
     """Return the most accurate setting that takes at most ``budget`` s, None if there is none."""
-    quick = [one for one in front(settings, names) if one.cpu_s <= budget]
-    return min(quick, key=lambda one: worst(one, names), default=None)
+    return next((one for one in reversed(front(settings, names)) if one.cpu_s <= budget), None)
 
 
 def advice(
@@ -192,13 +185,9 @@ def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -
     good = [one for one in pairs if all(one.band[name] <= target for name in names)]
     if good:
         return min(good, key=lambda one: one.two_cores_s)
-    return max(pairs, key=_apart, default=None)
-
-
-def _apart(pair: Judged) -> tuple[float, int]:
-    """Return the ratio of the meshes of a pair, and how fine the finer is."""
-    fine, coarse = (mesh["across"] * 2 ** mesh["levels"] for mesh in pair.meshes)
-    return fine / coarse, fine
+    cells = [[mesh["across"] * 2 ** mesh["levels"] for mesh in pair.meshes] for pair in pairs]
+    ranked = [(fine / coarse, fine) for fine, coarse in cells]
+    return pairs[ranked.index(max(ranked))] if pairs else None
 
 
 def pair_sentence(

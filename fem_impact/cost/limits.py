@@ -9,9 +9,10 @@ are fitted by least squares (`limit`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from math import sqrt
+from operator import itemgetter
 from statistics import fmean, stdev
 
 import numpy as np
@@ -46,7 +47,7 @@ class Truth:
     ----------
     value : limit; order : observed order of convergence, None where there is none
     uncertainty : of the limit, ``scatter`` included
-    scale : divisor of errors
+    scale : divisor of errors, in the unit of the quantity
     scatter : standard error of the limit by the scatter over the places of the grid
     """
 
@@ -72,15 +73,6 @@ class Limit:
     value: float
     order: float | None
     band: float
-    scatter: float
-
-
-@dataclass(frozen=True, slots=True)
-class _Fit:
-    """Least squares: the ``terms`` in powers of the element size on each mesh, value at size 0, scatter."""
-
-    terms: Array
-    value: float
     scatter: float
 
 
@@ -124,21 +116,29 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
     """
     sizes = _sizes(meshes)
     finest = sizes.index(min(sizes))
-    shared = [q for q in QUANTITIES if all(mean(q, runs) is not None for runs in meshes)]
-    return {q.name: _truth(q, sizes, meshes, finest) for q in shared}
+    limits = {}
+    for quantity in QUANTITIES:
+        if any(mean(quantity, runs) is None for runs in meshes):
+            continue
+        values = [values_of(quantity, runs) for runs in meshes]
+        truth = _limit_of(sizes, values)
+        # the larger of limit and finest value, so that a limit near zero does not inflate the errors
+        size = max(abs(truth.value), abs(fmean(values[finest])))
+        limits[quantity.name] = replace(truth, scale=quantity.scale(size, meshes[finest][0]))
+    return limits
 
 
 def mesh_limits(fine: Placed, coarse: Placed) -> tuple[dict[str, float], dict[str, float]]:
     """Return limit and half-width of two meshes, by key, of every number that all their runs know."""
-    fine_values, coarse_values = _banded(fine), _banded(coarse)
+    sizes, fine_values, coarse_values = _sizes((fine, coarse)), _banded(fine), _banded(coarse)
     limits = {
-        name: _limit_of(_sizes((fine, coarse)), (fine_values[name], coarse_values[name]))
-        for name in fine_values
+        name: _limit_of(sizes, (values, coarse_values[name]))
+        for name, values in fine_values.items()
         if name in coarse_values
     }
     return (
-        {name: value for name, (value, _, _, _) in limits.items()},
-        {name: left_open + scatter for name, (_, _, left_open, scatter) in limits.items()},
+        {name: limit.value for name, limit in limits.items()},
+        {name: limit.uncertainty for name, limit in limits.items()},
     )
 
 
@@ -157,43 +157,31 @@ def _sizes(meshes: Sequence[Placed]) -> list[float]:
     return [known(runs[0].cost.tip_size) for runs in meshes]
 
 
-def _truth(quantity: TargetQuantity, sizes: list[float], meshes: Sequence[Placed], finest: int) -> Truth:
-    values = [values_of(quantity, runs) for runs in meshes]
-    value, order, left_open, scatter = _limit_of(sizes, values)
-    # the larger of limit and finest value, so that a limit near zero does not inflate the errors
-    size = max(abs(value), abs(fmean(values[finest])))
-    return Truth(value, order, left_open + scatter, quantity.scale(size, meshes[finest][0]), scatter)
+def _limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Truth:
+    """Return the limit from the values of several runs on each mesh.
 
-
-def _limit_of(
-    sizes: list[float], values: Sequence[Sequence[float]]
-) -> tuple[float, float | None, float, float]:
-    """Return limit, order, its uncertainty by extrapolation, and its standard error by scatter."""
-    means = [fmean(on_mesh) for on_mesh in values]
-    scatter = _carried(sizes, means, [standard_error(on_mesh) for on_mesh in values])
-    return *_limit(sizes, means), scatter
+    The standard error of the limit by the scatter of those values is the root mean square change of the
+    limit when each mean is moved up or down by its standard error, in all combinations; for a pair exactly
+    the root of the weighted sum of variances.
+    """
+    means, errors = [fmean(on_mesh) for on_mesh in values], [standard_error(on_mesh) for on_mesh in values]
+    value, order, extrapolation = _limit(sizes, means)
+    changes = [
+        _limit(sizes, [v + s * e for v, s, e in zip(means, signs, errors, strict=True)])[0] - value
+        for signs in product((-1.0, 1.0) if any(errors) else (0.0,), repeat=len(means))
+    ]
+    scatter = sqrt(fmean(change**2 for change in changes))
+    return Truth(value, order, extrapolation + scatter, 1.0, scatter)
 
 
 def _limit(sizes: list[float], values: list[float]) -> tuple[float, float | None, float]:
-    """Return limit, order and uncertainty by extrapolation."""
+    """Return limit, order and uncertainty by extrapolation from one value on each mesh."""
     last, first = (values[sizes.index(extreme(sizes))] for extreme in (min, max))
     if len(sizes) == 2:
         value, half = pair_limit(last, first, max(sizes) / min(sizes))
         return value, None, half
     fitted = limit(sizes, values)
     return fitted.value, fitted.order, fitted.band - abs(fitted.value - last)
-
-
-def _carried(sizes: list[float], values: list[float], errors: list[float]) -> float:
-    """Return the standard error of a limit from those of the means.
-
-    It is the root mean square change of the limit when each mean is moved up or down by its standard error,
-    in all combinations; for a pair exactly the root of the weighted sum of variances.
-    """
-    value = _limit(sizes, values)[0]
-    signs = product((-1.0, 1.0), repeat=len(values)) if any(errors) else ()
-    moved = [[v + s * e for v, s, e in zip(values, by, errors, strict=True)] for by in signs]
-    return sqrt(fmean((_limit(sizes, other)[0] - value) ** 2 for other in moved)) if moved else 0.0
 
 
 def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
@@ -225,40 +213,32 @@ def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
     h, q = np.asarray(sizes, float), np.asarray(values, float)
     if len(np.unique(h)) < 3:
         raise RunError(f"A limit needs three meshes or more; there are {len(np.unique(h))}.")
-    h, q = h / h.min(), q.copy()
-    order, fit = _best(h, q)
-    finest = int(h.argmin())
-    return Limit(fit.value, order, _band(order is not None, fit, q, finest), fit.scatter)
+    h = h / h.min()
+    p = minimize_scalar(
+        lambda p: _least_squares(h, q, p, len(h) - 1)[2], bounds=(0.1, 4.0), method="bounded"
+    ).x
+    accepted = LOWEST_FITTED <= p <= HIGHEST_FITTED + 0.1
+    fits = (
+        [_least_squares(h, q, float(p), 3)] if accepted else [_least_squares(h, q, p, 2) for p in (1.0, 2.0)]
+    )
+    value, terms, scatter = min(fits, key=itemgetter(2))
+    finest, spread = int(h.argmin()), (q.max() - q.min()) / (len(q) - 1)
+    error, off = abs(terms[finest]), abs(q[finest] - value - terms[finest])
+    if scatter < spread:
+        band = (SURE if accepted else UNSURE) * error + scatter + off
+    else:
+        band = 3 * scatter / spread * (error + scatter + off) if spread else 0.0
+    return Limit(value, float(p) if accepted else None, float(band), scatter)
 
 
-def _best(h: Array, q: Array) -> tuple[float | None, _Fit]:
-    """Return the order and fit to use; the order is None where only fixed orders are accepted."""
+def _least_squares(h: Array, q: Array, order: float, unknowns: int) -> tuple[float, Array, float]:
+    """Fit q_0 + a h^order with weights 1/h, as finer meshes count for more.
 
-    def scatter(p: float) -> float:
-        return _least_squares(h, q, (p,), len(h) - 1).scatter
-
-    p = float(minimize_scalar(scatter, bounds=(0.1, 4.0), method="bounded").x)
-    if LOWEST_FITTED <= p <= HIGHEST_FITTED + 0.1:
-        return p, _least_squares(h, q, (p,), 3)
-    fits = (_least_squares(h, q, (fixed,), 2) for fixed in (1.0, 2.0))
-    return None, min(fits, key=lambda fit: fit.scatter)
-
-
-def _least_squares(h: Array, q: Array, powers: tuple[float, ...], unknowns: int) -> _Fit:
-    """Fit q_0 + sum a_j h^p_j with weights 1/h: finer meshes count for more."""
+    Returns q_0, the terms a h^order (n,), and the standard deviation of q about the fit.
+    """
     weights = (1 / h) / (1 / h).mean()
-    columns = np.stack([np.ones_like(h), *(h**p for p in powers)], axis=1)
-    root = np.sqrt(weights)
-    coefficients = np.linalg.lstsq(columns * root[:, None], q * root, rcond=None)[0]
-    terms = columns[:, 1:] @ coefficients[1:]
-    rest = np.sqrt(weights @ (q - coefficients[0] - terms) ** 2 / max(len(h) - unknowns, 1))
-    return _Fit(terms, float(coefficients[0]), float(rest) if len(h) > unknowns else 0.0)
-
-
-def _band(accepted: bool, fit: _Fit, q: Array, at: int) -> float:
-    """Return the half-width about the value on mesh ``at``."""
-    spread = (q.max() - q.min()) / (len(q) - 1)
-    error, off = abs(fit.terms[at]), abs(q[at] - fit.value - fit.terms[at])
-    if fit.scatter < spread:
-        return float((SURE if accepted else UNSURE) * error + fit.scatter + off)
-    return float(3 * fit.scatter / spread * (error + fit.scatter + off)) if spread else 0.0
+    columns, root = np.stack([np.ones_like(h), h**order], axis=1), np.sqrt(weights)
+    value, slope = np.linalg.lstsq(columns * root[:, None], q * root, rcond=None)[0]
+    terms = columns[:, 1] * slope
+    rest = np.sqrt(weights @ (q - value - terms) ** 2 / max(len(h) - unknowns, 1))
+    return float(value), terms, float(rest) if len(h) > unknowns else 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -52,8 +52,18 @@ class CostStudy:
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
         """Return unit, limit, order, uncertainty and scale of every quantity."""
-        given = [q for q in QUANTITIES if q.name in self.truth]
-        return {q.name: {"unit": q.unit, **_plain(self.truth[q.name])} for q in given}
+        return {
+            quantity.name: {
+                "unit": quantity.unit,
+                "limit": truth.value,
+                "order": truth.order,
+                "uncertainty": truth.uncertainty,
+                "scatter": truth.scatter,
+                "scale": truth.scale,
+            }
+            for quantity in QUANTITIES
+            if (truth := self.truth.get(quantity.name))
+        }
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data."""
@@ -66,19 +76,9 @@ class CostStudy:
             "machine": yardsticks(),
             "scene": to_dict(self.scene),
             "quantities": self.quantities,
-            "settings": [setting.to_dict() for setting in self.settings],
+            "settings": [asdict(setting) for setting in self.settings],
             "failures": self.failures,
         }
-
-
-def _plain(truth: Truth) -> dict[str, float | None]:
-    return {
-        "limit": truth.value,
-        "order": truth.order,
-        "uncertainty": truth.uncertainty,
-        "scatter": truth.scatter,
-        "scale": truth.scale,
-    }
 
 
 def measure(
@@ -143,7 +143,10 @@ def _compile(scene: Scene, executor: Executor) -> None:
 
 
 def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> CostStudy:
-    """Judge the runs of a ladder; settings that lack one are left out."""
+    """Judge the runs of a ladder; settings that lack one are left out.
+
+    Settings are in order of CPU time, each with the quantities on whose Pareto front it lies.
+    """
     runs = {setting.name: _runs(setting, results) for setting in settings}
     failures = [
         {"setting": name, "reason": reason}
@@ -154,14 +157,18 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
     if len(meshes) < 2:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    truth, judged = truths(list(meshes.values())), []
-    for setting in settings:
-        outcomes, whole = runs[setting.name], meshes.get(PLAIN)
-        if setting.kind == "effect":
-            judged += [judge(setting, outcomes, truth, whole)] if outcomes and whole else []
-        elif outcomes:
-            judged.append(judge(setting, outcomes, truth))
-    return CostStudy(scene, truth, _marked(judged), failures)
+    truth, plain = truths(list(meshes.values())), meshes.get(PLAIN)
+    judged = [
+        judge(setting, runs[setting.name], truth, plain if setting.kind == "effect" else None)
+        for setting in settings
+        if runs[setting.name] and (plain or setting.kind != "effect")
+    ]
+    fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
+    marked = [
+        replace(one, front=[name for name, members in fronts.items() if one.name in members])
+        for one in sorted(judged, key=lambda one: one.cpu_s)
+    ]
+    return CostStudy(scene, truth, marked, failures)
 
 
 def _failure(result: Outcome | Failure) -> str | None:
@@ -178,12 +185,3 @@ def _runs(setting: Setting, results: Results) -> list[Placed]:
         for jobs in setting.runs
     ]
     return good if [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs] else []
-
-
-def _marked(judged: list[Judged]) -> list[Judged]:
-    """Sort by time and name the quantities on whose Pareto front each setting lies."""
-    fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
-    ordered = sorted(judged, key=lambda one: one.cpu_s)
-    return [
-        replace(o, front=[name for name, members in fronts.items() if o.name in members]) for o in ordered
-    ]

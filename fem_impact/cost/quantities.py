@@ -67,7 +67,7 @@ TARGETED = ("e", "E_vib")
 """Quantities that a target error applies to unless others are named."""
 
 
-def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
+def chosen(asked: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     """Return names of quantities after checking them, `TARGETED` if there are none.
 
     Raises
@@ -77,7 +77,7 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
     SceneError
         For one that no run of the ``scene`` knows.
     """
-    wanted = tuple(names)
+    wanted = tuple(asked)
     rigid = scene is not None and "vibration" not in active(scene)
     if rigid and "E_vib" in wanted:
         raise SceneError(
@@ -86,9 +86,9 @@ def chosen(names: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
             value="E_vib",
             remedy='Name others, or add "vibration" to the effects of the scene.',
         )
-    names_of_all = [quantity.name for quantity in QUANTITIES]
+    names = [quantity.name for quantity in QUANTITIES]
     for name in wanted:
-        if name not in names_of_all:
-            remedy = f"Known: {', '.join(names_of_all)}."
+        if name not in names:
+            remedy = f"Known: {', '.join(names)}."
             raise UsageError("is not a quantity of interest.", key="--of", value=name, remedy=remedy)
     return wanted or tuple(name for name in TARGETED if not (rigid and name == "E_vib"))

@@ -76,7 +76,7 @@ def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     scene = replace_all(scene, {"save.frames": 0})
     settings = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
     settings += [_solid(scene, mesh) for mesh in family]
-    settings += [_pair(scene, fine, coarse) for fine, coarse in _pairs(scene, family)]
+    settings += _pairs(scene, family)
     settings += [_solid(scene, mesh, "numerics", label) for label, mesh in NUMERICS.items()]
     return settings + _without(scene)
 
@@ -94,9 +94,8 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
     """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
     places = FEWER_PLACES if mesh == FINEST else PLACES
-    return [
-        on_mesh(scene, mesh, place) for place in places[: 1 if "barrier-rigid" in active(scene) else None]
-    ]
+    count = 1 if "barrier-rigid" in active(scene) else len(places)
+    return [on_mesh(scene, mesh, place) for place in places[:count]]
 
 
 def _job(scene: Scene, name: str, fidelity: str) -> Job:
@@ -118,17 +117,16 @@ def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Se
     return Setting(name, kind, "solid", (_jobs(scene, mesh, name),), (mesh,))
 
 
-def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[tuple[Mesh, Mesh]]:
-    """Return (fine, coarse) of all pairs of meshes with a ratio of sizes of `APART` or more."""
+def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[Setting]:
+    """Return all pairs of meshes with a ratio of sizes of `APART` or more."""
     size = {mesh: mesh.tip_size(scene.projectile.diameter) for mesh in family}
-    both = ((fine, coarse) for coarse, fine in combinations(family, 2))
-    return [pair for pair in both if size[pair[1]] / size[pair[0]] > APART * (1 - 1e-9)]
-
-
-def _pair(scene: Scene, fine: Mesh, coarse: Mesh) -> Setting:
-    sizes = " and ".join(f"{m.tip_size(scene.projectile.diameter) * 1e3:.3g}" for m in (coarse, fine))
-    runs = tuple(_jobs(scene, mesh, _name(scene, mesh)) for mesh in (fine, coarse))
-    return Setting(f"solid {sizes} mm extrapolated", "pair", "solid", runs, (fine, coarse))
+    settings = []
+    for coarse, fine in combinations(family, 2):
+        if size[coarse] / size[fine] > APART * (1 - 1e-9):
+            name = f"solid {size[coarse] * 1e3:.3g} and {size[fine] * 1e3:.3g} mm extrapolated"
+            runs = tuple(_jobs(scene, mesh, _name(scene, mesh)) for mesh in (fine, coarse))
+            settings.append(Setting(name, "pair", "solid", runs, (fine, coarse)))
+    return settings
 
 
 def _without(scene: Scene) -> list[Setting]:

@@ -9,9 +9,8 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import islice, zip_longest
+from itertools import chain, islice, zip_longest
 from math import hypot, inf, log, sqrt
-from pathlib import Path
 from typing import Any
 
 from fem_impact.cost.judge import Judged, cheapest, wall_seconds, worst
@@ -49,8 +48,6 @@ NEARNESS = {
     **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
 ALONE = Unknown("one mesh alone cannot estimate its own error")
-
-Run = Callable[[], Outcome]
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,67 +219,58 @@ def simulate(
         return run.simulate(scene, fidelity or "solid", options)
     chosen = choose_setting(scene, fidelity, workers)
     with nullcontext() if options.out is None else directory_lock(options.out):
-        return _simulate(scene, chosen, options, workers)
+        meshes, wall_s = _runs(scene, chosen, options, workers)
+        outcome = _stated(chosen, wall_s, meshes)
+        if options.out is not None:
+            outcome.write(options.out / "outcome.json")  # once more: it states its accuracy now
+    return outcome
 
 
-def _simulate(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int) -> Outcome:
-    """Do all runs of a chosen setting, the first lane here and a second in another process."""
-    if not chosen.meshes:
-        plain = replace(scene, accuracy=replace(scene.accuracy, target=None))  # a reduced model has no mesh
-        alone = run.simulate(plain, chosen.setting.fidelity, options)
-        return _kept(_stated(alone, chosen, wall_seconds(alone)), options.out)
-    jobs = [placed(scene, mesh) for mesh in chosen.meshes]
-    work = _work([one for scenes in jobs for one in scenes], options)
-    lanes = [work[0::2], work[1::2]] if workers > 1 else [work]
+def _runs(
+    scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int
+) -> tuple[list[Placed], float]:
+    """Return the runs on each mesh of a chosen setting, or one of a reduced model, and their wall time, s.
+
+    The first run writes to ``options.out`` itself and reports its progress. With two ``workers`` every second
+    run is done in another process.
+    """
+    alone = [replace(scene, accuracy=replace(scene.accuracy, target=None))]  # a reduced model has no mesh
+    groups = [placed(scene, mesh) for mesh in chosen.meshes] or [alone]
+    out, work = options.out, []
+    for at, one in enumerate(chain.from_iterable(groups)):
+        own = replace(options, out=out and out / f"run-{at}", progress=None) if at else options
+        work.append(partial(run.simulate, one, chosen.setting.fidelity, own))
+    lanes = [work[0::2], work[1::2]] if workers > 1 and len(work) > 1 else [work]
     with LocalProcesses(1) as process:
         later = [process.submit(_in_turn, lane) for lane in lanes[1:]]
         done = [_in_turn(lanes[0]), *(lane.result() for lane in later)]
     runs = iter([run for turn in zip_longest(*done) for run in turn if run])
-    meshes = [list(islice(runs, len(scenes))) for scenes in jobs]
     wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
-    return _kept(_stated(meshes[0][0], chosen, wall_s, meshes), options.out)
+    return [list(islice(runs, len(scenes))) for scenes in groups], wall_s
 
 
-def _work(scenes: list[Scene], options: RunOptions) -> list[Run]:
-    """Return the runs; the first writes to ``options.out`` itself and reports its progress."""
-    out = options.out
-    beside = [replace(options, out=out and out / f"run-{at}", progress=None) for at in range(1, len(scenes))]
-    return [
-        partial(run.simulate, scene, "solid", own)
-        for scene, own in zip(scenes, [options, *beside], strict=True)
-    ]
-
-
-def _in_turn(work: list[Run]) -> list[Outcome]:
+def _in_turn(work: Sequence[Callable[[], Outcome]]) -> list[Outcome]:
+    """Do runs one after the other; a function of the module, since it is sent to another process."""
     return [run() for run in work]
 
 
-def _kept(outcome: Outcome, out: Path | None) -> Outcome:
-    """Write the outcome, which states its accuracy now, once more; return it."""
-    if out is not None:
-        outcome.write(out / "outcome.json")
-    return outcome
-
-
-def _stated(outcome: Outcome, chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed] = ()) -> Outcome:
-    """Return the outcome with target, expected and achieved error and time in its validity."""
-    limits, bands = mesh_limits(*meshes) if len(meshes) == 2 else (None, None)
-    means = mesh_means(meshes[0]) if meshes else ALONE
+def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> Outcome:
+    """Return the first outcome with target, expected and achieved error and time in its validity."""
+    first, pair = meshes[0][0], len(meshes) == 2
+    means = mesh_means(meshes[0]) if chosen.meshes else ALONE
+    limits, bands = mesh_limits(*meshes) if pair else (means, ALONE)
+    truth = truths(meshes) if pair else {}
     stated = replace(
-        outcome.validity,
+        first.validity,
         accuracy_target=chosen.target,
         accuracy_setting=chosen.setting.name,
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
         achieved_wall=wall_s,
-        achieved_error=_achieved_error(meshes) if len(meshes) == 2 else ALONE,
-        mesh_limit=limits or means,
-        mesh_band=bands or ALONE,
+        achieved_error=max(truth[name].uncertainty / truth[name].scale for name in TARGETED)
+        if pair
+        else ALONE,
+        mesh_limit=limits,
+        mesh_band=bands,
     )
-    return replace(outcome, validity=stated)
-
-
-def _achieved_error(meshes: Sequence[Placed]) -> float:
-    """Return the largest uncertainty over its scale among the targeted quantities."""
-    limits = truths(meshes)
-    return max(limits[name].uncertainty / limits[name].scale for name in TARGETED)
+    return replace(first, validity=stated)
