@@ -5,8 +5,8 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from .arms import Arms
-from .arrays import Floats, floats
-from .errors import refuse
+from .arrays import floats
+from .coefficients import normal_change
 
 
 def impulse_centre(
@@ -55,6 +55,4 @@ def impulse_centre(
     """
     v_n, v_t, V_n, V_t, Omega, omega = floats(v_n, v_t, V_n, V_t, Omega, omega)
     d_d, k2 = floats(d_d, k2)
-    normal: Floats = V_n - v_n
-    refuse(~(normal > 0), "the barrier can only push: V_n - v_n must be positive, got {value} m/s", normal)
-    return Arms((k2 * (Omega - omega) + d_d * (V_t - v_t)) / normal, d_d)
+    return Arms((k2 * (Omega - omega) + d_d * (V_t - v_t)) / normal_change(v_n, V_n), d_d)

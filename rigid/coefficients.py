@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Floats, floats
 from .errors import refuse
-from .massive import APPROACH
+from .massive import approach_velocity
 
 
 class Coefficients(NamedTuple):
@@ -25,17 +25,20 @@ def restitution(
 ) -> Floats:
     """Kinematic restitution at the contact point, e = -(V_n + d_c Omega)/(v_n + d_c omega) (Eq 16)."""
     v_n, V_n, Omega, d_c, omega = floats(v_n, V_n, Omega, d_c, omega)
-    approach = v_n + d_c * omega
-    refuse(~(approach < 0), APPROACH, approach)
-    return -(V_n + d_c * Omega) / approach
+    return -(V_n + d_c * Omega) / approach_velocity(v_n, d_c, omega)
 
 
 def impulse_ratio(v_n: ArrayLike, v_t: ArrayLike, V_n: ArrayLike, V_t: ArrayLike) -> Floats:
     """Tangential over normal impulse, mu = (V_t - v_t)/(V_n - v_n) (Eq 17)."""
     v_n, v_t, V_n, V_t = floats(v_n, v_t, V_n, V_t)
-    normal = V_n - v_n
+    return (V_t - v_t) / normal_change(v_n, V_n)
+
+
+def normal_change(v_n: Floats, V_n: Floats) -> Floats:
+    """Return V_n - v_n, the normal impulse over the mass, m/s. Raises ImpactError where it pulls."""
+    normal: Floats = V_n - v_n
     refuse(~(normal > 0), "the barrier can only push: V_n - v_n must be positive, got {value} m/s", normal)
-    return (V_t - v_t) / normal
+    return normal
 
 
 def coefficients(

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from .arrays import Floats, floats
 from .errors import refuse
-from .massive import APPROACH, JAM, phi
+from .massive import JAM, approach_velocity, phi
 
 
 class FreeMotion(NamedTuple):
@@ -66,8 +66,7 @@ def solve_free(
     v_n, v_t, e, mu, e_m, omega = floats(v_n, v_t, e, mu, e_m, omega)
     d_c, d_d, k2, ratio, v_bn, v_bt = floats(d_c, d_d, k2, mass_ratio, v_bn, v_bt)
     refuse(~(ratio >= 0), "the mass ratio must not be negative, got {value}", ratio)
-    approach = v_n + d_c * omega - v_bn
-    refuse(~(approach < 0), APPROACH, approach)
+    approach = approach_velocity(v_n, d_c, omega, v_bn)
     stiffness = 1.0 + phi(mu=mu, e_m=e_m, d_c=d_c, d_d=d_d, k2=k2) + ratio
     refuse(~(stiffness > 0), JAM, stiffness)
     impulse = (e_m * d_c * omega - (v_n - v_bn) - e * approach) / stiffness

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from .arrays import Floats, floats
 from .errors import refuse
 from .losses import kinetic_energy
-from .massive import APPROACH, Motion
+from .massive import Motion, approach_velocity
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +89,7 @@ class General:
         '0.330 -0.411 7.11'
         """
         v_n, omega, d_c, v_bn, e = floats(self.v_n, self.omega, self.d_c, self.v_bn, self.e)
-        approach = v_n + d_c * omega - v_bn
-        refuse(~(approach < 0), APPROACH, approach)
+        approach_velocity(v_n, d_c, omega, v_bn)
         refuse(~(e >= 0), "with e = {value} < 0 the rod would pass through the barrier", e)
         inertia = _inertia_and_arms(self)[1]
         for name, value in (("mass", self.mass), ("k2", self.k2), ("inertia J", inertia)):

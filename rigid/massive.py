@@ -20,6 +20,16 @@ JAM = (
 )
 
 
+def approach_velocity(v_n: Floats, d_c: Floats, omega: Floats, v_bn: Floats | float = 0.0) -> Floats:
+    """Return the normal velocity of the contact point against a barrier of velocity v_bn, m/s.
+
+    Raises ImpactError where it does not approach.
+    """
+    approach: Floats = v_n + d_c * omega - v_bn
+    refuse(~(approach < 0), APPROACH, approach)
+    return approach
+
+
 class Motion(NamedTuple):
     """Velocities of the mass centre (m/s) and spin (rad/s) just after the impact."""
 
@@ -85,8 +95,7 @@ def solve(
     """
     v_n, v_t, e, mu, e_m, omega = floats(v_n, v_t, e, mu, e_m, omega)
     d_c, d_d, k2 = floats(d_c, d_d, k2)
-    approach = v_n + d_c * omega
-    refuse(~(approach < 0), APPROACH, approach)
+    approach_velocity(v_n, d_c, omega)
     stiffness = 1.0 + phi(mu=mu, e_m=e_m, d_c=d_c, d_d=d_d, k2=k2)
     refuse(~(stiffness > 0), JAM, stiffness)
     impulse = ((e_m - e) * d_c * omega - (1.0 + e) * v_n) / stiffness
@@ -133,8 +142,7 @@ def critical_ratio(
     """
     v_n, v_t, e, e_m, omega = floats(v_n, v_t, e, e_m, omega)
     d_c, d_d, k2 = floats(d_c, d_d, k2)
-    approach = v_n + d_c * omega
-    refuse(~(approach < 0), APPROACH, approach)
+    approach = approach_velocity(v_n, d_c, omega)
     # velocities of the contact point to be changed; the spin -e_m omega left after impact moves it too
     normal = v_n - e_m * d_c * omega + e * approach
     tangential, coupling = v_t + e_m * d_d * omega, e_m * d_c * d_d

@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -76,17 +75,17 @@ class Projectile:
     @property
     def mass(self) -> float:
         """Mass of the whole rod, kg."""
-        return _moments(self).mass
+        return _moments(self)[0]
 
     @property
     def z_c(self) -> float:
         """Distance of the mass centre from the tip end, m."""
-        return _moments(self).z_c
+        return _moments(self)[1]
 
     @property
     def k2(self) -> float:
         """Squared radius of gyration about a transverse axis through the mass centre, m2."""
-        return _moments(self).k2
+        return _moments(self)[2]
 
     @property
     def gamma(self) -> float:
@@ -121,17 +120,11 @@ class Projectile:
         return corner_arms(self.length, self.diameter, alpha)
 
 
-class Moments(NamedTuple):
-    """Mass (kg), distance of the mass centre from the tip (m), squared radius of gyration (m2)."""
-
-    mass: float
-    z_c: float
-    k2: float
-
-
 @lru_cache(maxsize=128)
-def _moments(rod: Projectile) -> Moments:
-    """Integrate the solid of revolution by discs dm = density pi rho^2 dz.
+def _moments(rod: Projectile) -> tuple[float, float, float]:
+    """Return mass (kg), distance of the mass centre from the tip (m), squared radius of gyration (m2).
+
+    The solid of revolution is integrated by discs dm = density pi rho^2 dz.
 
     A disc has the moment rho^2/4 dm about its diameter. Gauss points are exact for the straight pieces
     and reach round-off on the arc.
@@ -140,7 +133,7 @@ def _moments(rod: Projectile) -> Moments:
     dm = rod.density * np.pi * rho2 * dz
     mass = float(dm.sum())
     z_c = float(dm @ z) / mass
-    return Moments(mass, z_c, float(dm @ (rho2 / 4 + (z - z_c) ** 2)) / mass)
+    return mass, z_c, float(dm @ (rho2 / 4 + (z - z_c) ** 2)) / mass
 
 
 def _pieces(rod: Projectile) -> Iterator[tuple[Floats, Floats, Floats]]:

@@ -40,8 +40,8 @@ def slenderness(length: ArrayLike, diameter: ArrayLike) -> Floats:
     array([57.3, 28.6, 19.1])
     """
     length, diameter = floats(length, diameter)
-    for value in (length, diameter):
-        refuse(~(value > 0), "length and diameter must be positive, got {value} m", value, ShapeError)
+    shortest = np.minimum(length, diameter)
+    refuse(~(shortest > 0), "length and diameter must be positive, got {value} m", shortest, ShapeError)
     return length / diameter**EXPONENT
 
 

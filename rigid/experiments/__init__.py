@@ -4,7 +4,7 @@ from .angle_scatter import drawn_losses
 from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle, loss_against_angle
 from .audit import AuditRecord, audit, audit_statistics, column_arms
 from .correlation import Correlation, correlation, correlations
-from .sets import MeasuredSet, measured_set, measured_sets, set_ids
+from .sets import MeasuredSet, derived_columns, measured_set, measured_sets, set_ids
 from .statistics import Statistic, statistic
 from .tables import printed_statistics, table
 
@@ -22,6 +22,7 @@ __all__ = [
     "correlation",
     "correlations",
     "critical_ratio_against_angle",
+    "derived_columns",
     "drawn_losses",
     "loss_against_angle",
     "measured_set",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -16,7 +16,8 @@ from ..arrays import Floats, floats
 from ..coefficients import coefficients
 from ..losses import losses
 from ..uncertainty import sensitivities
-from .sets import MOTION, MeasuredSet, measured_sets
+from ..uncertainty.estimate import MOTION
+from .sets import MeasuredSet, measured_sets
 from .statistics import statistic
 from .tables import decimals, printed_statistics, statistic_decimals
 
@@ -95,25 +96,14 @@ def column_arms(set_id: str) -> Mapping[str, float]:
     return arms
 
 
-def recompute(
-    v_n: ArrayLike,
-    v_t: ArrayLike,
-    V_n: ArrayLike,
-    V_t: ArrayLike,
-    Omega: ArrayLike,
-    *,
-    d_c: ArrayLike,
-    d_d: ArrayLike,
-    k2: ArrayLike,
-    mass: ArrayLike,
-) -> dict[str, Floats]:
-    """Return the derived columns of the tables: Eq 14-18, 20, 21 and 26 (SI units)."""
-    V_n, V_t, Omega, d_c, d_d = floats(V_n, V_t, Omega, d_c, d_d)
-    motion = (v_n, v_t, V_n, V_t, Omega)
+def recompute(*, mass: ArrayLike, **given: ArrayLike) -> dict[str, Floats]:
+    """Return the derived columns of the tables: Eq 14-18, 20, 21 and 26 (SI units).
+
+    ``given`` are the velocities of `MOTION`, the arms d_c and d_d, and k2.
+    """
+    V_n, V_t, Omega, d_c, d_d = floats(*(given[name] for name in ("V_n", "V_t", "Omega", "d_c", "d_d")))
     markers = {"V_cn": V_n + d_c * Omega, "V_ct": V_t - d_d * Omega}
-    ratios = coefficients(*motion, d_c=d_c, d_d=d_d, k2=k2)._asdict()
-    energies = losses(*motion, d_c=d_c, d_d=d_d, k2=k2, mass=mass)._asdict()
-    return {**markers, **ratios, **energies}
+    return {**markers, **coefficients(**given)._asdict(), **losses(**given, mass=mass)._asdict()}
 
 
 def _columns(s: MeasuredSet) -> Iterator[AuditRecord]:
@@ -176,18 +166,13 @@ def _record(
     record = AuditRecord(s.id, s.table, row, column, float(printed), float(value), float(tolerance), "")
     if record.agrees:
         return record
-    why = next((k["why"] for k in _knowledge()["known"] if _applies(k, record)), "")
-    return AuditRecord(s.id, s.table, row, column, record.printed, record.recomputed, record.tolerance, why)
-
-
-def _applies(known: dict[str, Any], record: AuditRecord) -> bool:
-    """Whether an entry of audit.toml is about this record ("*" in rows: all tests, no statistics)."""
-    rows = {record.row} if record.row in ("mean", "sd") else {record.row, "*"}
-    return (
-        known["set"] in ("*", record.set_id)
-        and known["column"] in ("*", record.column)
-        and bool(rows & set(known["rows"]))
+    rows = {row} if row in ("mean", "sd") else {row, "*"}  # "*" stands for all tests, for no statistic
+    reasons = (
+        known["why"]
+        for known in _knowledge()["known"]
+        if known["set"] in ("*", s.id) and known["column"] in ("*", column) and rows & set(known["rows"])
     )
+    return replace(record, explanation=next(reasons, ""))
 
 
 @cache

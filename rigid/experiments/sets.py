@@ -10,6 +10,7 @@ from importlib.resources import files
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..arms import Arms
 from ..arrays import Floats
@@ -17,11 +18,11 @@ from ..coefficients import coefficients
 from ..errors import DataError
 from ..losses import losses
 from ..massive import solve
+from ..uncertainty.estimate import MOTION
 from .statistics import Statistic, statistic
 from .tables import table
 
 DIAMETER = 0.019
-MOTION = ("v_n", "v_t", "V_n", "V_t", "Omega")
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,16 @@ class MeasuredSet:
     motion: Mapping[str, Floats]
     reconstructed: bool
 
+    @property
+    def body(self) -> dict[str, Any]:
+        """Arms d_c, d_d (m) and k2 (m2) with which the table was worked out, by name."""
+        return {**self.arms._asdict(), "k2": self.k2}
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of the mass centre before impact, m/s."""
+        return float(np.hypot(self.motion["v_n"], self.motion["v_t"]).mean())
+
     def recomputed(self) -> dict[str, Floats]:
         """Recompute every quantity of interest from the velocities, row by row.
 
@@ -81,15 +92,28 @@ class MeasuredSet:
             v_n, v_t, V_n, V_t (m/s), Omega (rad/s), e, mu, e_m, and E_ln_over_E_0, E_lt_over_E_0,
             E_r_over_E_0, with E_0 = m (v_n^2 + v_t^2)/2 of that row.
         """
-        body: dict[str, Any] = {"d_c": self.arms.d_c, "d_d": self.arms.d_d, "k2": self.k2}
-        ratios = coefficients(**self.motion, **body)._asdict()
-        shares = losses(**self.motion, **body, mass=self.mass).fractions()
-        energies = {f"{k}_over_E_0": v for k, v in shares._asdict().items() if k != "E_0"}
-        return {**self.motion, **ratios, **energies}
+        return {**self.motion, **derived_columns(self.motion, **self.body, mass=self.mass)}
 
     def statistics(self) -> dict[str, Statistic]:
         """Mean, sample SD and 95 % interval of the mean for each recomputed quantity."""
         return {name: statistic(values) for name, values in self.recomputed().items()}
+
+
+def derived_columns(
+    motion: Mapping[str, Floats], *, d_c: ArrayLike, d_d: ArrayLike, k2: float, mass: float
+) -> dict[str, Floats]:
+    """Return e, mu, e_m and E_ln_over_E_0, E_lt_over_E_0, E_r_over_E_0 of tests, (n,) each.
+
+    Parameters
+    ----------
+    motion : v_n, v_t, V_n, V_t (m/s) and Omega (rad/s) of each test, (n,) each
+    d_c, d_d : arms, m
+    k2, mass : m2 and kg
+    """
+    body: dict[str, Any] = {"d_c": d_c, "d_d": d_d, "k2": k2}
+    shares = losses(**motion, **body, mass=mass).fractions()._asdict()
+    energies = {f"{name}_over_E_0": share for name, share in shares.items() if name != "E_0"}
+    return {**coefficients(**motion, **body)._asdict(), **energies}
 
 
 def _motion(entry: Mapping[str, Any], rows: Mapping[str, Floats]) -> dict[str, Floats]:

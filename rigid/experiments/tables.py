@@ -34,8 +34,7 @@ def _select(name: str, select: Mapping[str, str]) -> list[dict[str, str]]:
 def _columns(name: str, select: Mapping[str, str]) -> dict[str, Floats]:
     """Numeric columns of the selected rows, (n,) each."""
     lines = _select(name, select)
-    numeric = [key for key in lines[0] if key not in LABELS]
-    return {key: np.array([float(line[key]) for line in lines]) for key in numeric}
+    return {key: np.array([float(line[key]) for line in lines]) for key in lines[0] if key not in LABELS}
 
 
 def _decimals(text: str) -> int:

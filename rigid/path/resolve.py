@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arrays import Floats, floats
 from ..errors import ImpactError, refuse
-from ..massive import APPROACH, Motion
+from ..massive import Motion, approach_velocity
 from .segments import Segments, segments
 
 
@@ -133,10 +133,9 @@ def sliding_path(
     """
     v_n, v_t, e, f, omega = np.broadcast_arrays(*floats(v_n, v_t, e, f, omega))
     d_c, d_d, k2 = floats(d_c, d_d, k2)
-    u, w = v_n + d_c * omega, v_t - d_d * omega
     if law not in LAWS:
         raise ImpactError(f"law must be one of {', '.join(LAWS)}, got {law!r}")
-    refuse(~(u < 0), APPROACH, u)
+    u, w = approach_velocity(v_n, d_c, omega), v_t - d_d * omega
     refuse(~(e >= 0), "restitution must not be negative, got {value}", e)
     refuse(~(f >= 0), "friction must not be negative, got {value}", f)
     path = segments(u, w, f, d_c=d_c, d_d=d_d, k2=k2)

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Floats
-from .estimate import MOTION, Errors, Estimate, named, stack_tests
+from ..coefficients import coefficients
+from .estimate import MOTION, Errors, Estimate, stack_tests
 
 SOURCES = ("scatter", "contact", "tracking")
 BLOCK = 500_000  # tests drawn at a time: five velocities and an index of each take 24 MB
@@ -37,34 +38,25 @@ def bootstrap(
     """
     errors = errors or Errors()
     rows, rng = stack_tests(motion), np.random.default_rng(seed)
-    draws = {name: _draw(rows, (name,), errors, d_c, d_d, k2, samples, rng) for name in SOURCES}
-    together = _draw(rows, SOURCES, errors, d_c, d_d, k2, samples, rng)
+
+    def draw(*sources: str) -> dict[str, Floats]:
+        """Coefficients of random repetitions of the set, (samples,) each."""
+        means = _resampled(rows, samples, rng) if "scatter" in sources else rows.mean(axis=1)[:, None]
+        tracking = errors.tracking if "tracking" in sources else 0.0
+        means = means * (1.0 + tracking * rng.uniform(-1, 1, (len(rows), samples)))
+        shift = (errors.contact if "contact" in sources else 0.0) * rng.uniform(-1, 1, (2, samples))
+        motions = dict(zip(MOTION, means, strict=True))
+        return coefficients(**motions, d_c=d_c + shift[0], d_d=d_d + shift[1], k2=k2)._asdict()
+
+    draws = {name: draw(name) for name in SOURCES}
+    together = draw(*SOURCES)
     mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
-    centre = named(**mean, d_c=np.asarray(d_c), d_d=np.asarray(d_d), k2=np.asarray(k2))
-    return {
-        name: _estimate(float(value), together[name], {s: draws[s][name] for s in SOURCES})
-        for name, value in centre.items()
-    }
-
-
-def _draw(
-    rows: Floats,
-    sources: tuple[str, ...],
-    errors: Errors,
-    d_c: float,
-    d_d: float,
-    k2: float,
-    samples: int,
-    rng: np.random.Generator,
-) -> dict[str, Floats]:
-    """Coefficients of `samples` random repetitions of the set, (samples,) each."""
-    means = _resampled(rows, samples, rng) if "scatter" in sources else rows.mean(axis=1)[:, None]
-    tracking = errors.tracking if "tracking" in sources else 0.0
-    means = means * (1.0 + tracking * rng.uniform(-1, 1, (len(rows), samples)))
-    shift = (errors.contact if "contact" in sources else 0.0) * rng.uniform(-1, 1, (2, samples))
-    return named(
-        **dict(zip(MOTION, means, strict=True)), d_c=d_c + shift[0], d_d=d_d + shift[1], k2=np.asarray(k2)
-    )
+    estimates = {}
+    for name, value in coefficients(**mean, d_c=d_c, d_d=d_d, k2=k2)._asdict().items():
+        low, high = np.percentile(together[name], [2.5, 97.5])
+        parts = {source: _half_width(drawn[name]) for source, drawn in draws.items()}
+        estimates[name] = Estimate(float(value), _half_width(together[name]), float(low), float(high), parts)
+    return estimates
 
 
 def _resampled(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
@@ -75,13 +67,6 @@ def _resampled(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
         block = means[:, first : first + height]
         block[:] = rows[:, rng.integers(n, size=(block.shape[1], n))].mean(axis=2)
     return means
-
-
-def _estimate(value: float, together: Floats, alone: Mapping[str, Floats]) -> Estimate:
-    """Estimate from the percentiles of samples with all sources together, and with each alone."""
-    low, high = np.percentile(together, [2.5, 97.5])
-    parts = {source: _half_width(drawn) for source, drawn in alone.items()}
-    return Estimate(value, _half_width(together), float(low), float(high), parts)
 
 
 def _half_width(drawn: Floats) -> float:

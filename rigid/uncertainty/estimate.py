@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Floats
-from ..coefficients import coefficients
 from ..errors import DataError
 
 MOTION = ("v_n", "v_t", "V_n", "V_t", "Omega")
@@ -80,8 +79,3 @@ def stack_tests(motion: Mapping[str, ArrayLike]) -> Floats:
     if rows.ndim != 2 or rows.shape[1] < 2:
         raise DataError(f"an uncertainty needs at least two tests, got shape {rows.shape[1:]}")
     return rows
-
-
-def named(**inputs: Floats) -> dict[str, Floats]:
-    """Coefficients e, mu and e_m by name."""
-    return coefficients(**inputs)._asdict()

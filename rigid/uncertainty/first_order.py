@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..arrays import Floats
-from .estimate import MOTION, Errors, Estimate, named, stack_tests
+from ..coefficients import coefficients
+from .estimate import MOTION, Errors, Estimate, stack_tests
 from .propagate import sensitivities
 
 ARMS = ("d_c", "d_d")
@@ -49,9 +50,9 @@ def first_order(
     rows = stack_tests(motion)
     mean = dict(zip(MOTION, rows.mean(axis=1), strict=True))
     at = {k: np.asarray(v, dtype=np.float64) for k, v in {**mean, "d_c": d_c, "d_d": d_d}.items()}
-    values = named(**at, k2=np.asarray(k2))
-    slopes = sensitivities(lambda **x: named(**x, k2=np.asarray(k2)), at)
-    return {name: _estimate(float(values[name]), slopes[name], rows, errors) for name in values}
+    values = coefficients(**at, k2=k2)._asdict()
+    slopes = sensitivities(lambda **x: coefficients(**x, k2=k2)._asdict(), at)
+    return {name: _estimate(float(value), slopes[name], rows, errors) for name, value in values.items()}
 
 
 def _estimate(value: float, slope: Mapping[str, Floats], rows: Floats, errors: Errors) -> Estimate:
