@@ -8,7 +8,6 @@ import numpy as np
 from scipy.special import stdtrit
 
 from fem_impact.assess.bounds import (
-    Carried,
     Range,
     Tests,
     carry,
@@ -41,6 +40,12 @@ TURNING = (
 )
 """Reason why a worst case over mu <= mu_c does not exist."""
 
+NOT_ATTRIBUTED = (
+    "of E_0: the whole loss. E_lt and E_ln are works of two components of the impulse; how much of "
+    "them is friction heat, plastic work, vibration or waves, rigid-body velocities do not tell "
+    "(their closure tests only mass, inertia and e_m = -1). A finite-element run does: fem-impact run"
+)
+
 _NAMES = ("total", "E_lt", "E_ln", "E_r")
 """Fractions of E_0 that are reported."""
 
@@ -64,27 +69,31 @@ def assess(case: DroppedRod) -> dict[str, Any]:
     energy = 0.5 * case.rod.mass * case.speed**2
     carried = {name: carry(t, case) for name, t in tests.items()}
     known = _range(case, tests, weights)
-    values = {name: _values(c) for name, c in carried.items()}
-    shares = {share: _share({name: v[share] for name, v in values.items()}, weights) for share in _NAMES}
+    counts = {name: t.e.size for name, t in tests.items()}
+    shares = {
+        share: _share({name: getattr(c, share) for name, c in carried.items()}, weights) for share in _NAMES
+    }
     mu_c = np.concatenate([carried[name].mu_c for name in weights])
     return {
         "case": _case_entry(case, energy),
-        "basis": _basis(weights, tests),
+        "basis": {
+            "weights": weights,
+            "tests": sum(counts[name] for name in weights),
+            "all_sets": list(counts),
+            "all_tests": sum(counts.values()),
+        },
         "losses": {name: {**s, "mean_J": s["mean"] * energy} for name, s in shares.items()},
         "mu_c": {"mean": float(mu_c.mean()), "low": float(mu_c.min()), "high": float(mu_c.max())},
         "range": {"e": list(known.e), "d_c_m": list(known.d_c), "measured": not outside_of(case)},
         "worst_case": _worst(case, known, energy),
         "friction_heat": _heat(case, known, energy),
-        "not_attributed": _unattributed(shares["total"]),
+        "not_attributed": {
+            **{name: shares["total"][name] for name in ("mean", "low", "high")},
+            "sentence": NOT_ATTRIBUTED,
+        },
         "slenderness": _slenderness(case),
         "warnings": list(warnings_of(case)),
     }
-
-
-def _values(c: Carried) -> dict[str, Floats]:
-    """Return the fractions of E_0 by name; with e_m = -1 losses and retained energy add up to E_0."""
-    total = c.E_ln + c.E_lt
-    return dict(zip(_NAMES, (total, c.E_lt, c.E_ln, 1.0 - total), strict=True))
 
 
 def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, float]:
@@ -137,31 +146,22 @@ def _case_entry(case: DroppedRod, energy: float) -> dict[str, Any]:
     }
 
 
-def _basis(weights: dict[str, float], tests: dict[str, Tests]) -> dict[str, Any]:
-    counts = {name: t.e.size for name, t in tests.items()}
-    used = sum(counts[name] for name in weights)
-    return {"weights": weights, "tests": used, "all_sets": list(counts), "all_tests": sum(counts.values())}
-
-
 def _worst(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
     worst = worst_losses(case, known)
     if worst is None:
         return {"total": None, "tangential": None, "reason": TURNING}
-    total = {"over_E_0": worst.total, "J": worst.total * energy, "mu": worst.mu_total, "e": worst.e_total}
-    slid = {
-        "over_E_0": worst.tangential,
-        "J": worst.tangential * energy,
-        "mu": worst.mu_tangential,
-        "e": worst.e_tangential,
+    entries = {
+        name: {"over_E_0": loss.share, "J": loss.share * energy, "mu": loss.mu, "e": loss.e}
+        for name, loss in (("total", worst.total), ("tangential", worst.tangential))
     }
-    return {"total": total, "tangential": slid, "mu_c_largest": worst.mu_c_largest, "reason": None}
+    return {**entries, "mu_c_largest": worst.mu_c, "reason": None}
 
 
 def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
     """Return the upper bound of friction heat, and the lower one of a rigid rod with Coulomb friction."""
     certain = largest_loss_whatever(case, known)
     worst = worst_losses(case, known)
-    rigid = max(sliding_heat(case, known), worst.tangential if worst else 0.0)
+    rigid = max(sliding_heat(case, known), worst.tangential.share if worst else 0.0)
     return {
         "upper_bound_over_E_0": certain,
         "upper_bound_J": certain * energy,
@@ -171,19 +171,6 @@ def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
         "rigid_rod_assumption": (
             "a rigid rod touching at one point, Coulomb friction of any size or any constant ratio up to "
             "mu_c; a rod that bends can rub more"
-        ),
-    }
-
-
-def _unattributed(total: dict[str, float]) -> dict[str, Any]:
-    return {
-        "mean": total["mean"],
-        "low": total["low"],
-        "high": total["high"],
-        "sentence": (
-            "of E_0: the whole loss. E_lt and E_ln are works of two components of the impulse; how much of "
-            "them is friction heat, plastic work, vibration or waves, rigid-body velocities do not tell "
-            "(their closure tests only mass, inertia and e_m = -1). A finite-element run does: fem-impact run"
         ),
     }
 

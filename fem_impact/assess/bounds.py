@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -46,21 +46,23 @@ class Range:
 
     def grid(self, case: DroppedRod) -> tuple[Floats, dict[str, Any]]:
         """Return restitutions (9, 1) and arms with d_c (9,)."""
-        e, d_c = np.linspace(*self.e, STEPS)[:, None], np.linspace(*self.d_c, STEPS)
-        return e, {"d_c": d_c, "d_d": float(case.arms.d_d), "k2": case.rod.k2}
+        return np.linspace(*self.e, STEPS)[:, None], case.body(np.linspace(*self.d_c, STEPS))
 
 
-@dataclass(frozen=True, slots=True)
-class Worst:
-    """Largest losses over 0 <= mu <= mu_c and a `Range`, as fractions of E_0, each with its mu and e."""
+class Largest(NamedTuple):
+    """A largest loss, fraction of E_0, with its mu and e."""
 
-    total: float
-    mu_total: float
-    e_total: float
-    tangential: float
-    mu_tangential: float
-    e_tangential: float
-    mu_c_largest: float
+    share: float
+    mu: float
+    e: float
+
+
+class Worst(NamedTuple):
+    """Largest losses over 0 <= mu <= mu_c and a `Range`."""
+
+    total: Largest
+    tangential: Largest
+    mu_c: float
 
 
 def worst_losses(case: DroppedRod, known: Range) -> Worst | None:
@@ -70,12 +72,17 @@ def worst_losses(case: DroppedRod, known: Range) -> Worst | None:
     limit = critical_ratio(v_n, v_t, e=e, **body)
     if (limit < 0).any():
         return None
-    worst = worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2)
-    at, slid = (np.unravel_index(int(x.argmax()), x.shape) for x in (worst.total, worst.tangential))
-    given = np.broadcast_to(e, limit.shape)
-    total = float(worst.total[at]), float(worst.mu_total[at]), float(given[at])
-    tangential = float(worst.tangential[slid]), float(worst.mu_tangential[slid]), float(given[slid])
-    return Worst(*total, *tangential, float(limit.max()))
+    worst, given = (
+        worst_case(v_n, v_t, e=e, **body, mass=2.0 / case.speed**2),
+        np.broadcast_to(e, limit.shape),
+    )
+
+    def largest(loss: Floats, mu: Floats) -> Largest:
+        at = np.unravel_index(int(loss.argmax()), loss.shape)
+        return Largest(*(float(values[at]) for values in (loss, mu, given)))
+
+    total, tangential = (worst.total, worst.mu_total), (worst.tangential, worst.mu_tangential)
+    return Worst(largest(*total), largest(*tangential), float(limit.max()))
 
 
 def sliding_heat(case: DroppedRod, known: Range) -> float:
@@ -84,18 +91,16 @@ def sliding_heat(case: DroppedRod, known: Range) -> float:
     Sliding, sticking and reverse sliding are resolved in the impulse domain with energetic restitution. The
     relative error of the maximum over `FRICTION` is below 1e-3.
     """
-    v_n, v_t = case.velocity
     e, body = known.grid(case)
-    path = sliding_path(v_n, v_t, e=e, f=FRICTION[:, None, None], **body)
+    path = sliding_path(*case.velocity, e=e, f=FRICTION[:, None, None], **body)
     work = -(path.tangential_work[0] + path.tangential_work[1])
     return float(work.max()) / (0.5 * case.speed**2)
 
 
 def largest_loss_whatever(case: DroppedRod, known: Range) -> float:
     """Return the largest loss of the first impact for any friction and restitution, fraction of E_0."""
-    v_n, v_t = case.velocity
-    arms: dict[str, Any] = {"d_c": np.linspace(*known.d_c, 2001), "d_d": case.arms.d_d, "k2": case.rod.k2}
-    return float(pinned_loss(v_n, v_t, **arms, mass=2.0 / case.speed**2).max())
+    body = case.body(np.linspace(*known.d_c, 2001))
+    return float(pinned_loss(*case.velocity, **body, mass=2.0 / case.speed**2).max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,6 +142,16 @@ class Carried:
     mu: Floats
     mu_c: Floats
 
+    @property
+    def total(self) -> Floats:
+        """Normal and tangential loss."""
+        return self.E_ln + self.E_lt
+
+    @property
+    def E_r(self) -> Floats:
+        """Energy kept as rigid motion; with e_m = -1 it and the losses add up to E_0."""
+        return 1.0 - self.total
+
 
 def _own(s: MeasuredSet) -> Tests:
     """Return the `Tests` of a set, with the arms of its rod's real geometry."""
@@ -167,12 +182,7 @@ def measured_on(surface: str) -> dict[str, Tests]:
 def carry(tests: Tests, case: DroppedRod) -> Carried:
     """Predict the losses of a case from each test (Eq 23-25 with e_m = -1)."""
     v_n, v_t = case.velocity
-    arms = case.arms
-    body: dict[str, Any] = {
-        "d_c": arms.d_c + tests.offset * case.rod.length,
-        "d_d": arms.d_d,
-        "k2": case.rod.k2,
-    }
+    body = case.body(case.arms.d_c + tests.offset * case.rod.length)
     limit = critical_ratio(v_n, v_t, e=tests.e, **body)
     mu = np.clip(tests.excess * limit, -tests.friction, tests.friction)
     mass = 2.0 / case.speed**2  # so that losses are fractions of E_0

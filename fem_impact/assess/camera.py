@@ -67,15 +67,22 @@ def read_camera(path: str | Path) -> Camera:
     (_, header), *rows = lines
     names = [name.strip() for name in header]
     places = _places(names, path)
-    _check_rows(rows, names, path)
-    motion = {
-        name: np.array([_number(row, names, at, unit, path) for row in rows])
-        for name, (at, unit) in places.items()
-    }
+    for line, cells in rows:
+        if len(cells) != len(names):
+            raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
+    if len(rows) < 2:
+        raise ResultError(f"{path}: holds {len(rows)} tests; an uncertainty needs at least two.")
+    motion = {}
+    for name, (at, unit) in places.items():
+        cells_of = [(f"{path}: line {line}, column {names[at]}", cells[at].strip()) for line, cells in rows]
+        motion[name] = np.array([_number(place, text, unit) for place, text in cells_of])
     _check_motion(motion, rows, names, places, path)
-    used = {at for at, _ in places.values()}
-    ignored = tuple(n for i, n in enumerate(names) if i not in used and n != "test")
-    return Camera(motion, _labels(rows, names), ignored)
+    used = {names[at] for at, _ in places.values()}
+    labels = [
+        cells[names.index("test")].strip() if "test" in names else str(i)
+        for i, (_, cells) in enumerate(rows, 1)
+    ]
+    return Camera(motion, tuple(labels), tuple(name for name in names if name not in (*used, "test")))
 
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
@@ -120,30 +127,17 @@ def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
     return unit
 
 
-def _check_rows(rows: Sequence[Line], names: Sequence[str], path: str | Path) -> None:
-    """Refuse rows of unequal length, and fewer than two rows: they give no uncertainty."""
-    for line, cells in rows:
-        if len(cells) != len(names):
-            raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
-    if len(rows) < 2:
-        raise ResultError(f"{path}: holds {len(rows)} tests; an uncertainty needs at least two.")
-
-
-def _number(row: Line, names: Sequence[str], at: int, unit: Unit, path: str | Path) -> float:
-    """Read one cell in SI."""
-    line, cells = row
-    text = cells[at].strip()
+def _number(place: str, text: str, unit: Unit) -> float:
+    """Read one cell in SI; ``place`` is for complaints."""
     try:
         number = float(text)
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise ResultError(f"{path}: line {line}, column {names[at]}: {text[:40]!r} is not a finite number.")
+        raise ResultError(f"{place}: {text[:40]!r} is not a finite number.")
     value = unit.to_si(text)
     if abs(value) > LARGEST:
-        raise ResultError(
-            f"{path}: line {line}, column {names[at]}: {text[:40]} is no speed of a dropped rod."
-        )
+        raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
 
 
@@ -161,15 +155,5 @@ def _check_motion(
     )
     for name, bad, rule in wrong:
         if bad.any():
-            first = int(np.argmax(bad))
-            line, cells = rows[first]
-            at = places[name][0]
-            cell = cells[at].strip()
-            raise ResultError(f"{path}: line {line}, column {names[at]}: {cell} {rule}.")
-
-
-def _labels(rows: Sequence[Line], names: Sequence[str]) -> tuple[str, ...]:
-    """Return the label of each test."""
-    if "test" not in names:
-        return tuple(str(number) for number in range(1, len(rows) + 1))
-    return tuple(cells[names.index("test")].strip() for _, cells in rows)
+            (line, cells), at = rows[int(np.argmax(bad))], places[name][0]
+            raise ResultError(f"{path}: line {line}, column {names[at]}: {cells[at].strip()} {rule}.")

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
-
-import numpy as np
+from typing import Any, Literal
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene.units import parse_quantity
-from rigid import SHAPES, Arms, Nose, Projectile, RigidError, drop_velocities
+from rigid import SHAPES, Arms, Projectile, RigidError, drop_velocities
+from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet, measured_sets
 
 Surface = Literal["machined", "contaminated", "cleaned"]
@@ -84,6 +83,10 @@ class DroppedRod:
         """Arms of the lowest point of the tip, m."""
         return self.rod.arms(self.alpha)
 
+    def body(self, d_c: Floats) -> dict[str, Any]:
+        """Return arms, m, with another d_c, and k2, m2, by name."""
+        return {"d_c": d_c, "d_d": self.arms.d_d, "k2": self.rod.k2}
+
 
 def sets_of(surface: str) -> tuple[MeasuredSet, ...]:
     """Return the measured sets of one surface state."""
@@ -102,37 +105,41 @@ def weights_of(case: DroppedRod) -> dict[str, float]:
 
 
 def _distance(case: DroppedRod, s: MeasuredSet) -> float:
-    """Return the distance in length, angle and speed in units of `NEAR`; plus 1 between edge and nose."""
+    """Return the distance in length, angle and speed in units of `NEAR`.
+
+    1 more lies between a tip with a flat face, whose edge strikes (B, plain), and a round nose (A).
+    """
+    faces = (tip.face > 0 for tip in (case.rod.nose, SHAPES[s.tip](s.diameter / 2, s.tip_radius)))
     steps = (
         math.log(case.rod.length / s.length) / NEAR["length"],
         (case.alpha - s.alpha) / NEAR["alpha"],
-        math.log(case.speed / _speed(s)) / NEAR["speed"],
-        float(_has_face(case.rod.nose) != _has_face(SHAPES[s.tip](s.diameter / 2, s.tip_radius))),
+        math.log(case.speed / s.speed) / NEAR["speed"],
+        float(len({*faces}) == 2),
     )
     return math.hypot(*steps)
 
 
-def _has_face(tip: Nose) -> bool:
-    """Return whether the tip has a flat face, whose edge strikes (B, plain), and is no round nose (A)."""
-    return tip.face > 0
-
-
-def _speed(s: MeasuredSet) -> float:
-    return float(np.hypot(s.motion["v_n"], s.motion["v_t"]).mean())
-
-
 def warnings_of(case: DroppedRod) -> tuple[str, ...]:
     """Return warnings: few tests on this surface, and quantities outside the measured range."""
-    narrow = (_narrow(case.surface, sets_of(case.surface)),) if case.surface != "machined" else ()
-    return (*narrow, *outside_of(case))
+    if case.surface == "machined":
+        return outside_of(case)
+    sets = sets_of(case.surface)
+    speeds = " and ".join(f"{speed:.2f}" for speed in sorted(s.speed for s in sets))
+    narrow = (
+        f"{case.surface} surfaces were measured with one rod (240 mm), at one angle (45 degrees), at "
+        f"{speeds} m/s, in {sum(len(s.motion['v_n']) for s in sets)} tests: anything else is an extrapolation"
+    )
+    return (narrow, *outside_of(case))
 
 
 def outside_of(case: DroppedRod) -> tuple[str, ...]:
     """Return a sentence on each quantity of the case outside the range measured on its surface."""
-    return tuple(_outside(case, sets_of(case.surface)))
+    sets = sets_of(case.surface)
+    return (*_rod_warnings(case, sets), *_motion_warnings(case, sets))
 
 
-def _outside(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+def _rod_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
+    """Compare length, diameter and tip with those of the sets."""
     rod = case.rod
     lengths = sorted({s.length for s in sets})
     if not any(math.isclose(rod.length, x) for x in lengths):
@@ -144,26 +151,16 @@ def _outside(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
         known = " or ".join(sorted({f"{s.tip} with {1e3 * s.tip_radius:g} mm" for s in sets}))
         tip = f"tip {rod.tip} with a radius of {1e3 * rod.tip_radius:g} mm"
         yield f"{tip}: measured on {case.surface} surfaces was tip {known}"
-    yield from _motion_warnings(case, sets)
-
-
-def _narrow(surface: str, sets: tuple[MeasuredSet, ...]) -> str:
-    tests = sum(len(s.motion["v_n"]) for s in sets)
-    speeds = " and ".join(f"{_speed(s):.2f}" for s in sorted(sets, key=_speed))
-    return (
-        f"{surface} surfaces were measured with one rod (240 mm), at one angle (45 degrees), at "
-        f"{speeds} m/s, in {tests} tests: anything else is an extrapolation"
-    )
 
 
 def _motion_warnings(case: DroppedRod, sets: tuple[MeasuredSet, ...]) -> Iterator[str]:
     """Compare angle and speed, each near the other, with the sets of the nearest measured length."""
     length = min((s.length for s in sets), key=lambda x: abs(math.log(case.rod.length / x)))
     same = [s for s in sets if s.length == length]
-    as_fast = [s for s in same if abs(math.log(case.speed / _speed(s))) <= FAST] or same
+    as_fast = [s for s in same if abs(math.log(case.speed / s.speed)) <= FAST] or same
     as_steep = [s for s in same if abs(case.alpha - s.alpha) <= STEEP] or same
     angles = sorted(math.degrees(s.alpha) for s in as_fast)
-    speeds = sorted(_speed(s) for s in as_steep)
+    speeds = sorted(s.speed for s in as_steep)
     rod, degrees = f"the {1e3 * length:g} mm rod was measured", math.degrees(case.alpha)
     near = "" if as_fast == same else " at about this speed"
     if not angles[0] - 0.05 <= degrees <= angles[-1] + 0.05:
@@ -198,23 +195,16 @@ def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | Non
     SceneError
         No such rod can be turned.
     """
-    radius = _tip_radius(tip, tip_radius)
+    if tip not in SHAPES:
+        remedy = did_you_mean(tip, SHAPES, f"Known are: {', '.join(SHAPES)}.")
+        raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
+    if tip_radius is None and tip not in TIP_RADII:
+        remedy = 'Give its radius, such as --tip-radius "3 mm".'
+        raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
+    radius = quantity(tip_radius, "length", "--tip-radius") if tip_radius is not None else TIP_RADII[tip]
     size = quantity(length, "length", "--length"), quantity(diameter, "length", "--diameter")
     try:
         return Projectile(*size, tip, radius, DENSITY)
     except RigidError as error:
         remedy = "Change --length, --diameter, --tip or --tip-radius."
         raise SceneError(f"{error}.", key="rod", remedy=remedy) from None
-
-
-def _tip_radius(tip: str, stated: str | None) -> float:
-    """Return the radius of a tip of `SHAPES`, m: the stated one, or that of a measured tip."""
-    if tip not in SHAPES:
-        remedy = did_you_mean(tip, SHAPES, f"Known are: {', '.join(SHAPES)}.")
-        raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
-    if stated is not None:
-        return quantity(stated, "length", "--tip-radius")
-    if tip not in TIP_RADII:
-        remedy = 'Give its radius, such as --tip-radius "3 mm".'
-        raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
-    return TIP_RADII[tip]

@@ -9,20 +9,9 @@ import numpy as np
 
 from fem_impact.assess.camera import Camera
 from fem_impact.paper.audit import estimate_entry, finite, statistic_entry
-from rigid import (
-    Arms,
-    Projectile,
-    bootstrap,
-    coefficients,
-    critical_ratio,
-    first_order,
-    impulse_centre,
-    losses,
-)
+from rigid import Arms, Projectile, bootstrap, critical_ratio, first_order, impulse_centre
 from rigid.arrays import Floats
-from rigid.experiments import statistic
-
-SHARES = ("E_ln", "E_lt", "E_r")
+from rigid.experiments import derived_columns, statistic
 
 
 def own_coefficients(
@@ -50,7 +39,7 @@ def own_coefficients(
         fractions of E_0, centre of impulse, one entry a test, notes.
     """
     body: dict[str, Any] = {"d_c": float(arms.d_c), "d_d": float(arms.d_d), "k2": rod.k2}
-    tests = _tests(camera, rod, arms)
+    tests = derived_columns(camera.motion, **body, mass=rod.mass)
     mean = {name: values.mean() for name, values in camera.motion.items()}
     centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
     fall = float(mean["v_n"]), float(mean["v_t"])
@@ -59,20 +48,19 @@ def own_coefficients(
         "rod": _rod_entry(rod, alpha),
         "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
         "coefficients": _estimates(camera.motion, body),
-        "scatter": _scatter(tests),
+        "scatter": {
+            name: statistic_entry(statistic(values))
+            for name, values in tests.items()
+            if np.isfinite(values).all()
+        },
         "mu_c": finite(critical_ratio(*fall, e=max(0.0, float(tests["e"].mean())), **body)),
         "impulse_centre": {"d_c_m": float(centre.d_c), "from_contact_m": float(centre.d_c - arms.d_c)},
-        "rows": _rows(camera, tests),
+        "rows": [
+            {"test": label, **{name: finite(values[i]) for name, values in tests.items()}}
+            for i, label in enumerate(camera.tests)
+        ],
     }
     return {**document, "notes": _notes(camera, tests, document)}
-
-
-def _tests(camera: Camera, rod: Projectile, arms: Arms) -> dict[str, Floats]:
-    """Return coefficients and energy fractions of each test, (n,) float64 by name."""
-    given: dict[str, Any] = {"d_c": arms.d_c, "d_d": arms.d_d, "k2": rod.k2}
-    shares = losses(**camera.motion, **given, mass=rod.mass).fractions()._asdict()
-    ratios = coefficients(**camera.motion, **given)._asdict()
-    return {**ratios, **{f"{name}_over_E_0": shares[name] for name in SHARES}}
 
 
 def _rod_entry(rod: Projectile, alpha: float) -> dict[str, Any]:
@@ -94,22 +82,6 @@ def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[st
     }
 
 
-def _scatter(tests: Mapping[str, Floats]) -> dict[str, Any]:
-    """Return mean and SD over the tests of the quantities that are finite in all of them."""
-    return {
-        name: statistic_entry(statistic(values))
-        for name, values in tests.items()
-        if np.isfinite(values).all()
-    }
-
-
-def _rows(camera: Camera, tests: Mapping[str, Floats]) -> list[dict[str, Any]]:
-    return [
-        {"test": label, **{name: finite(values[i]) for name, values in tests.items()}}
-        for i, label in enumerate(camera.tests)
-    ]
-
-
 def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, Any]) -> list[str]:
     """Return warnings about the data and the moment restitution."""
     notes = [f"columns not used: {', '.join(camera.ignored)}"] if camera.ignored else []
@@ -120,13 +92,9 @@ def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, A
         )
     if (camera.motion["v_t"] > 0).any():
         notes.append("v_t > 0 in some tests: t points up the slope, and a falling rod has v_t < 0")
-    return [*notes, _moment_note(document["coefficients"]["e_m"]["bootstrap"])]
-
-
-def _moment_note(e_m: Mapping[str, Any]) -> str:
-    low, high = e_m["low"], e_m["high"]
+    low, high = (document["coefficients"]["e_m"]["bootstrap"][name] for name in ("low", "high"))
     if low is None or high is None:
-        return "e_m is not determined: the impulse passes through the mass centre within the errors"
-    if low <= -1.0 <= high:
-        return "e_m = -1 (no moment at the contact) lies within the 95 % interval: read no physics into e_m"
-    return "e_m = -1 lies outside the 95 % interval: the impulse did not act at the stated contact point"
+        return [*notes, "e_m is not determined: the impulse passes through the mass centre within the errors"]
+    inside = "(no moment at the contact) lies within the 95 % interval: read no physics into e_m"
+    outside = "lies outside the 95 % interval: the impulse did not act at the stated contact point"
+    return [*notes, f"e_m = -1 {inside if low <= -1.0 <= high else outside}"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import cos, sin
 from typing import Any
 
@@ -77,22 +78,20 @@ def _shown(run: Outcome) -> dict[str, float]:
 
 
 def _both(case: DroppedRod, angle: float, fidelity: str) -> tuple[Outcome, Outcome]:
-    with_it, without = (_scene(case, angle, names) for names in (("vibration", *EFFECTS), EFFECTS))
-    return simulate(with_it, fidelity), simulate(without, fidelity)
-
-
-def _scene(case: DroppedRod, angle: float, effects: tuple[str, ...]) -> Scene:
+    """Return the outcomes of the drop at an angle, rad, with and without vibration."""
     steels, rod = materials(), case.rod
     tip: Any = rod.tip
-    return Scene(
+    scene = Scene(
         id="assessed-rod",
         title="a dropped rod that is assessed",
         projectile=ProjectileSpec(rod.length, rod.diameter, tip, rod.tip_radius, steels["rod-steel"]),
         barrier=Barrier(steels["plate-steel"]),
         surface=surface(case.surface),
         impact=Impact(angle, -case.speed * cos(angle), -case.speed * sin(angle)),
-        effects=effects,
+        effects=EFFECTS,
     )
+    vibrating = replace(scene, effects=("vibration", *EFFECTS))
+    return simulate(vibrating, fidelity), simulate(scene, fidelity)
 
 
 def _answer(error: float) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 Document = Mapping[str, Any]
@@ -59,16 +59,12 @@ def _losses(d: Document) -> Iterator[str]:
         f"Losses of the first impact, % of E_0, carried over from the {b['tests']} tests of {sets}", ""
     )
     head = ("", "mean", "95 % of impacts", "mean, J", f"all {b['all_tests']} of the surface")
-    rows = [_loss_row(label, d["losses"][name], energy) for name, label in LABELS.items()]
+    rows = []
+    for name, label in LABELS.items():
+        s = {key: 100 * share for key, share in d["losses"][name].items()}
+        spread, of_all = f"{s['low']:.0f} to {s['high']:.0f}", f"{s['all_low']:.0f} to {s['all_high']:.0f}"
+        rows.append((label, f"{s['mean']:.1f}", spread, f"{d['losses'][name]['mean'] * energy:.3g}", of_all))
     yield Table.of(head, rows).terminal(indent="  ")
-
-
-def _loss_row(label: str, s: Mapping[str, Any], energy: float) -> tuple[Cell, ...]:
-    spread, all_tests = (
-        f"{100 * s[low]:.0f} to {100 * s[high]:.0f}"
-        for low, high in (("low", "high"), ("all_low", "all_high"))
-    )
-    return (label, f"{100 * s['mean']:.1f}", spread, f"{s['mean'] * energy:.3g}", all_tests)
 
 
 def _worst(d: Document) -> Iterator[str]:

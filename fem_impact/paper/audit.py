@@ -9,7 +9,7 @@ from typing import Any
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.tables.table import Cell, Column, Table
 from fem_impact.tables.text import wrapped
-from rigid import Estimate, first_order
+from rigid import Coefficients, Estimate, first_order
 from rigid.experiments import (
     AuditRecord,
     MeasuredSet,
@@ -24,8 +24,7 @@ from rigid.experiments import (
 
 Document = Mapping[str, Any]
 
-COEFFICIENTS = ("e", "mu", "e_m")
-SCATTER = (*COEFFICIENTS, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
+SCATTER = (*Coefficients._fields, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
 CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
 
 CONSTANT_COLUMNS = (
@@ -79,7 +78,10 @@ def audit_document(set_id: str | None = None) -> dict[str, Any]:
     UsageError
         There is no such set.
     """
-    ids = (_checked(set_id),) if set_id else set_ids()
+    if set_id and set_id not in set_ids():
+        remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
+        raise UsageError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
+    ids = (set_id,) if set_id else set_ids()
     records = [r for r in (*audit(), *audit_statistics()) if r.set_id in ids]
     sets = [measured_set(name) for name in ids]
     return {
@@ -95,13 +97,6 @@ def audit_document(set_id: str | None = None) -> dict[str, Any]:
 def records_table(document: Mapping[str, Any]) -> Table:
     """Return every audited number in the order of `CSV_COLUMNS`."""
     return Table.of(CSV_COLUMNS, document["records"])
-
-
-def _checked(set_id: str) -> str:
-    if set_id in set_ids():
-        return set_id
-    remedy = did_you_mean(set_id, set_ids(), f"Measured: {', '.join(set_ids())}.")
-    raise UsageError("is not a measured set.", key="--set", value=set_id, remedy=remedy)
 
 
 def _summary(records: Sequence[AuditRecord]) -> dict[str, int]:
@@ -146,42 +141,29 @@ def _constants(s: MeasuredSet) -> dict[str, Any]:
 
 def _disagreements(records: Iterable[AuditRecord]) -> Iterator[dict[str, Any]]:
     """Yield the disagreements; the markers' velocities as one entry a set and column."""
-    apart = [r for r in records if not r.agrees]
-    for r in apart:
-        if not _is_marker(r):
+    markers: dict[tuple[str, str], list[AuditRecord]] = {}
+    for r in records:
+        if not r.agrees and _is_marker(r):
+            markers.setdefault((r.set_id, r.column), []).append(r)
+        elif not r.agrees:
             yield _entry(r)
-    markers = [r for r in apart if _is_marker(r)]
-    for key in dict.fromkeys((r.set_id, r.column) for r in markers):
-        group = [r for r in markers if (r.set_id, r.column) == key]
+    for group in markers.values():
         worst = max(group, key=lambda r: abs(r.printed - r.recomputed))
         yield {**_entry(worst), "row": f"{len(group)} rows, worst {worst.row}"}
 
 
 def _entry(r: AuditRecord) -> dict[str, Any]:
-    values = (
-        r.set_id,
-        r.table,
-        r.row,
-        r.column,
-        r.printed,
-        r.recomputed,
-        r.tolerance,
-        r.agrees,
-        r.explanation,
-    )
-    return dict(zip(CSV_COLUMNS, values, strict=True))
+    return {"set": r.set_id, **{name: getattr(r, name) for name in CSV_COLUMNS[1:]}}
 
 
 def _scatter(s: MeasuredSet) -> dict[str, Any]:
     """Return scatter, uncertainty of e_m and correlations of one set."""
-    statistics = s.statistics()
-    arms: dict[str, Any] = {"d_c": float(s.arms.d_c), "d_d": float(s.arms.d_d), "k2": s.k2}
-    rows = s.recomputed()
-    pairs = correlations({name: rows[name] for name in COEFFICIENTS})
+    statistics, rows = s.statistics(), s.recomputed()
+    pairs = correlations({name: rows[name] for name in Coefficients._fields})
     return {
         "set": s.id,
         **{name: statistic_entry(statistics[name]) for name in SCATTER},
-        "e_m_of_mean": estimate_entry(first_order(s.motion, **arms)["e_m"]),
+        "e_m_of_mean": estimate_entry(first_order(s.motion, **s.body)["e_m"]),
         "correlations": [
             {"pair": f"{a}, {b}", "r": c.r, "low": c.low, "high": c.high, "p": c.p}
             for (a, b), c in pairs.items()
@@ -191,14 +173,8 @@ def _scatter(s: MeasuredSet) -> dict[str, Any]:
 
 def audit_text(document: Document) -> str:
     """Return the document of `audit_document` as text."""
-    parts = (
-        _summary_text(document),
-        _columns_text(document),
-        _constants_text(document),
-        _apart(document),
-        _scatter_text(document),
-    )
-    return "\n".join(line for part in parts for line in part) + "\n"
+    parts = (_summary_text, _constants_text, _disagreements_text, _scatter_text, _correlations_text)
+    return "\n".join(line for part in parts for line in part(document)) + "\n"
 
 
 def _summary_text(document: Document) -> Iterator[str]:
@@ -212,8 +188,6 @@ def _summary_text(document: Document) -> Iterator[str]:
         f"{s['others_apart']} other numbers do not; {s['unexplained']} of all these are unexplained."
     )
 
-
-def _columns_text(document: Document) -> Iterator[str]:
     for which in ("rows", "mean and SD lines"):
         columns = [c for c in document["columns"] if c["lines"] == which]
         if columns:
@@ -224,18 +198,16 @@ def _columns_text(document: Document) -> Iterator[str]:
 def _constants_text(document: Document) -> Iterator[str]:
     yield ""
     yield "What the columns were worked out with (mm, kg, mm2)"
-    rows = tuple(_constants_row(c) for c in document["constants"])
-    yield Table(CONSTANT_COLUMNS, rows).terminal(indent="  ")
+    rows: list[tuple[Cell, ...]] = []
+    for c in document["constants"]:
+        other = ", ".join(f"{name} {1e3 * d:.1f}" for name, d in c["other_d_c_m"].items())
+        other = other or ("velocities worked back from the coefficients" if c["reconstructed"] else "")
+        numbers = (f"{1e3 * c['d_c_m']:.1f}", f"{1e3 * c['d_d_m']:.1f}", f"{c['mass_kg']:.4f}")
+        rows.append((c["set"], c["table"], *numbers, f"{1e6 * c['k_squared_m2']:.1f}", other))
+    yield Table(CONSTANT_COLUMNS, tuple(rows)).terminal(indent="  ")
 
 
-def _constants_row(c: Mapping[str, Any]) -> tuple[Cell, ...]:
-    other = ", ".join(f"{name} {1e3 * d:.1f}" for name, d in c["other_d_c_m"].items())
-    other = other or ("velocities worked back from the coefficients" if c["reconstructed"] else "")
-    arms = (f"{1e3 * c[name]:.1f}" for name in ("d_c_m", "d_d_m"))
-    return (c["set"], c["table"], *arms, f"{c['mass_kg']:.4f}", f"{1e6 * c['k_squared_m2']:.1f}", other)
-
-
-def _apart(document: Document) -> Iterator[str]:
+def _disagreements_text(document: Document) -> Iterator[str]:
     yield ""
     yield "Disagreements, by reason"
     apart = document["disagreements"]
@@ -256,18 +228,18 @@ def _scatter_text(document: Document) -> Iterator[str]:
         "to 0.5 mm"
     )
     head = ("set", "tests", "e", "mu", "loss/E_0", "e_m of the mean motion")
-    rows = [_scatter_row(s) for s in document["scatter"]]
+    rows: list[tuple[Cell, ...]] = []
+    for s in document["scatter"]:
+        e, mu, kept, e_m = (s[name] for name in ("e", "mu", "E_r_over_E_0", "e_m_of_mean"))
+        means = ((e["mean"], e["sd"]), (mu["mean"], mu["sd"]), (1 - kept["mean"], kept["sd"]))
+        moment = f"{e_m['value']:+.2f} ({e_m['low']:+.2f} to {e_m['high']:+.2f})"
+        mark = "" if e_m["low"] <= -1 <= e_m["high"] else "  leaves out -1"
+        spreads = (f"{mean:.3f} ({sd:.3f})" for mean, sd in means)
+        rows.append((s["set"], e["tests"], *spreads, moment + mark))
     yield Table.of(head, rows, left=(0, 2, 3, 4, 5)).terminal(indent="  ")
-    yield from _correlated(document)
 
 
-def _scatter_row(s: Mapping[str, Any]) -> tuple[Cell, ...]:
-    kept = s["E_r_over_E_0"]
-    loss = f"{1 - kept['mean']:.3f} ({kept['sd']:.3f})"
-    return (s["set"], s["e"]["tests"], _spread(s["e"]), _spread(s["mu"]), loss, _interval(s["e_m_of_mean"]))
-
-
-def _correlated(document: Document) -> Iterator[str]:
+def _correlations_text(document: Document) -> Iterator[str]:
     """Yield the pairs of coefficients whose 95 % interval of correlation excludes zero."""
     pairs = [(s["set"], c) for s in document["scatter"] for c in s["correlations"]]
     real = [f"{name}: {c['pair']} r = {c['r']:+.2f}" for name, c in pairs if c["low"] > 0 or c["high"] < 0]
@@ -279,12 +251,3 @@ def _correlated(document: Document) -> Iterator[str]:
         "velocities share errors."
     )
     yield from wrapped(sentence, hang="")
-
-
-def _spread(s: Mapping[str, Any]) -> str:
-    return f"{s['mean']:.3f} ({s['sd']:.3f})"
-
-
-def _interval(e: Mapping[str, Any]) -> str:
-    mark = "" if e["low"] <= -1 <= e["high"] else "  leaves out -1"
-    return f"{e['value']:+.2f} ({e['low']:+.2f} to {e['high']:+.2f}){mark}"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,37 +53,38 @@ def figure_4(out: Path) -> Drawn:
     """
     picture, data = paths(out, 4)
     s = measured_set("t2")
-    found = {name: s.recomputed()[name] for name in NAMES}
+    recomputed = {name: s.recomputed()[name] for name in NAMES}
     printed = {name: s.printed[name] for name in NAMES}
-    r_found, r_printed = correlations(found), correlations(printed)
+    r_recomputed, r_printed = correlations(recomputed), correlations(printed)
     tests = s.printed["test"].astype(int)
-    write_data(data, COLUMNS_4, zip(tests, *found.values(), *printed.values(), strict=True))
-    sentence = _sentence_4(r_found, r_printed)
+    write_data(data, COLUMNS_4, zip(tests, *recomputed.values(), *printed.values(), strict=True))
+    sentence = _sentence_4(s, r_recomputed, r_printed)
     with canvas(picture, 3.5, sentence) as drawn:
         panels = drawn.subplots(1, 3)
-        for axes, (x, y) in zip(panels, combinations(NAMES, 2), strict=True):
-            _panel(axes, found, printed, (x, y), r_found[x, y])
+        for axes, (pair, r) in zip(panels, r_recomputed.items(), strict=True):
+            _panel(axes, recomputed, printed, pair, r)
         handles, labels = panels[0].get_legend_handles_labels()
         drawn.legend(handles, labels, loc="outside lower center", ncols=3, labelcolor=QUIET)
-    return Drawn(4, picture, data, sentence, (_statement(r_printed),))
+    values = ", ".join(f"{x}-{y} {c.r:+.2f} (p = {c.p:.2f})" for (x, y), c in r_printed.items())
+    holds = not any(c.is_significant for c in r_printed.values())
+    statement = Statement("no significant correlation between the coefficients", values, holds)
+    return Drawn(4, picture, data, sentence, (statement,))
 
 
 def _panel(
-    axes: Axes, found: dict[str, Floats], printed: dict[str, Floats], pair: tuple[str, str], r: Correlation
+    axes: Axes,
+    recomputed: dict[str, Floats],
+    printed: dict[str, Floats],
+    pair: tuple[str, str],
+    r: Correlation,
 ) -> None:
     x, y = pair
-    axes.plot(
-        printed[x], printed[y], "o", color=PALETTE["grey"], mfc="none", markersize=5, label="test, as printed"
-    )
-    axes.plot(
-        found[x],
-        found[y],
-        "o",
-        color=PALETTE["blue"],
-        markersize=3.2,
-        label="test, from velocities with $d_c$ = 83 mm",
-    )
-    a, b = statistic(found[x]), statistic(found[y])
+    dots: dict[str, Any] = {"marker": "o", "linestyle": "none"}
+    rings = {**dots, "color": PALETTE["grey"], "mfc": "none", "markersize": 5}
+    axes.plot(printed[x], printed[y], **rings, label="test, as printed")
+    label = "test, from velocities with $d_c$ = 83 mm"
+    axes.plot(recomputed[x], recomputed[y], **dots, color=PALETTE["blue"], markersize=3.2, label=label)
+    a, b = statistic(recomputed[x]), statistic(recomputed[y])
     bars: dict[str, Any] = {"xerr": a.high - a.mean, "yerr": b.high - b.mean}
     axes.errorbar(a.mean, b.mean, **bars, color=PALETTE["vermilion"], lw=1.8, label="mean, 95 % interval")
     axes.set(xlabel=NAMES[x], ylabel=NAMES[y])
@@ -93,35 +93,23 @@ def _panel(
     axes.grid()
 
 
-def _sentence_4(found: Pairs, printed: Pairs) -> str:
+def _sentence_4(s: MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
     largest = max(abs(c.r) for c in printed.values())
     first = (
         f"Table 2, 30 tests: as printed, no two coefficients correlate (r at most {largest:.2f} in size); "
     )
-    real = [pair for pair, c in found.items() if c.is_significant]
+    real = [pair for pair, c in recomputed.items() if c.is_significant]
     if not real:
         return f"{first}nor do they when recomputed from the velocities."
     pair = real[0]
-    other = _with_the_other_arm()
+    ratios = coefficients(**s.motion, **{**s.body, "d_c": OTHER_ARM})
+    other = correlation(ratios.mu, ratios.e_m)
     verdict = "still do" if other.is_significant else "do not"
     return (
-        f"{first}from the velocities {' and '.join(pair)} do weakly (r = {found[pair].r:+.2f}), yet "
+        f"{first}from the velocities {' and '.join(pair)} do weakly (r = {recomputed[pair].r:+.2f}), yet "
         "with the 84 mm "
         f"that give the printed e they {verdict} (r = {other.r:+.2f}): the arm decides, not physics."
     )
-
-
-def _with_the_other_arm() -> Correlation:
-    """Correlate mu and e_m worked out with the d_c that reproduces the printed e."""
-    s = measured_set("t2")
-    ratios = coefficients(**s.motion, d_c=OTHER_ARM, d_d=s.arms.d_d, k2=s.k2)
-    return correlation(ratios.mu, ratios.e_m)
-
-
-def _statement(printed: Pairs) -> Statement:
-    values = ", ".join(f"{x}-{y} {c.r:+.2f} (p = {c.p:.2f})" for (x, y), c in printed.items())
-    holds = not any(c.is_significant for c in printed.values())
-    return Statement("no significant correlation between the coefficients", values, holds)
 
 
 def figure_5(out: Path) -> Drawn:
@@ -146,19 +134,14 @@ def figure_5(out: Path) -> Drawn:
 
 def _row(s: MeasuredSet, mu_c: float) -> list[float]:
     """Return one row of `COLUMNS_5`."""
-    mu, e = s.statistics()["mu"], s.statistics()["e"]
-    low, high = _critical_range(s, e.low, e.high)
-    return [round(float(np.degrees(s.alpha)), 6), mu.mean, mu.low, mu.high, float(mu_c), low, high]
-
-
-def _critical_range(s: MeasuredSet, e_low: float, e_high: float) -> tuple[float, float]:
-    """Return the least and largest mu_c over the interval of e and the error of the contact point."""
     mean = s.statistics()
+    mu, e = mean["mu"], np.array([mean["e"].low, mean["e"].high])[:, None, None]
+    # least and largest mu_c over the interval of e and the error of the contact point
     shift = CONTACT * np.array([-1.0, 1.0])
     given: dict[str, Any] = {"d_c": s.arms.d_c + shift, "d_d": (s.arms.d_d + shift)[:, None], "k2": s.k2}
-    e = np.array([e_low, e_high])[:, None, None]
-    values = critical_ratio(mean["v_n"].mean, mean["v_t"].mean, e=e, **given)
-    return float(values.min()), float(values.max())
+    critical = critical_ratio(mean["v_n"].mean, mean["v_t"].mean, e=e, **given)
+    ends = float(critical.min()), float(critical.max())
+    return [round(float(np.degrees(s.alpha)), 6), mu.mean, mu.low, mu.high, float(mu_c), *ends]
 
 
 def _curve(axes: Axes, k2: float) -> None:

@@ -60,7 +60,7 @@ def figure_6(out: Path) -> Drawn:
         for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
             _draw_6(axes, curve, s, PALETTE[colour])
         _furnish(axes)
-    return Drawn(6, picture, data, sentence, (_near_maximum(share), _gain(curves), *_surfaces()))
+    return Drawn(6, picture, data, sentence, _statements_6(share, curves))
 
 
 def _curve(s: MeasuredSet) -> dict[str, Any]:
@@ -68,11 +68,11 @@ def _curve(s: MeasuredSet) -> dict[str, Any]:
     mean = s.statistics()
     motion = mean["v_n"].mean, mean["v_t"].mean
     mass = 2.0 / (motion[0] ** 2 + motion[1] ** 2)  # so that losses come as fractions of E_0
-    arms: dict[str, Any] = {"e_m": mean["e_m"].mean, "d_c": s.arms.d_c, "d_d": s.arms.d_d, "k2": s.k2}
+    body = {"e_m": mean["e_m"].mean, **s.body}
     restitution = np.array([mean["e"].mean, mean["e"].low, mean["e"].high])
-    lost = predicted_losses(*motion, e=restitution[:, None], mu=MU, mass=mass, **arms)
+    lost = predicted_losses(*motion, e=restitution[:, None], mu=MU, mass=mass, **body)
     total = lost.E_ln + lost.E_lt
-    mu_c = float(critical_ratio(*motion, e=restitution[0], **arms))
+    mu_c = float(critical_ratio(*motion, e=restitution[0], **body))
     return {"alpha": float(np.degrees(s.alpha)), "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c}
 
 
@@ -114,38 +114,30 @@ def _furnish(axes: Axes) -> None:
         ylim=(-0.06, 1.0),
     )
     axes.grid()
-    grey = QUIET
-    axes.plot([], [], "s", color=grey, label="critical ratio")
-    axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=grey, mec="black", label="measured, 95 %")
-    axes.plot([], [], color=grey, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
+    axes.plot([], [], "s", color=QUIET, label="critical ratio")
+    axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=QUIET, mec="black", label="measured, 95 %")
+    axes.plot([], [], color=QUIET, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
     axes.legend(
         loc="lower right", bbox_to_anchor=(1.0, 0.03), title="band: 95 % interval of mean e", title_fontsize=8
     )
 
 
-def _near_maximum(share: list[float]) -> Statement:
-    return Statement(
-        "the loss at the critical ratio is close to the largest",
-        f"{', '.join(f'{100 * x:.1f} %' for x in share)} of it at 17, 25, 37, 45 and 60 degrees",
-        min(share) > 0.9,
-    )
-
-
-def _gain(curves: list[dict[str, Any]]) -> Statement:
-    """Check the paper's statement that ratios beyond the critical one can give an energy gain."""
+def _statements_6(share: list[float], curves: list[dict[str, Any]]) -> tuple[Statement, ...]:
+    """Check the loss at mu_c, the gain of energy beyond it, and the loss over mu of Table 3's surfaces."""
     gains = [f"{c['alpha']:.0f}" for c in curves if (c["tangential"][c["mu_c"] < MU] < 0).any()]
-    return Statement(
-        "beyond the critical ratio a tangential gain of energy becomes possible",
-        f"so it is at {', '.join(gains)} degrees for ratios up to 1.2",
-        bool(gains),
-    )
-
-
-def _surfaces() -> tuple[Statement]:
-    """Check the rise of the loss with mu from fingermarked to freshly machined surfaces (Table 3)."""
-    dirty, fresh = (measured_set(f"t3-{name}") for name in ("contaminated", "machined"))
-    low, high = _loss_of(dirty, 0.32), _loss_of(fresh, 0.72)
+    low = _loss_of(measured_set("t3-contaminated"), 0.32)
+    high = _loss_of(measured_set("t3-machined"), 0.72)
     return (
+        Statement(
+            "the loss at the critical ratio is close to the largest",
+            f"{', '.join(f'{100 * x:.1f} %' for x in share)} of it at 17, 25, 37, 45 and 60 degrees",
+            min(share) > 0.9,
+        ),
+        Statement(
+            "beyond the critical ratio a tangential gain of energy becomes possible",
+            f"so it is at {', '.join(gains)} degrees for ratios up to 1.2",
+            bool(gains),
+        ),
         Statement(
             "the loss rises from about 50 % to above 90 % of E_0 as mu goes from 0.32 to 0.72 (Table 3)",
             f"{100 * low:.1f} % and {100 * high:.1f} % by Eq 23-25 with each surface's e and e_m",
@@ -157,8 +149,7 @@ def _surfaces() -> tuple[Statement]:
 def _loss_of(s: MeasuredSet, mu: float) -> float:
     """Return the loss fraction at `mu` with the mean e and e_m of a set."""
     mean = s.statistics()
-    arms: dict[str, Any] = {"d_c": s.arms.d_c, "d_d": s.arms.d_d, "k2": s.k2}
-    lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **arms)
+    lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **s.body)
     return float(lost.E_ln + lost.E_lt)
 
 
