@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent
-from fem_impact.files.atomic import write_text
+from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent, write_data
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.shares import ACCOUNTS
 from fem_impact.tables.table import Table
@@ -42,7 +41,7 @@ def force_figure(
     """
     path = Path(path)
     time, normal, tangential = (history.numbers(name) for name in COLUMNS)
-    write_text(path.with_suffix(".csv"), Table.of(COLUMNS, zip(time, normal, tangential, strict=True)).csv())
+    write_data(path, COLUMNS, zip(time, normal, tangential, strict=True))
     with figure(path, shape, 3.6 if shape == "wide" else 4.0) as drawn:
         axes = drawn.add_subplot()
         axes.plot(time * 1e6, normal / 1e3, color=PALETTE["blue"], label="normal (out of the barrier)")
@@ -95,15 +94,23 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
     shares = {account.column: history.numbers(account.column) / e_0 for account in ACCOUNTS}
     gravity = history.numbers("E_gravity_J") / e_0
     worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
-    _write_data(path, time, shares, gravity, worst)
+    names = [column.removesuffix("_J") + "_over_E_0" for column in shares]
+    columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
+    write_data(path, columns, zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True))
     with figure(path, shape, 4.6 if shape == "wide" else 5.4) as drawn:
         axes = drawn.add_subplot()
         _areas(axes, time * 1e6, shares)
-        _total(axes, time * 1e6, gravity)
-        _name_axes(axes, time * 1e6, worst)
+        total = "E₀ less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E₀"
+        axes.plot(time * 1e6, 1.0 - gravity, color="black", lw=1.0, ls=(0, (4, 2)), label=total)
+        axes.set(xlabel="time, µs", ylabel="fraction of E₀", ylim=(0.0, None))
+        if len(time) > 1:
+            axes.set_xlim(1e6 * time[0], 1e6 * time[-1])
+        axes.grid(axis="y")
+        title = f"largest residual {worst:.1e} of E₀"
+        axes.set_title(title, fontsize=8.0, color=QUIET, loc="right", weight="normal")
         handles, labels = axes.get_legend_handles_labels()
-        columns = 3 if shape == "wide" else 2
-        drawn.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=columns)
+        across = 3 if shape == "wide" else 2
+        drawn.legend(handles[::-1], labels[::-1], loc="outside lower center", ncols=across)
     return path
 
 
@@ -119,27 +126,3 @@ def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
         edgecolor="white",
         linewidth=0.4,
     )
-
-
-def _total(axes: Axes, time: np.ndarray, gravity: np.ndarray) -> None:
-    label = "E₀ less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E₀"
-    axes.plot(time, 1.0 - gravity, color="black", linewidth=1.0, linestyle=(0, (4, 2)), label=label)
-
-
-def _name_axes(axes: Axes, time: np.ndarray, worst: float) -> None:
-    axes.set(xlabel="time, µs", ylabel="fraction of E₀", ylim=(0.0, None))
-    if len(time) > 1:
-        axes.set_xlim(time[0], time[-1])
-    axes.grid(axis="y")
-    axes.set_title(
-        f"largest residual {worst:.1e} of E₀", fontsize=8.0, color=QUIET, loc="right", weight="normal"
-    )
-
-
-def _write_data(
-    path: Path, time: np.ndarray, shares: dict[str, np.ndarray], gravity: np.ndarray, worst: float
-) -> None:
-    names = [key.removesuffix("_J") + "_over_E_0" for key in shares]
-    columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
-    rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
-    write_text(path.with_suffix(".csv"), Table.of(columns, rows).csv())

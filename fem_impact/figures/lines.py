@@ -6,14 +6,13 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure
-from fem_impact.files.atomic import write_text
-from fem_impact.tables.table import Cell, Table
+from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure, write_data
+from fem_impact.tables.table import Cell
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -32,6 +31,15 @@ NEAR = 0.05
 """Least distance, share of the axis, of two marks whose labels stand on the same side."""
 
 COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y")
+
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "line": {"linestyle": "-", "linewidth": 1.4},
+    "dashed": {"linestyle": (0, (5, 1.5)), "linewidth": 1.4},
+    "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
+    "rings": {"linestyle": "none", "marker": "o", "markersize": 5.6, "mfc": "none"},
+}
+"""Rings are wider than points, so that both are seen where they agree."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +61,7 @@ class Mark:
     """A labelled vertical line at ``x``."""
 
     x: float
-    word: str
+    label: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,8 +80,7 @@ class Panel:
 def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide", columns: int = 2) -> Path:
     """Draw panels over one legend that names more than one series; the data go beside it as CSV."""
     path = Path(path)
-    rows = [row for panel in panels for row in _rows(panel)]
-    write_text(path.with_suffix(".csv"), Table.of(COLUMNS, rows).csv())
+    write_data(path, COLUMNS, (row for panel in panels for row in _rows(panel)))
     across = columns if shape == "wide" else 1
     down = math.ceil(len(panels) / across)
     labels = {series.label for panel in panels for series in panel.series}
@@ -100,7 +107,8 @@ def _rows(panel: Panel) -> list[list[Cell]]:
 def _panel(axes: Axes, panel: Panel) -> None:
     axes.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
     for at, series in enumerate(panel.series):
-        _draw(axes, series, PALETTE[COLOURS[(at if series.colour is None else series.colour) % len(COLOURS)]])
+        colour = COLOURS[(at if series.colour is None else series.colour) % len(COLOURS)]
+        axes.plot(series.x, series.y, color=PALETTE[colour], label=series.label, **LOOKS[series.look])
     for level in panel.levels:
         axes.axhline(level, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
     if panel.names:
@@ -109,40 +117,18 @@ def _panel(axes: Axes, panel: Panel) -> None:
     axes.grid()
 
 
-def _draw(axes: Axes, series: Series, colour: str) -> None:
-    if series.look in ("line", "dashed"):
-        style = "-" if series.look == "line" else (0, (5, 1.5))
-        axes.plot(series.x, series.y, color=colour, linestyle=style, linewidth=1.4, label=series.label)
-    elif series.look == "points":
-        axes.plot(series.x, series.y, "o", color=colour, markersize=3.6, label=series.label)
-    else:  # rings: wider than points, so that both are seen where they agree
-        axes.plot(series.x, series.y, "o", color=colour, mfc="none", markersize=5.6, label=series.label)
-
-
 def _marks(axes: Axes, marks: Sequence[Mark]) -> None:
     """Draw the marks; a label stands left of its line, or right where the mark before is within `NEAR`."""
     for mark in marks:
         axes.axvline(mark.x, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
     low, high = axes.get_xlim()
     before = -math.inf
+    # zorder: under the curves
+    look: dict[str, Any] = {"rotation": 90, "va": "top", "fontsize": 7.0, "color": QUIET, "zorder": 1.5}
     for mark in marks:
-        _word(axes, mark, "left" if mark.x - before < NEAR * (high - low) else "right")
+        side = "left" if mark.x - before < NEAR * (high - low) else "right"
+        axes.text(mark.x, 0.99, mark.label, transform=axes.get_xaxis_transform(), ha=side, **look)
         before = mark.x
-
-
-def _word(axes: Axes, mark: Mark, side: Literal["left", "right"]) -> None:
-    axes.text(
-        mark.x,
-        0.99,
-        mark.word,
-        transform=axes.get_xaxis_transform(),
-        rotation=90,
-        ha=side,
-        va="top",
-        fontsize=7.0,
-        color=QUIET,
-        zorder=1.5,  # under the curves
-    )
 
 
 def _legend(drawn: Figure, grid: Sequence[Axes], beside: int) -> None:

@@ -9,13 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure, percent
-from fem_impact.files.atomic import write_text
+from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure, percent, write_data
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
 from fem_impact.tables.csv import COMPARISON
-from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,8 +42,7 @@ def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") 
     listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
     values = [known(outcome.estimate(share.key)[0]) for share in listed]
     names = [share.key.name.removesuffix("_over_E_0") for share in listed]
-    rows = zip(names, values, strict=True)
-    write_text(path.with_suffix(".csv"), Table.of(("account", "fraction_of_E_0"), rows).csv())
+    write_data(path, ("account", "fraction_of_E_0"), zip(names, values, strict=True))
     with figure(path, shape, 0.9 + 0.27 * max(len(listed), 1)) as drawn:
         axes = drawn.add_subplot()
         # bars below UNSEEN are 0: the number beside a negative one would cover its name
@@ -83,28 +80,21 @@ def study_partition_figure(rows: Sequence[Outcome], path: str | Path, shape: Sha
     path = Path(path)
     listed = shares("figure")
     data = [[row.provenance.scene_id, *(or_none(share.of(row.energy)) for share in listed)] for row in rows]
-    table = Table.of(("scene_id", *(share.key.name for share in listed)), data)
-    write_text(path.with_suffix(".csv"), table.csv())
+    write_data(path, ("scene_id", *(share.key.name for share in listed)), data)
+    names, left = [row.provenance.scene_id for row in rows], np.zeros(len(rows))
     with figure(path, shape, 1.6 + 0.3 * len(rows) + (0.0 if shape == "wide" else 0.6)) as drawn:
         axes = drawn.add_subplot()
-        _stack(axes, rows)
+        for share in listed:
+            widths = np.array([100.0 * (or_none(share.of(row.energy)) or 0.0) for row in rows])
+            look: dict[str, Any] = {"color": PALETTE[share.colour], "edgecolor": "white", "linewidth": 0.4}
+            axes.barh(names, widths, left=left, label=share.label, height=0.72, **look)
+            left += widths
         axes.invert_yaxis()
         axes.tick_params(axis="y", length=0)
         axes.set(xlabel="share of E₀ after the last separation, %", xlim=(0.0, 103.0))
         axes.grid(axis="x")
         drawn.legend(loc="outside lower center", ncols=5 if shape == "wide" else 2)
     return path
-
-
-def _stack(axes: Axes, rows: Sequence[Outcome]) -> None:
-    names, left = [row.provenance.scene_id for row in rows], np.zeros(len(rows))
-    for share in shares("figure"):
-        widths = np.array([100.0 * (or_none(share.of(row.energy)) or 0.0) for row in rows])
-        colour = PALETTE[share.colour]
-        bars = axes.barh(names, widths, left=left, color=colour, label=share.label, height=0.72)
-        for bar in bars:
-            bar.set(edgecolor="white", linewidth=0.4)
-        left += widths
 
 
 def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide") -> Path:
@@ -119,9 +109,8 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
     shape : "wide" or "narrow"
     """
     path = Path(path)
-    table = Table.of(COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
-    write_text(path.with_suffix(".csv"), table.csv())
-    quantities, sets = _distinct(rows, "quantity"), _distinct(rows, "set")
+    write_data(path, COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
+    quantities, sets = ([*dict.fromkeys(row[name] for row in rows)] for name in ("quantity", "set"))
     columns = min(4 if shape == "wide" else 2, max(len(quantities), 1))
     lines = math.ceil(max(len(quantities), 1) / columns)
     with figure(path, shape, 0.6 + lines * (0.75 + 0.24 * len(sets))) as drawn:
@@ -132,10 +121,6 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
             panel.set_visible(False)
         _legend(drawn, panels[0], shape)
     return path
-
-
-def _distinct(rows: Sequence[Mapping[str, Any]], name: str) -> list[str]:
-    return list(dict.fromkeys(row[name] for row in rows))
 
 
 def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size: float) -> None:

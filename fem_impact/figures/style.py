@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.errors import MissingLibraryError
-from fem_impact.files.atomic import atomic_path
+from fem_impact.files.atomic import atomic_path, write_text
+from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -35,7 +36,7 @@ PALETTE = {
 INK, QUIET = "#1f2328", "#6b7280"
 WIDTH = {"wide": 8.4, "narrow": 4.3}
 
-_STYLE = {
+_STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9.0,
     "axes.edgecolor": QUIET,
@@ -71,7 +72,10 @@ def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
     OutputPathError
         The place cannot be written.
     """
-    matplotlib = _matplotlib()
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
     with matplotlib.rc_context(_STYLE):
         drawn = new_figure(shape, height)
         yield drawn
@@ -92,6 +96,11 @@ def save(drawn: Figure, path: Path) -> None:
         drawn.savefig(draft, format=path.suffix.lstrip("."), dpi=150, metadata=dated)
 
 
+def write_data(picture: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
+    """Write the numbers of a figure as CSV beside it, units in the names. Raises OutputPathError."""
+    write_text(picture.with_suffix(".csv"), Table.of(columns, rows).csv())
+
+
 def percent(fraction: float, band: float | None = None) -> str:
     """Return a fraction of E_0 as text in per cent, with two digits or more; with its band, as many places.
 
@@ -107,11 +116,3 @@ def percent(fraction: float, band: float | None = None) -> str:
     if abs(value) >= 0.95:
         return f"{value:.1f} %"
     return f"{value:.2g} %" if value else "0 %"
-
-
-def _matplotlib() -> Any:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
-    return matplotlib

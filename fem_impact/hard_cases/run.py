@@ -72,7 +72,7 @@ def run_case(name: str, out: Path) -> Row:
     """Run one case and keep its row; whatever happens is a row."""
     case, begun = CASES[name], time.process_time()
     try:
-        row = _bounces(case) if case.bounces else _scene(case, out / name)
+        row = _bounces(case) if case.bounces else _judged(case, _solved(case, out / name), out / name)
     except SceneError as refusal:
         row = _row(case, "refused", str(refusal))
     except RunError as stop:
@@ -80,7 +80,7 @@ def run_case(name: str, out: Path) -> Row:
     except Exception as error:  # a fault of the program: the others go on, and the table shows it
         row = replace(_row(case, "fault", repr(error)), passed=False)
     row = replace(row, cpu_s=time.process_time() - begun)
-    write_text(_place(case, out), json.dumps({"stamp": _stamp(case), **asdict(row)}, indent=1))
+    write_text(out / name / ROW, json.dumps({"stamp": _stamp(case), **asdict(row)}, indent=1))
     return row
 
 
@@ -88,26 +88,22 @@ def _row(case: HardCase, verdict: str, reason: str = "", **more: Any) -> Row:
     return Row(case.name, case.difficulty, verdict, verdict == case.expected, reason, **more)
 
 
-def _scene(case: HardCase, out: Path) -> Row:
-    from fem_impact.plan.plan import plan
-
-    planned = plan(case.scene())
-    make_directory(out)
-    return _judged(case, _solved(case, planned, out), out)
-
-
-def _solved(case: HardCase, plan: Plan, out: Path) -> SolidResult:
+def _solved(case: HardCase, out: Path) -> SolidResult:
+    """Run a case from its checkpoint in ``out`` if there is one, else from the start."""
     from fem_impact.files.run_directory import CHECKPOINT
+    from fem_impact.plan.plan import plan
     from fem_impact.run.program import stamp
     from fem_impact.solid.run import solve
 
-    options = RunOptions(out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(plan.scene))
+    planned = plan(case.scene())
+    make_directory(out)
+    options = RunOptions(out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(planned.scene))
     if (out / CHECKPOINT).exists():
         try:
-            return solve(plan, replace(options, resume=True), _model(case, plan))
+            return solve(planned, replace(options, resume=True), _model(case, planned))
         except ResultError:  # of another scene or program
             (out / CHECKPOINT).unlink()
-    return solve(plan, options, _model(case, plan))
+    return solve(planned, options, _model(case, planned))
 
 
 def _model(case: HardCase, plan: Plan) -> Model:
@@ -137,16 +133,8 @@ def _judged(case: HardCase, result: SolidResult, out: Path) -> Row:
     stopped = "max_time" not in result.reason and not result.finished
     verdict = "detected" if stopped else "FAILED" if faults else "closed"
     reason = result.reason if stopped else "; ".join(faults)
-    return _row(
-        case,
-        verdict,
-        reason,
-        residual=balances.residual,
-        growth=balances.growth,
-        steps=result.steps,
-        elements=elements,
-        time_s=result.time,
-    )
+    shares = {"residual": balances.residual, "growth": balances.growth}
+    return _row(case, verdict, reason, **shares, steps=result.steps, elements=elements, time_s=result.time)
 
 
 def _bounces(case: HardCase) -> Row:
@@ -167,16 +155,13 @@ def _stamp(case: HardCase) -> str:
     return f"{case!r} {source_digest()}"
 
 
-def _place(case: HardCase, out: Path) -> Path:
-    return out / case.name / ROW
-
-
 def _kept(case: HardCase, out: Path) -> Row | None:
     """Return a stored row if it is whole and of this case and program."""
-    if not _place(case, out).is_file():
+    path = out / case.name / ROW
+    if not path.is_file():
         return None
     try:
-        values = json.loads(read_text(_place(case, out)))
+        values = json.loads(read_text(path))
         return Row(**values) if values.pop("stamp") == _stamp(case) else None
     except (ResultError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return None
@@ -187,7 +172,12 @@ def page(rows: Sequence[Row], date: str) -> str:
     passed, cpu = sum(row.passed for row in rows), sum(row.cpu_s for row in rows)
     line = f"{date}: {passed} of {len(rows)} as they must be, {cpu / 60:.1f} minutes of CPU."
     notes = [f"- `{row.name}`: {row.reason}" for row in rows if row.reason]
-    return "\n".join([line, "", Table.of(HEAD, map(_cells, rows)).markdown(), "", *notes]).rstrip()
+    cells = []
+    for row in rows:
+        verdict = row.verdict if row.passed else f"**{row.verdict}**"
+        counts = [f"{n}" if n else "" for n in (row.elements, row.steps)]
+        cells.append([f"`{row.name}`", row.difficulty, verdict, _share(row), *counts, f"{row.cpu_s:.0f}"])
+    return "\n".join([line, "", Table.of(HEAD, cells).markdown(), "", *notes]).rstrip()
 
 
 def row_line(row: Row) -> str:
@@ -195,12 +185,6 @@ def row_line(row: Row) -> str:
     mark = "ok  " if row.passed else "FAIL"
     reason = f": {row.reason}" if row.reason else ""
     return f"{mark} {row.name}: {row.verdict}, ledger {_share(row)}, {row.cpu_s:.1f} s of CPU{reason}"
-
-
-def _cells(row: Row) -> list[str]:
-    verdict = row.verdict if row.passed else f"**{row.verdict}**"
-    counts = [f"{n}" if n else "" for n in (row.elements, row.steps)]
-    return [f"`{row.name}`", row.difficulty, verdict, _share(row), *counts, f"{row.cpu_s:.0f}"]
 
 
 def _share(row: Row) -> str:

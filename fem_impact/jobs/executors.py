@@ -150,14 +150,12 @@ def _serve(pipe: Connection) -> None:
             fn, args, kwargs = pipe.recv()
         except EOFError:
             return
-        pipe.send(_answer(fn, args, kwargs))
-
-
-def _answer(fn: Callable[..., object], args: Any, kwargs: Any) -> tuple[object, Exception | None]:
-    try:
-        return fn(*args, **kwargs), None
-    except Exception as error:  # it is raised in the process of the study
-        return None, error
+        answer: tuple[object, Exception | None]
+        try:
+            answer = fn(*args, **kwargs), None
+        except Exception as error:  # it is raised in the process of the study
+            answer = None, error
+        pipe.send(answer)
 
 
 def _end_with_parent() -> None:

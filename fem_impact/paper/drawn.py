@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.figures.style import INK, figure
-from fem_impact.files.atomic import write_text
-from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -42,8 +40,8 @@ class Drawn:
     ----------
     number : int
         In the paper.
-    picture, data : Path
-        PNG and CSV.
+    picture : Path
+        PNG; the data lie beside it as CSV.
     sentence : str
         What the figure shows.
     statements : tuple of Statement
@@ -52,19 +50,13 @@ class Drawn:
 
     number: int
     picture: Path
-    data: Path
     sentence: str
     statements: tuple[Statement, ...]
 
-
-def paths(out: Path, number: int) -> tuple[Path, Path]:
-    """Return the places of picture and data."""
-    return out / f"figure-{number}.png", out / f"figure-{number}.csv"
-
-
-def write_data(path: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
-    """Write the numbers of a figure beside it, units in the names."""
-    write_text(path, Table.of(columns, rows).csv())
+    @property
+    def data(self) -> Path:
+        """The CSV file of the figure's numbers."""
+        return self.picture.with_suffix(".csv")
 
 
 @contextmanager

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.style import INK, PALETTE, QUIET
-from fem_impact.paper.drawn import Drawn, Statement, canvas, paths, write_data
+from fem_impact.figures.style import INK, PALETTE, QUIET, write_data
+from fem_impact.paper.drawn import Drawn, Statement, canvas
 from rigid import coefficients, critical_ratio
 from rigid.arrays import Floats
 from rigid.experiments import (
@@ -51,13 +51,13 @@ def figure_4(out: Path) -> Drawn:
     out : Path
         Directory for picture and data.
     """
-    picture, data = paths(out, 4)
+    picture = out / "figure-4.png"
     s = measured_set("t2")
     recomputed = {name: s.recomputed()[name] for name in NAMES}
     printed = {name: s.printed[name] for name in NAMES}
     r_recomputed, r_printed = correlations(recomputed), correlations(printed)
     tests = s.printed["test"].astype(int)
-    write_data(data, COLUMNS_4, zip(tests, *recomputed.values(), *printed.values(), strict=True))
+    write_data(picture, COLUMNS_4, zip(tests, *recomputed.values(), *printed.values(), strict=True))
     sentence = _sentence_4(s, r_recomputed, r_printed)
     with canvas(picture, 3.5, sentence) as drawn:
         panels = drawn.subplots(1, 3)
@@ -68,7 +68,7 @@ def figure_4(out: Path) -> Drawn:
     values = ", ".join(f"{x}-{y} {c.r:+.2f} (p = {c.p:.2f})" for (x, y), c in r_printed.items())
     holds = not any(c.is_significant for c in r_printed.values())
     statement = Statement("no significant correlation between the coefficients", values, holds)
-    return Drawn(4, picture, data, sentence, (statement,))
+    return Drawn(4, picture, sentence, (statement,))
 
 
 def _panel(
@@ -114,10 +114,10 @@ def _sentence_4(s: MeasuredSet, recomputed: Pairs, printed: Pairs) -> str:
 
 def figure_5(out: Path) -> Drawn:
     """Draw mean mu with its 95 % interval, and mu_c with the range that e and the contact point leave."""
-    picture, data = paths(out, 5)
+    picture = out / "figure-5.png"
     sets = angle_sets()
     rows = [_row(s, mu_c) for s, mu_c in zip(sets, critical_ratio_against_angle()[0], strict=True)]
-    write_data(data, COLUMNS_5, rows)
+    write_data(picture, COLUMNS_5, rows)
     table = np.array(rows)
     sentence = _sentence_5(table)
     with canvas(picture, 4.2, sentence) as drawn:
@@ -129,7 +129,7 @@ def figure_5(out: Path) -> Drawn:
         axes.set(xlabel="inclination α, degrees", ylabel="impulse ratio", xlim=(15, 62), ylim=(0, 1.25))
         axes.grid()
         axes.legend(loc="upper left")
-    return Drawn(5, picture, data, sentence, _statements(table))
+    return Drawn(5, picture, sentence, _statements(table))
 
 
 def _row(s: MeasuredSet, mu_c: float) -> list[float]:

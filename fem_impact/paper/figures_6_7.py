@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.style import PALETTE, QUIET
-from fem_impact.paper.drawn import Drawn, Statement, canvas, paths, write_data
+from fem_impact.figures.style import PALETTE, QUIET, write_data
+from fem_impact.paper.drawn import Drawn, Statement, canvas
 from rigid import critical_ratio, predicted_losses
 from rigid.arrays import Floats
 from rigid.experiments import (
@@ -46,9 +46,9 @@ COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS f
 
 def figure_6(out: Path) -> Drawn:
     """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
-    picture, data = paths(out, 6)
+    picture = out / "figure-6.png"
     curves = [_curve(s) for s in angle_sets()]
-    write_data(data, COLUMNS_6, [row for curve in curves for row in _rows(curve)])
+    write_data(picture, COLUMNS_6, [row for curve in curves for row in _rows(curve)])
     share = [_share_at_critical(curve) for curve in curves]
     sentence = (
         f"At the critical ratio the predicted total loss is {100 * min(share):.0f} to "
@@ -60,7 +60,7 @@ def figure_6(out: Path) -> Drawn:
         for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
             _draw_6(axes, curve, s, PALETTE[colour])
         _furnish(axes)
-    return Drawn(6, picture, data, sentence, _statements_6(share, curves))
+    return Drawn(6, picture, sentence, _statements_6(share, curves))
 
 
 def _curve(s: MeasuredSet) -> dict[str, Any]:
@@ -155,10 +155,10 @@ def _loss_of(s: MeasuredSet, mu: float) -> float:
 
 def figure_7(out: Path) -> Drawn:
     """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of resampled tests."""
-    picture, data = paths(out, 7)
+    picture = out / "figure-7.png"
     curves, drawn_curves = _curves()
     measured = [_measured(s.recomputed()) for s in angle_sets()]
-    write_data(data, COLUMNS_7, [*_curve_rows(curves, drawn_curves), *_measured_rows(measured)])
+    write_data(picture, COLUMNS_7, [*_curve_rows(curves, drawn_curves), *_measured_rows(measured)])
     peaks = {name: _peak(curves[name], drawn_curves[name]) for name in ("total", "E_lt")}
     sentence = (
         f"With interpolated coefficients the total loss is largest at {_words(peaks['total'])} degrees and "
@@ -177,7 +177,7 @@ def figure_7(out: Path) -> Drawn:
         order = (0, 3, 1, 4, 2, 5)  # a column of the legend for each loss: curve above measurement
         legend = [handles[i] for i in order], [labels[i] for i in order]
         drawn.legend(*legend, loc="outside lower center", ncols=3)
-    return Drawn(7, picture, data, sentence, _statements(peaks))
+    return Drawn(7, picture, sentence, _statements(peaks))
 
 
 def _curves() -> tuple[dict[str, Floats], dict[str, Floats]]:

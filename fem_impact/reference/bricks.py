@@ -21,14 +21,6 @@ CORNERS = np.array(list(product((-1.0, 1.0), repeat=3)))
 GAUSS = CORNERS / sqrt(3)
 
 
-def _moduli(E: float, nu: float) -> Array:
-    """Return the (6, 6) stiffness for strains xx, yy, zz, xy, yz, zx, Pa."""
-    G, lame = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu))
-    D = np.diag([2 * G] * 3 + [G] * 3)
-    D[:3, :3] += lame
-    return D
-
-
 def _strains(slopes: Array) -> Array:
     """Return the strains (6, 3 k) of k functions of given slopes (k, 3), displacement by displacement."""
     B = np.zeros((6, len(slopes), 3))
@@ -38,20 +30,18 @@ def _strains(slopes: Array) -> Array:
     return B.reshape(6, -1)
 
 
-def _corner_slopes(at: Array, edges: Array) -> Array:
-    factors = 1 + CORNERS * at
-    others = [factors[:, (i + 1) % 3] * factors[:, (i + 2) % 3] for i in range(3)]
-    return np.asarray(CORNERS * np.stack(others, axis=1) / (4 * edges))
-
-
 def brick_stiffness(kind: str, edges: Array, E: float, nu: float) -> Array:
     """Return the stiffness (24, 24), N/m, of a box with ``edges`` (3,), m; corners as in ``product``.
 
     ``full`` is the 8-point hexahedron; ``bbar`` has the mean dilatation (Hughes 1980), ``incompatible``
     adds 1 - xi^2 in each direction (Wilson 1973), condensed.
     """
-    D, weight = _moduli(E, nu), float(np.prod(edges)) / 8
-    B = np.stack([_strains(_corner_slopes(at, edges)) for at in GAUSS])
+    G, lame, weight = E / (2 * (1 + nu)), E * nu / ((1 + nu) * (1 - 2 * nu)), float(np.prod(edges)) / 8
+    D = np.diag([2 * G] * 3 + [G] * 3)  # for strains xx, yy, zz, xy, yz, zx
+    D[:3, :3] += lame
+    factors = 1 + CORNERS * GAUSS[:, None]  # (points, corners, 3)
+    slopes = CORNERS * np.roll(factors, -1, axis=2) * np.roll(factors, -2, axis=2) / (4 * edges)
+    B = np.stack([_strains(at) for at in slopes])
     if kind == "bbar":
         swell = B[:, :3].sum(axis=1) / 3
         B[:, :3] += (swell.mean(axis=0) - swell)[:, None]

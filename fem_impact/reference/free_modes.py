@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
+from itertools import product
 from math import cos, pi, sin, sqrt
 
 import numpy as np
@@ -114,8 +115,6 @@ def free_bar_flexibility(nu: float, length: float, angle: float, touch: tuple[fl
     return np.asarray((bend / square[RIGID:]) @ bend.T + stretch * np.outer(axis, axis))
 
 
-Terms = list[tuple[int, int]]
-
 SECTION_DEGREE = 5
 AXIAL_DEGREE = 15
 
@@ -129,75 +128,52 @@ class Frequencies:
     torsion: Array
 
 
-def _terms(x_parity: int, y_parity: int) -> Terms:
-    """Return exponents (a, b) of x^a y^b with the parities of a component."""
-    degrees = range(SECTION_DEGREE + 1)
-    return [
-        (a, b)
-        for a in degrees
-        for b in degrees
-        if a % 2 == x_parity and b % 2 == y_parity and a + b <= SECTION_DEGREE
-    ]
-
-
 def _power(x: Array, a: int) -> tuple[Array, Array]:
     return x**a, a * x ** (a - 1) if a else np.zeros_like(x)
 
 
-def _section(terms: Terms) -> tuple[Array, Array, Array, Array]:
-    """Return values, x and y slopes (points, terms) and weights over the unit disc."""
+def _section(parities: tuple[int, int], radius: float) -> tuple[list[tuple[Array, int]], Array]:
+    """Return a component's value and three slopes over a disc, with the axial factor's order, and weights.
+
+    Values and slopes (points, terms) are those of all x^a y^b of the parities up to `SECTION_DEGREE`, the
+    third slope being along the axis.
+    """
     s, w = legendre.leggauss(8)
     r, w_r = 0.5 * (s + 1), 0.5 * w
     turn = 2 * pi * np.arange(16) / 16
     x, y = np.outer(r, np.cos(turn)).ravel(), np.outer(r, np.sin(turn)).ravel()
     weight = np.repeat(w_r * r * 2 * pi / 16, 16)
-    rows = [(*_power(x, a), *_power(y, b)) for a, b in terms]
+    powers = product(*(range(parity, SECTION_DEGREE + 1, 2) for parity in parities))
+    rows = [(*_power(x, a), *_power(y, b)) for a, b in powers if a + b <= SECTION_DEGREE]
     value = np.stack([X * Y for X, _, Y, _ in rows], axis=1)
     along_x = np.stack([X1 * Y for _, X1, Y, _ in rows], axis=1)
     along_y = np.stack([X * Y1 for X, _, _, Y1 in rows], axis=1)
-    return value, along_x, along_y, weight
-
-
-def _axis(length: float) -> tuple[Array, Array, Array]:
-    s, w = legendre.leggauss(AXIAL_DEGREE + 3)
-    n = AXIAL_DEGREE + 1
-    slopes = np.stack([legendre.legval(s, legendre.legder(row)) for row in np.eye(n)], axis=1)
-    return (
-        np.asarray(legendre.legvander(s, AXIAL_DEGREE)),
-        np.asarray(slopes * 2 / length),
-        np.asarray(w * length / 2),
-    )
-
-
-def _derivatives(parities: tuple[int, int], radius: float) -> tuple[list[tuple[Array, int]], Array]:
-    """Return a component's value and three slopes over the section, with the axial factor's order."""
-    value, x, y, weight = _section(_terms(*parities))
-    return [(value, 0), (x / radius, 0), (y / radius, 0), (value, 1)], weight * radius**2
+    return [(value, 0), (along_x / radius, 0), (along_y / radius, 0), (value, 1)], weight * radius**2
 
 
 def _class_frequencies(
     parities: list[tuple[int, int]], E: float, nu: float, rho: float, length: float, radius: float
 ) -> Array:
     """Return all frequencies of one symmetry class, the rigid ones as zeros, Hz."""
-    tables = [_derivatives(p, radius) for p in parities]
-    weight, axial = tables[0][1], _axis(length)
+    tables = [_section(p, radius) for p in parities]
+    weight, axial = tables[0][1], _legendre_tables(AXIAL_DEGREE + 1, length)
     G = E / (2 * (1 + nu))
     lame = 2 * G * nu / (1 - 2 * nu)
 
-    def product(i: int, p: int, j: int, q: int) -> Array:
+    def integrals(i: int, p: int, j: int, q: int) -> Array:
         """Return the integrals of derivative p of component i times derivative q of component j."""
         (A, a), (B, b) = tables[i][0][p], tables[j][0][q]
         along = axial[a].T @ (axial[2][:, None] * axial[b])
         return np.asarray(np.kron(A.T @ (weight[:, None] * B), along))
 
     def stiffness(i: int, j: int) -> Array:
-        block = lame * product(i, i + 1, j, j + 1) + G * product(i, j + 1, j, i + 1)
+        block = lame * integrals(i, i + 1, j, j + 1) + G * integrals(i, j + 1, j, i + 1)
         if i == j:
-            block += G * (product(i, 1, i, 1) + product(i, 2, i, 2) + product(i, 3, i, 3))
+            block += G * (integrals(i, 1, i, 1) + integrals(i, 2, i, 2) + integrals(i, 3, i, 3))
         return block
 
     K = np.block([[stiffness(i, j) for j in range(3)] for i in range(3)])
-    M = block_diag(*(rho * product(i, 0, i, 0) for i in range(3)))
+    M = block_diag(*(rho * integrals(i, 0, i, 0) for i in range(3)))
     return np.asarray(np.sqrt(np.maximum(eigh(K, M, eigvals_only=True), 0.0)) / (2 * pi))
 
 

@@ -126,17 +126,6 @@ def hertz(E_star: float, radius: float, mass: float, speed: float) -> HertzImpac
     return HertzImpact(stiffness * approach**1.5, approach, sqrt(radius * approach), SPAN * approach / speed)
 
 
-def radiated_share(speed: float, c0: float) -> float:
-    """Return the share of E_0 sent into a half-space at nu = 0.29: 1.127 (v / c0)^0.6 (Hunter 1957).
-
-    Examples
-    --------
-    >>> round(radiated_share(1.0, 5172.0), 4)
-    0.0067
-    """
-    return float(1.127 * (speed / c0) ** 0.6)
-
-
 SPRINGS = 100
 MEAN_PRESSURE = 0.6716  # over the largest: 3/4 weighted by itself over the contact, 0.896 over the impulse
 

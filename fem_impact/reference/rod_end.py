@@ -51,15 +51,13 @@ class AxialImpact:
 
 @dataclass(frozen=True, slots=True)
 class BarImpact:
-    """Plateau of the wall force, N; duration, s; restitution and vibration share, exact."""
+    """Plateau of the wall force, N; duration, s; the restitution is 1 and no vibration is left."""
 
     force: float
     duration: float
-    restitution: float = 1.0
-    vibration: float = 0.0
 
 
-def _grid(length: float) -> Array:
+def _graded(length: float) -> Array:
     """Return coordinates from 0 to ``length``, even up to the smallest contact radius, then geometric."""
     count = round(log2(length / SMALLEST) * PER_OCTAVE)
     far = SMALLEST * (length / SMALLEST) ** np.linspace(0.0, 1.0, count + 1)
@@ -69,7 +67,7 @@ def _grid(length: float) -> Array:
 def _nose(tip: float) -> skfem.MeshQuad:
     """Return the meridian plane (r, z) of a rod of radius 1 behind z = r^2 / (2 tip)."""
     end = 1 / (2 * tip) + BEHIND
-    mesh = skfem.MeshQuad.init_tensor(_grid(1.0), _grid(end))
+    mesh = skfem.MeshQuad.init_tensor(_graded(1.0), _graded(end))
     r, s = mesh.p
     return skfem.MeshQuad(np.stack([r, r**2 / (2 * tip) * (1 - s / end) + s]), mesh.t)
 

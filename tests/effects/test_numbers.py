@@ -22,7 +22,6 @@ from fem_impact.physics.contact import (
 from fem_impact.physics.flash import expected_rise, flash_bound
 from fem_impact.plan.choose import active, choices, everything, resolved
 from fem_impact.plan.measured import expected_shares
-from fem_impact.reference.hertz import radiated_share
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
 
@@ -57,7 +56,7 @@ def test_radiated_share_is_that_of_hunter():
     """Held to Lamb's integral in the tests of the references."""
     stated = load("t5b")
     c0 = sqrt(206e9 / 7850)
-    assert radiated(stated) == pytest.approx(radiated_share(abs(stated.impact.v_n), c0))
+    assert radiated(stated) == pytest.approx(1.127 * (-stated.impact.v_n / c0) ** 0.6)
 
 
 def test_gain_by_the_rate_by_hand():
