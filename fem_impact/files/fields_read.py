@@ -12,12 +12,14 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fem_impact.errors import ResultError
+from fem_impact.files.fields_check import check_finite, check_mesh, check_rows, check_times
 
 if TYPE_CHECKING:
     import h5py
 
 
 T = TypeVar("T")
+_COLUMNS = {"displacement": (3,), "velocity": (3,), "mises": (), "plastic_strain": ()}
 _WAITS = (0.02, 0.1, 0.5, 0.0)  # s before each further try while a writer has the file open
 
 
@@ -79,33 +81,41 @@ def read_fields(path: str | Path) -> FieldFile:
 
 def _describe(path: Path, root: h5py.Group) -> FieldFile:
     steps = int(root["Steps"].attrs["NSteps"])
+    times, points = _rows(root["Steps"]["Values"], 0, max(steps, 0)), _rows(root["Points"])
+    cells = _rows(root["Connectivity"]).reshape(-1, 8)
+    check_times(times, steps)
+    check_mesh(points, cells)
     moving = {name for name, rows in root["CellData"].items() if rows.maxshape[0] is None}
-    return FieldFile(
-        path,
-        _rows(root["Steps"]["Values"], 0, steps),
-        _rows(root["Points"]),
-        _rows(root["Connectivity"]).reshape(-1, 8),
-        {name: _rows(root["CellData"][name]) for name in root["CellData"] if name not in moving},
-        tuple(root["PointData"]),
-        tuple(sorted(moving)),
-    )
+    static = {name: _rows(root["CellData"][name]) for name in root["CellData"] if name not in moving}
+    check_rows("cell", len(cells), static)
+    return FieldFile(path, times, points, cells, static, tuple(root["PointData"]), tuple(sorted(moving)))
 
 
 def _rows(dataset: h5py.Dataset, start: int = 0, stop: int | None = None) -> np.ndarray:
-    """Return rows of a dataset. Raises ValueError where it states more bytes than the whole file has."""
+    """Return rows of a dataset.
+
+    Raises
+    ------
+    ValueError
+        It states more bytes than the whole file has, or holds what are no numbers.
+    """
     first, last, _ = slice(start, stop).indices(dataset.shape[0])
     stated = (last - first) * math.prod(dataset.shape[1:]) * dataset.dtype.itemsize
     if stated > dataset.file.id.get_filesize():
         raise ValueError(f"{dataset.name} states {stated} bytes, more than the file has")
     rows: np.ndarray = dataset[first:last]
+    check_finite(dataset.name, rows)
     return rows
 
 
 def _slice(root: h5py.Group, kind: str, name: str, frame: int, count: int) -> np.ndarray:
+    """Return the rows of one frame; frames of ``count`` rows follow each other without gaps."""
     start = int(root["Steps"][f"{kind}Offsets"][name][frame])
+    if start != frame * count:
+        raise ValueError(f"{kind} {name} of frame {frame} is said to start at row {start}")
     rows = _rows(root[kind][name], start, start + count)
-    if len(rows) != count:
-        raise ValueError(f"{kind} {name} of frame {frame} is cut off")
+    if rows.shape != (count, *_COLUMNS.get(name, rows.shape[1:])):
+        raise ValueError(f"{kind} {name} of frame {frame} has shape {rows.shape}, the mesh {count} rows")
     return rows
 
 
@@ -121,5 +131,6 @@ def _opened(path: Path, read: Callable[[h5py.Group], T]) -> T:
         except BlockingIOError:
             clock.sleep(wait)  # a writer is at work on it
         except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError) as error:
-            raise ResultError(f"{path}: not a readable field file ({error}).") from error
+            reason = str(error).rstrip(".")
+            raise ResultError(f"{path}: not a readable field file ({reason}).") from error
     raise ResultError(f"{path}: another program keeps this file locked; try again when it is done.")

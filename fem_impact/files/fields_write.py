@@ -12,6 +12,7 @@ import numpy as np
 
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import atomic_path
+from fem_impact.files.fields_check import check_mesh, check_rows
 from fem_impact.files.fields_layout import add_frame, write_mesh
 from fem_impact.files.fields_read import read_fields
 
@@ -54,8 +55,8 @@ class FieldWriter:
         go_on: bool = False,
     ) -> None:
         static = dict(cell_data or {})
-        _check_mesh(np.asarray(points), np.asarray(cells))
-        _check_rows("cell", len(cells), static)
+        check_mesh(np.asarray(points), np.asarray(cells))
+        check_rows("cell", len(cells), static)
         self.path = Path(path)
         self._counts = (len(points), len(cells))
         self._shapes: dict[str, tuple[int, ...]] = {}
@@ -145,24 +146,9 @@ class FieldWriter:
             yield draft
 
     def _check_fields(self, points: Mapping[str, np.ndarray], cells: Mapping[str, np.ndarray]) -> None:
-        _check_rows("point", self._counts[0], points)
-        _check_rows("cell", self._counts[1], cells)
+        check_rows("point", self._counts[0], points)
+        check_rows("cell", self._counts[1], cells)
         shapes = {name: np.shape(values) for name, values in (*points.items(), *cells.items())}
         self._shapes = self._shapes or shapes
         if shapes != self._shapes:
             raise ValueError(f"the frame holds {shapes}, the first one {self._shapes}.")
-
-
-def _check_mesh(points: np.ndarray, cells: np.ndarray) -> None:
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise ValueError(f"points must have shape (n, 3), not {points.shape}.")
-    if cells.ndim != 2 or cells.shape[1] != 8:
-        raise ValueError(f"cells must have shape (m, 8), not {cells.shape}.")
-    if cells.size and not (0 <= cells.min() and cells.max() < len(points)):
-        raise ValueError(f"cells name points {cells.min()} to {cells.max()}, there are {len(points)}.")
-
-
-def _check_rows(kind: str, count: int, data: Mapping[str, np.ndarray]) -> None:
-    for name, values in data.items():
-        if len(np.atleast_1d(values)) != count:
-            raise ValueError(f"{kind} data {name} has shape {np.shape(values)}, the mesh {count} {kind}s.")

@@ -14,7 +14,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.render.encode import best_suffix, encode, require_gl
 from fem_impact.render.layout import FrameLayout
 from fem_impact.render.motion import FilmData, prepare
-from fem_impact.tables.table import read_csv
+from fem_impact.tables.history import read_history
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,7 +113,7 @@ def context(folder: Path, fields: FieldFile) -> tuple[str, tuple[np.ndarray, np.
     except ResultError as error:
         missing.append(f"The film is named after its folder: {error}")
     try:
-        history = read_csv(folder / "history.csv")
+        history = read_history(folder / "history.csv")
         curve = (history.numbers("time_s"), history.numbers("force_n_N"))
     except ResultError as error:
         missing.append(f"The film has no force curve: {error}")

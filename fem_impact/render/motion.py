@@ -10,7 +10,15 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import FieldFile
-from fem_impact.render.kinematics import axis_of, magnified, nice_factor, nodal_volumes, rigid_motion, stretch
+from fem_impact.render.kinematics import (
+    axis_of,
+    hex_volumes,
+    magnified,
+    nice_factor,
+    nodal_volumes,
+    rigid_motion,
+    stretch,
+)
 
 
 class FieldStyle(NamedTuple):
@@ -32,6 +40,10 @@ FIELDS = {
 
 _VISIBLE = 0.35
 """Magnified size of the largest deformation away from the tip, share of the rod's diameter."""
+
+
+_FURTHEST = 1000.0
+"""Displacement, in sizes of the mesh, that no run reaches within its time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,12 +113,9 @@ def prepare(fields: FieldFile, field: str, frames: Sequence[int]) -> FilmData:
         raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
     if not len(frames):
         raise ResultError(f"{fields.path}: holds no frames yet, so there is nothing to draw.")
-    body = fields.static.get("body", np.zeros(len(fields.cells)))
-    rod_cells = fields.cells[body == 0]
+    rod_cells = _rod_cells(fields)
     weights = nodal_volumes(fields.points, rod_cells)
     rod = np.isin(np.arange(len(fields.points)), rod_cells)
-    if not rod.any():
-        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
     lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
@@ -114,6 +123,18 @@ def prepare(fields: FieldFile, field: str, frames: Sequence[int]) -> FilmData:
     near, far = _ranges(fields, field, frames, distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
     return FilmData(fields, field, rod, weights, _fade(distance), peak, contact, span, near, far)
+
+
+def _rod_cells(fields: FieldFile) -> np.ndarray:
+    """Return the cells of the rod ``(m, 8)``. Raises ResultError without any, or where one is inside out."""
+    cells = fields.cells[fields.static["body"] == 0] if "body" in fields.static else fields.cells[:0]
+    if not len(cells):
+        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
+    volumes = hex_volumes(fields.points, cells)
+    if not (volumes > 0.0).all():
+        problem = f"cell {int(np.argmin(volumes))} of the rod has the volume {volumes.min():.3g} m3"
+        raise ResultError(f"{fields.path}: {problem}; the file is damaged.")
+    return cells
 
 
 def _fade(distance: np.ndarray) -> np.ndarray:
@@ -133,7 +154,10 @@ def _peak(
 ) -> float:
     away, largest = distance[rod] > 2.0, 0.0
     for frame in frames:
-        true = (fields.points + fields.point_data("displacement", frame))[rod]
+        moved = fields.point_data("displacement", frame)
+        if np.abs(moved).max() > _FURTHEST * np.ptp(fields.points):
+            raise ResultError(f"{fields.path}: frame {frame} moves points by {np.abs(moved).max():.3g} m.")
+        true = (fields.points + moved)[rod]
         bent = true - rigid_motion(fields.points[rod], true, weights[rod])
         largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
     return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
@@ -151,7 +175,7 @@ def _colours(fields: FieldFile, field: str, frame: int) -> np.ndarray:
 
 def _strain(fields: FieldFile, frame: int) -> np.ndarray:
     """Return the strain along the rod's axis ``(m,)``, zero in the barrier."""
-    rod = fields.static.get("body", np.zeros(len(fields.cells))) == 0
+    rod = fields.static["body"] == 0
     cells, strain = fields.cells[rod], np.zeros(len(rod))
     moved = fields.points + fields.point_data("displacement", frame)
     axis = axis_of(fields.points[np.unique(cells)])

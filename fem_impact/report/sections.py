@@ -27,7 +27,8 @@ from fem_impact.report.html import (
 from fem_impact.report.page import FILMS, film, picture
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
-from fem_impact.tables.table import Cell, Missing, Table, read_csv
+from fem_impact.tables.history import read_history
+from fem_impact.tables.table import Cell, Missing, Table
 
 
 def strangers(outcome: Outcome, folder: Path) -> list[str]:
@@ -49,7 +50,7 @@ def _short_history(outcome: Outcome, folder: Path) -> list[str]:
     if outcome.provenance.fidelity != "solid" or not intervals:
         return []
     try:
-        last = read_csv(folder / "history.csv").numbers("time_s")[-1]
+        last = read_history(folder / "history.csv").numbers("time_s")[-1]
     except (ResultError, IndexError):
         return []  # `history_figures` says that it is missing or damaged
     end = intervals[-1].end
@@ -78,7 +79,7 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
         return section("Over time", paragraph("No curves over time: only the finite elements write them."))
     since = None if again else folder / "history.csv"
     try:
-        history = read_csv(folder / "history.csv")
+        history = read_history(folder / "history.csv")
         figures = make_directory(folder / "figures")
         ledger = picture(
             lambda path, shape: ledger_figure(history, outcome.energy.E_0, path, shape),

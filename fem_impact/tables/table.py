@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
@@ -137,14 +138,17 @@ class Table:
         """Return a column as ``(n_rows,) float64``, nan where nothing is known. Raises ResultError."""
         import numpy as np
 
-        return np.array([self._number(name, i, text) for i, text in enumerate(self.texts(name))])
+        return np.array([self._number(name, i, text) for i, text in enumerate(self.texts(name))], np.float64)
 
     def _number(self, column: str, row: int, text: str) -> float:
         try:
-            return float(text) if text else float("nan")
-        except ValueError as error:
+            value = float(text) if text else 0.0
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
             place = f"{self.source}: row {row + 1}, column {column}"
-            raise ResultError(f'{place} = "{text[:40]}" is not a number.') from error
+            raise ResultError(f'{place} = "{text[:40]}" is not a finite number.')
+        return value if text else math.nan
 
     def csv(self) -> str:
         """Return header and rows as CSV; floats read back exactly, an empty cell is unknown."""

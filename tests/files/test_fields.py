@@ -225,3 +225,59 @@ def test_truncated_field_file_is_refused(tmp_path, keep):
     fields.path.write_bytes(fields.path.read_bytes()[:keep])
     with pytest.raises(ResultError, match="not a readable field file"):
         read_fields(fields.path)
+
+
+def put(root, name, values):
+    """Replace a dataset by one with these values; one that grows keeps growing."""
+    limits = (None, *np.shape(values)[1:]) if root[name].maxshape[0] is None else None
+    del root[name]
+    root.create_dataset(name, data=values, maxshape=limits, chunks=limits and True)
+
+
+FORGED = {
+    "cells name points -1": lambda root: root["Connectivity"].write_direct(np.full(16, -1)),
+    "there are 12": lambda root: root["Connectivity"].write_direct(np.full(16, 2**62)),
+    "cells must be whole numbers": lambda root: put(root, "Connectivity", np.zeros(16)),
+    "cannot reshape": lambda root: put(root, "Connectivity", np.zeros(15, int)),
+    "Points holds 1 values that are not finite": lambda root: root["Points"].__setitem__((0, 1), np.nan),
+    "points must have shape": lambda root: put(root, "Points", np.zeros((12, 2))),
+    "Values holds 1 values that are not finite": lambda root: root["Steps/Values"].__setitem__(1, np.nan),
+    "is not after 2 s": lambda root: put(root, "Steps/Values", [2.0, 1.0]),
+    "is not after 1 s": lambda root: put(root, "Steps/Values", [1.0, 1.0]),
+    "must be numbers": lambda root: put(root, "Steps/Values", [b"0.0", b"soon"]),
+    "times of 9 frames are stated": lambda root: root["Steps"].attrs.__setitem__("NSteps", 9),
+    "times of -1 frames are stated": lambda root: root["Steps"].attrs.__setitem__("NSteps", -1),
+    "invalid literal": lambda root: root["Steps"].attrs.__setitem__("NSteps", "many"),
+    "cell data body": lambda root: put(root, "CellData/body", [0, 0, 1]),
+}
+
+
+@pytest.mark.parametrize("reason", FORGED)
+def test_forged_mesh_or_times_are_refused(tmp_path, reason):
+    fields = writer(tmp_path / "fields.vtkhdf")
+    for number in range(2):
+        fields.append(float(number), *frame(number))
+    with h5py.File(fields.path, "r+") as file:
+        FORGED[reason](file["VTKHDF"])
+    with pytest.raises(ResultError, match=rf"fields\.vtkhdf: .*{reason}"):
+        read_fields(fields.path)
+
+
+@pytest.mark.parametrize(
+    ("harm", "reason"),
+    [
+        (lambda root: root["Steps/PointDataOffsets/displacement"].__setitem__(1, -12), "start at row -12"),
+        (lambda root: root["Steps/PointDataOffsets/displacement"].__setitem__(1, 0), "start at row 0"),
+        (lambda root: root["PointData/displacement"].__setitem__((13, 0), np.inf), "not finite"),
+        (lambda root: put(root, "PointData/displacement", np.zeros((24, 1))), r"has shape \(12, 1\)"),
+        (lambda root: put(root, "PointData/displacement", np.zeros((20, 3))), r"has shape \(8, 3\)"),
+    ],
+)
+def test_forged_data_of_a_frame_are_refused(tmp_path, harm, reason):
+    fields = writer(tmp_path / "fields.vtkhdf")
+    for number in range(2):
+        fields.append(float(number), *frame(number))
+    with h5py.File(fields.path, "r+") as file:
+        harm(file["VTKHDF"])
+    with pytest.raises(ResultError, match=reason):
+        read_fields(fields.path).point_data("displacement", 1)

@@ -2,6 +2,7 @@ import sys
 import types
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import result_maker
@@ -231,7 +232,8 @@ def test_film_shows_motion_and_carries_the_marker(result, tmp_path):
 @pytest.mark.render
 def test_velocity_film_without_barrier_history_or_record(tmp_path):
     points, cells, body, rod = result_maker.mesh(4, 6)
-    fields = result_maker.FieldWriter(tmp_path / "fields.vtkhdf", points[:rod], cells[body == 0])
+    static = {"body": body[body == 0]}
+    fields = result_maker.FieldWriter(tmp_path / "fields.vtkhdf", points[:rod], cells[body == 0], static)
     moved = np.zeros((rod, 3))
     fields.append(0.0, {"displacement": moved, "velocity": moved - np.array([0.0, 0.0, 1.0])})
     made = render(tmp_path, tmp_path / "film.gif", field="velocity", size=(640, 480))
@@ -251,3 +253,21 @@ def test_side_by_side_film_moves_in_every_view(result, tmp_path):
         cut = np.s_[view.top : view.top + view.height, view.left : view.left + view.width]
         assert first[cut].std() > 5
         assert (np.abs(first[cut] - second[cut]) > 30).mean() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("harm", "reason"),
+    [
+        (lambda root: root["CellData/body"].__setitem__(slice(None), 1), "names no rod"),
+        (lambda root: root["CellData"].move("body", "other"), "names no rod"),
+        (lambda root: root["Points"].__setitem__(slice(None), root["Points"][:] * [1, 1, -1]), "volume -"),
+        (lambda root: root["PointData/displacement"].__setitem__((400, 0), 1e30), "moves points by 1e"),
+    ],
+)
+def test_a_forged_result_is_refused_before_anything_is_drawn(tmp_path, monkeypatch, harm, reason):
+    monkeypatch.setattr("fem_impact.render.film.require_libraries", lambda: pytest.fail("drawing begins"))
+    fields = result_maker.write_fields(tmp_path / "fields.vtkhdf", frames=2, across=4, along=6)
+    with h5py.File(fields.path, "r+") as file:
+        harm(file["VTKHDF"])
+    with pytest.raises(ResultError, match=rf"fields\.vtkhdf: .*{reason}"):
+        render(tmp_path)
