@@ -8,6 +8,7 @@ import outcome_maker
 
 from fem_impact.files.atomic import write_text
 from fem_impact.files.fields_write import FieldWriter
+from fem_impact.files.signed_json import signed
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.csv import COMPARISON, CONTACTS, HISTORY
 from fem_impact.tables.table import Table
@@ -251,7 +252,7 @@ def study_rows(sets=SETS):
 
 
 STUDY = {
-    "schema": "fem-impact/study/2",
+    "schema": "fem-impact/study/3",
     "study": "sets",
     "title": "Model beside measurement",
     "command": "fem-impact study sets",
@@ -264,6 +265,6 @@ STUDY = {
 def write_study(folder, sets=SETS):
     """Write study.json and comparison.csv; return the folder."""
     study = STUDY | {"rows": study_rows(sets), "comparison": comparison(sets)}
-    write_text(Path(folder) / "study.json", json.dumps(study))
+    write_text(Path(folder) / "study.json", json.dumps(signed(study)))
     write_text(Path(folder) / "comparison.csv", Table.of(COMPARISON, study["comparison"]).csv())
     return Path(folder)

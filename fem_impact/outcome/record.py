@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import platform
 from collections.abc import Mapping
@@ -14,8 +13,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, ClassVar, get_type_hints
 
-from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text, write_text
+from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
 from fem_impact.outcome.groups import (
     Contact,
@@ -28,9 +27,6 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
-
-CHECKSUM = "checksum_sha256"
-"""Last key of the file: SHA-256 of all other keys, by which a damaged or edited file is refused."""
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
 
@@ -97,8 +93,7 @@ class Outcome:
 
     def to_json(self) -> str:
         """Return the text that ``write`` writes and ``--json`` prints."""
-        values = self.to_dict()
-        return json.dumps({**values, CHECKSUM: _checksum(values)}, indent=2, allow_nan=False) + "\n"
+        return json.dumps(signed(self.to_dict()), indent=2, allow_nan=False) + "\n"
 
     def write(self, path: str | Path) -> Path:
         """Write the record as one atomic step; return the path.
@@ -124,7 +119,7 @@ class Outcome:
     @classmethod
     def from_json(cls, text: str, source: str = "JSON text") -> Outcome:
         """Read a record from text, as strictly as from a file."""
-        return cls.from_dict(_unsigned(_parsed(text, source), source), source)
+        return cls.from_dict(read_signed(text, source), source)
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any], source: str = "outcome") -> Outcome:
@@ -212,42 +207,3 @@ def _hints(cls: Any) -> Mapping[str, Any]:
     """Return the types of a group's fields."""
     hints = get_type_hints(cls)
     return {one.name: hints[one.name] for one in fields(cls)}
-
-
-def _parsed(text: str, source: str) -> dict[str, Any]:
-    try:
-        values = json.loads(text, object_pairs_hook=_unrepeated, parse_constant=_no_constant)
-    except (ValueError, RecursionError) as error:
-        raise ResultError(f"{source}: not a readable JSON record ({error}); it may be cut off.") from error
-    if not isinstance(values, dict):
-        raise ResultError(f"{source}: holds a JSON {type(values).__name__}, not a record of keys.")
-    return values
-
-
-def _unsigned(values: dict[str, Any], source: str) -> dict[str, Any]:
-    """Return a record without its checksum, which must be right."""
-    stated = values.pop(CHECKSUM, None)
-    if stated is None:
-        raise ResultError(f'{source}: key "{CHECKSUM}" is missing; this is no complete outcome.')
-    if stated != _checksum(values):
-        raise ResultError(
-            f'{source}: key "{CHECKSUM}" = {str(stated)[:16]}... does not match the contents; '
-            "the file was damaged or edited. Compute the run again or restore a copy."
-        )
-    return values
-
-
-def _checksum(values: Mapping[str, Any]) -> str:
-    canonical = json.dumps(dict(values), sort_keys=True, separators=(",", ":"), ensure_ascii=True)
-    return hashlib.sha256(canonical.encode("ascii")).hexdigest()
-
-
-def _unrepeated(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    values = dict(pairs)
-    if len(values) != len(pairs):
-        raise ValueError("a key stands twice")
-    return values
-
-
-def _no_constant(name: str) -> float:
-    raise ValueError(f"{name} is no JSON number")

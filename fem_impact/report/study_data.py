@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
+import fastjsonschema
+
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text
+from fem_impact.files.signed_json import read_signed
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import SCHEMA
 from fem_impact.tables.csv import COMPARISON
@@ -17,14 +21,39 @@ from fem_impact.tables.csv import COMPARISON
 Record = Mapping[str, Any]
 TEXTS = ("study", "title", "command")
 SENTENCES = ("findings", "assumptions", "sources")
-RECORDS = {
-    "conclusions": ("name", "sentence"),
-    "figures": ("name", "caption"),
-    "sheets": ("name", "caption", "columns", "rows"),
-    "failures": ("scene_id", "error"),
-    "comparison": COMPARISON,
-}
 NUMBERS = ("model", "band", "measured_mean", "measured_sd", "measured_low", "measured_high", "n")
+
+
+def _list(items: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+def _record(**properties: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+_TEXT, _NUMBER = {"type": "string"}, {"type": ["number", "null"]}
+_FILE = {"type": "string", "pattern": r"^[A-Za-z0-9][\w.-]*$"}  # it becomes part of a path
+RECORDS: Mapping[str, dict[str, Any]] = {
+    "conclusions": _record(name=_TEXT, sentence=_TEXT),
+    "figures": _record(name=_FILE, caption=_TEXT),
+    "sheets": _record(
+        name=_FILE,
+        caption=_TEXT,
+        columns=_list(_TEXT),
+        rows=_list(_list({"type": ["string", "number", "boolean", "null"]})),
+    ),
+    "failures": _record(scene_id=_TEXT, error=_TEXT),
+    "comparison": _record(**{name: _NUMBER if name in NUMBERS else _TEXT for name in COMPARISON}),
+}
+STUDY_SCHEMA = _record(
+    **dict.fromkeys(TEXTS, _TEXT),
+    **dict.fromkeys(SENTENCES, _list(_TEXT)),
+    **{name: _list(record) for name, record in RECORDS.items()},
+    runs={"type": "integer", "minimum": 0},
+    rows=_list({"type": "object"}),
+)
+"""JSON Schema (draft 7) of study.json; its rows are outcomes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,58 +102,31 @@ def read_study(folder: Path) -> Study:
         The file is missing, damaged or of another schema, or a part of it is wrong; file and place are named.
     """
     path = folder / "study.json"
-    document = _document(path)
-    parts: dict[str, Any] = {name: _typed(document, name, str, path) for name in TEXTS}
-    parts |= {name: tuple(map(str, _typed(document, name, list, path))) for name in SENTENCES}
-    parts |= {name: _records(document, name, keys, path) for name, keys in RECORDS.items()}
-    _check_names([*parts["figures"], *parts["sheets"]], path)
-    _check_numbers(parts["comparison"], path)
+    document = read_signed(read_text(path), str(path))
+    if document.get("schema") != SCHEMA:
+        stated = json.dumps(document.get("schema"))[:40]
+        raise ResultError(f'{path}: key "schema" = {stated} is not "{SCHEMA}"; run the study again.')
+    _check_shape(document, path)
     rows = tuple(
-        Outcome.from_dict(row, source=f"{path}: rows[{at}]")
-        for at, row in enumerate(_records(document, "rows", (), path))
+        Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in enumerate(document["rows"])
     )
-    runs = _typed(document, "runs", int, path)
-    return Study(folder, **parts, rows=rows, runs=runs)
+    parts: dict[str, Any] = {name: tuple(document[name]) for name in (*SENTENCES, *RECORDS)}
+    texts = {name: document[name] for name in TEXTS}
+    return Study(folder, **texts, **parts, rows=rows, runs=document["runs"])
 
 
-def _document(path: Path) -> dict[str, Any]:
+def _check_shape(document: Record, path: Path) -> None:
+    """Refuse a document that breaks `STUDY_SCHEMA`, or a table whose rows do not fit its columns."""
     try:
-        document = json.loads(read_text(path))
-    except (ValueError, RecursionError) as error:
-        raise ResultError(f"{path}: not readable JSON ({error}); it may be cut off.") from error
-    schema = document.get("schema") if isinstance(document, dict) else None
-    if schema != SCHEMA:
-        raise ResultError(f'{path}: key "schema" = {schema!r} is not {SCHEMA!r}; run the study again.')
-    return dict(document)
+        _validator()(document)
+    except fastjsonschema.JsonSchemaValueException as error:
+        raise ResultError(f"{path}: {error.message.removeprefix('data').lstrip('. ')}.") from None
+    for sheet in document["sheets"]:
+        if any(len(row) != len(sheet["columns"]) for row in sheet["rows"]):
+            raise ResultError(f'{path}: a row of the table "{sheet["name"]}" does not fit its columns.')
 
 
-def _typed(document: Record, name: str, kind: type, path: Path) -> Any:
-    if not isinstance(document.get(name), kind):
-        raise ResultError(f'{path}: key "{name}" is missing or of the wrong kind.')
-    return document[name]
-
-
-def _records(document: Record, name: str, keys: tuple[str, ...], path: Path) -> tuple[Any, ...]:
-    items = document.get(name)
-    if not isinstance(items, list) or not all(isinstance(item, dict) for item in items):
-        raise ResultError(f'{path}: key "{name}" must be a list of records.')
-    for at, item in enumerate(items):
-        missing = [key for key in keys if key not in item]
-        if missing:
-            raise ResultError(f'{path}: {name}[{at}] lacks the key "{missing[0]}".')
-    return tuple(items)
-
-
-def _check_names(records: list[Record], path: Path) -> None:
-    """Refuse a name that is no plain file name, since it becomes part of a path."""
-    for record in records:
-        if Path(str(record["name"])).name != record["name"]:
-            raise ResultError(f'{path}: key "name" = {record["name"]!r} is no name of a figure or table.')
-
-
-def _check_numbers(rows: tuple[Record, ...], path: Path) -> None:
-    for at, row in enumerate(rows):
-        for name in NUMBERS:
-            value = row[name]
-            if value is not None and (isinstance(value, bool) or not isinstance(value, int | float)):
-                raise ResultError(f'{path}: comparison[{at}], key "{name}" = {value!r} is not a number.')
+@cache
+def _validator() -> Callable[[Any], Any]:
+    validate: Callable[[Any], Any] = fastjsonschema.compile(STUDY_SCHEMA)
+    return validate

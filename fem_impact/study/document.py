@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.figures.lines import Panel, lines_figure
 from fem_impact.files.atomic import make_directory, write_text
+from fem_impact.files.signed_json import signed
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none
@@ -72,7 +73,7 @@ def failures_of(results: Results) -> list[dict[str, str]]:
     return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
 
 
-SCHEMA = "fem-impact/study/2"
+SCHEMA = "fem-impact/study/3"
 LEDGER = (
     *("run", "fidelity", "scene_digest", "tip_size_m", "contacts", "e_edge", "mu", "Omega_rad_per_s"),
     *(share.key.name for share in shares("study")),
@@ -154,7 +155,7 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
     write_text(request.out / "runs.csv", Table.of(LEDGER, ledger).csv())
     text = _markdown(report, document)
     write_text(request.out / "summary.md", text)
-    write_text(request.out / "study.json", json.dumps(document, indent=1, allow_nan=False))
+    write_text(request.out / "study.json", json.dumps(signed(document), indent=1, allow_nan=False))
     return StudyResult(document, text)
 
 

@@ -136,10 +136,10 @@ def test_a_null_key_needs_a_reason(record):
 
 def test_a_record_of_an_earlier_version_is_refused_in_one_sentence():
     """Its keys are others, which is not what the user must hear."""
-    from fem_impact.outcome.record import CHECKSUM, _checksum
+    from fem_impact.files.signed_json import signed
 
     old = {"schema_version": 2, "mu": 0.5, "bands": None}
-    text = json.dumps({**old, CHECKSUM: _checksum(old)})
+    text = json.dumps(signed(old))
     words = r'^old.json: key "schema_version" = 2 is not the version 3 that this program reads; compute'
     with pytest.raises(ResultError, match=words):
         Outcome.from_json(text, "old.json")

@@ -11,6 +11,7 @@ from result_maker import values
 
 from fem_impact.errors import ResultError
 from fem_impact.figures.lines import Panel, Series
+from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.outcome.record import Outcome
 from fem_impact.report.all_page import write_all
 from fem_impact.report.study_data import read_study
@@ -91,12 +92,21 @@ def test_an_empty_folder_is_refused_with_a_remedy(tmp_path):
         lambda held: held.pop("findings"),
         lambda held: held.update(figures=[{"name": "../../secret", "caption": "x"}]),
         lambda held: held.update(sheets="none"),
+        lambda held: held["sheets"][0]["rows"][0].pop(),
+        lambda held: held.update(comparison=[{"set": {}}]),
     ],
 )
-def test_a_damaged_study_is_named(results, harm):
+def test_a_wrong_study_is_refused(results, harm):
     path = results / "gamma" / "study.json"
-    held = json.loads(path.read_text())
+    held = read_signed(path.read_text(), "study.json")
     harm(held)
-    path.write_text(json.dumps(held))
-    with pytest.raises(ResultError, match=r"gamma/study\.json: key"):
+    path.write_text(json.dumps(signed(held)))
+    with pytest.raises(ResultError, match=r"gamma/study\.json: .*(must|fit)"):
+        read_study(results / "gamma")
+
+
+def test_a_study_changed_by_hand_is_refused(results):
+    path = results / "gamma" / "study.json"
+    path.write_text(path.read_text().replace("It rises", "It falls"))
+    with pytest.raises(ResultError, match="was damaged or edited"):
         read_study(results / "gamma")
