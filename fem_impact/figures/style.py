@@ -62,8 +62,11 @@ _STYLE: dict[Any, Any] = {
 
 
 @contextmanager
-def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
+def figure(path: Path, shape: Shape, height: float, formulas: bool = False) -> Iterator[Figure]:
     """Yield an empty figure in the style of the project; it is saved to ``path`` at the end.
+
+    Texts between dollar signs are set as formulas only with ``formulas``, since titles and names of the
+    user may hold that sign.
 
     Raises
     ------
@@ -76,7 +79,7 @@ def figure(path: Path, shape: Shape, height: float) -> Iterator[Figure]:
         import matplotlib
     except ImportError as error:
         raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
-    with matplotlib.rc_context(_STYLE):
+    with matplotlib.rc_context(_STYLE | {"text.parse_math": formulas}):
         drawn = new_figure(shape, height)
         yield drawn
         save(drawn, path)

@@ -82,7 +82,7 @@ def heading(drawn: Figure, frame: Frame, title: str) -> None:
     """Write the title of the film, shortened to fit beside the clock."""
     place = (24 / frame.width, 1 - 27 / frame.height)
     shown = shorten(title, (frame.width - CLOCK) // LETTER, placeholder=" …")
-    drawn.text(*place, shown, fontsize=14, weight="bold", color=INK, va="center")
+    drawn.text(*place, shown, fontsize=14, weight="bold", color=INK, va="center", parse_math=False)
 
 
 def _captions(drawn: Figure, layout: FrameLayout, motion: FilmData, title: str) -> None:

@@ -149,7 +149,7 @@ class PairBackground:
 def _title(drawn: Figure, layout: Abreast, view: Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
     lines = fill(title, view.width // 8, max_lines=2, placeholder=" …")
-    drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1)
+    drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
 def _frames(board: PairBackground, motions: Sequence[FilmData], times: np.ndarray) -> Iterator[np.ndarray]:

@@ -6,7 +6,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from fem_impact.figures.style import QUIET
-from fem_impact.render.board import below, blank, clock, colour_bar, heading
+from fem_impact.render.board import below, blank, clock, colour_bar, heading, picture
 from fem_impact.render.layout import Abreast, FrameLayout
 from fem_impact.render.motion import FIELDS
 from fem_impact.render.side_by_side import TITLE, _title
@@ -65,3 +65,10 @@ def test_titles_of_rods_clear_the_heading_and_each_other(count):
     (_, _, _, bottom), *titles = boxes(drawn)
     assert all(top >= bottom for _, top, _, _ in titles)
     assert all(a[2] <= b[0] for a, b in pairwise(titles))
+
+
+def test_a_title_with_dollar_signs_is_no_formula():
+    frame = FrameLayout(1280, 720)
+    drawn = blank(frame)
+    heading(drawn, frame, "costs $5 and $x_{$")
+    assert picture(drawn).size == (1280, 720)
