@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable
 from typing import Any, ClassVar
 
@@ -112,9 +113,18 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return text for a terminal: control and direction characters are escaped, line breaks are not."""
-    shown = (char if char.isprintable() or char == "\n" else ascii(char)[1:-1] for char in text)
-    return "".join(shown)
+    """Return text for a terminal: control and direction characters are escaped, line breaks are not.
+
+    The escapes are those of JSON, so that a JSON document stays one. Spaces of other widths pass.
+    """
+    if text.isprintable():
+        return text
+    return "".join(
+        char if char.isprintable() or char in _PASSING else json.dumps(char)[1:-1] for char in text
+    )
+
+
+_PASSING = "\n\u00a0\u2009\u202f"
 
 
 def _short(value: Any, limit: int = 60) -> str:

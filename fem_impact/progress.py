@@ -85,7 +85,8 @@ class TerminalMeter:
             return
         self._next, self._dirty = now + 0.1, True
         line = describe(progress)[: self._width]
-        self._stream.write(f"\r{line:<{self._width}}")
+        self._stream.write("\r")  # alone: `commands.terminal` escapes one within a text
+        self._stream.write(f"{line:<{self._width}}")
         self._stream.flush()
 
     def close(self) -> None:

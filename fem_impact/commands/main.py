@@ -14,14 +14,22 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 
 from fem_impact.commands.parser import Options, build_parser, read_line
-from fem_impact.errors import FemImpactError, OutputPathError, RunError, printable
+from fem_impact.commands.terminal import printable_streams
+from fem_impact.errors import FemImpactError, OutputPathError, RunError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
     # a run has no large dense algebra: further threads of the linear-algebra library only cost time
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")  # None after `>&-`
+    # None after `>&-`
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    with printable_streams():
+        return _called(argv)
+
+
+def _called(argv: Sequence[str] | None) -> int:
     options = read_line(argv)
     if options.version:
         return _version()
@@ -64,7 +72,7 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
 
 def _complain(message: str, code: int) -> int:
     kind = "interrupted" if code == 130 else "error"
-    sys.stderr.write(f"fem-impact: {kind}: {printable(message)}\n")
+    sys.stderr.write(f"fem-impact: {kind}: {message}\n")
     return code
 
 

@@ -6,7 +6,6 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
-from fem_impact.errors import printable
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
@@ -24,7 +23,7 @@ _IF_ON = ("damping", "contact", "gravity")
 
 def print_outcome(outcome: Outcome, out: Path) -> None:
     """Print the motion after impact, where the energy went, and every warning."""
-    lines = [printable(f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}"), ""]
+    lines = [f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}", ""]
     # only a measured set has arms of the paper
     arms = ("paper's", "e_paper") if or_none(outcome.restitution.paper.e) is not None else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")

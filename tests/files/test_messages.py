@@ -1,12 +1,24 @@
 """What reaches a terminal is printable, and numbers in refusals are short."""
 
+import io
+import json
+import re
+import sys
+import tokenize
+from pathlib import Path
+
 import h5py
 import numpy as np
+import outcome_maker
 import pytest
 
+import fem_impact
+from fem_impact.commands.outcome import print_outcome
+from fem_impact.commands.terminal import printable_streams
 from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.fields_write import FieldWriter
+from fem_impact.progress import Progress, TerminalMeter
 
 HOSTILE = "a\x1b[31mred\x00\u202egnp\r\x9b"
 
@@ -20,7 +32,7 @@ def test_control_characters_are_escaped_in_every_message():
     )
     for message in messages:
         assert message.isprintable()
-        assert r"\x1b[31m" in message and r"\x00" in message and r"\u202e" in message
+        assert r"\u001b[31m" in message and r"\u0000" in message and r"\u202e" in message
     assert printable("5 µm, 45°, café\nnext") == "5 µm, 45°, café\nnext"
 
 
@@ -31,6 +43,58 @@ def test_no_control_character_of_a_value_reaches_the_terminal(cli, line):
     _, out, err = cli(*line, *(("--fidelity", "rigid") if line[0] == "run" else ()))
     assert out + err
     assert not {"\x1b", "\0", "\u202e", "\x9b"} & set(out + err)
+
+
+def hostile_file(name, text):
+    """Write a file whose name and contents hold control characters; return its path."""
+    path = Path(HOSTILE.replace("\0", "") + name)
+    path.write_text(text)
+    return path
+
+
+CSV = "test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s,a\x1b]0;x\x07\u202e\n"
+ROWS = "\x1b[31m,-1.5,-1.6,0.4,-0.4,3.6,0\n\u2066,-1.4,-1.6,0.3,-0.4,3.7,0\n"
+ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
+
+
+@pytest.mark.parametrize("more", [(), ("--json",)])
+def test_no_control_character_of_a_file_reaches_the_terminal(cli, more):
+    """Names of files, labels and columns are the user's; a JSON document stays one."""
+    code, out, err = cli("coefficients", hostile_file(".csv", CSV + ROWS), *ROD, *more)
+    assert code == 0 and not err
+    assert out.replace("\n", "").isprintable()
+    if more:
+        assert "\x1b[31m" in json.loads(out)["file"]
+
+
+def test_a_forged_record_prints_no_control_character(capsys):
+    notes = {"scene_title": HOSTILE, "warnings": [HOSTILE], "validity": [HOSTILE], "stopped_because": HOSTILE}
+    with printable_streams():
+        print_outcome(outcome_maker.outcome(**notes), Path(HOSTILE))
+    out = capsys.readouterr().out
+    assert out.count(r"\u001b[31m") == 4
+    assert out.replace("\n", "").isprintable()
+
+
+def test_every_text_of_the_program_passes_one_place():
+    """Nothing but a stream of the command writes to standard output or error."""
+    for path in Path(fem_impact.__file__).parent.rglob("*.py"):
+        if path.parent.name != "commands":
+            assert not re.search(r"print\(|sys\.std(out|err)\.", _code(path)), path
+
+
+def _code(path):
+    """Return the code of a module without its texts."""
+    tokens = tokenize.generate_tokens(io.StringIO(path.read_text()).readline)
+    return "".join(token.string for token in tokens if token.type != tokenize.STRING)
+
+
+def test_a_progress_line_is_rewritten_and_cannot_be_forged(capsys):
+    with printable_streams():
+        meter = TerminalMeter(sys.stderr)
+        meter(Progress(1e-6, 1e-3, 7, 0.0, "free", note="a\rb\x1b[2K"))
+    err = capsys.readouterr().err
+    assert err.startswith(r"\ra\rb\u001b[2K  t 1/1000 us".replace(r"\r", "\r", 1))
 
 
 @pytest.mark.parametrize(
