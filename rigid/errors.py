@@ -43,4 +43,4 @@ def refuse(bad: Any, message: str, values: Any, error: type[RigidError] = Impact
     place = np.unravel_index(int(np.argmax(bad)), bad.shape)
     value = np.broadcast_to(np.asarray(values), bad.shape)[place]
     where = f" (impact {', '.join(str(int(i)) for i in place)})" if place else ""
-    raise error(message.format(value=f"{value:.6g}") + where)
+    raise error(message.format(value=f"{value:.3g}") + where)

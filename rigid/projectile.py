@@ -55,12 +55,14 @@ class Projectile:
         if self.tip not in SHAPES:
             raise ShapeError(f"tip must be one of {', '.join(SHAPES)}, got {self.tip!r}")
         if self.tip == "plain" and self.tip_radius != 0:
-            raise ShapeError(f"a plain tip has a sharp edge: tip_radius must be 0, got {self.tip_radius}")
+            problem = "a plain tip has a sharp edge: tip_radius must be 0"
+            raise ShapeError(f"{problem}, got {self.tip_radius * 1e3:.3g} mm")
         if self.tip != "plain" and not 0 < self.tip_radius <= self.diameter / 2:
-            limit = f"must lie in 0 < tip_radius <= {self.diameter / 2} m (the rod's radius)"
-            raise ShapeError(f"tip_radius of tip {self.tip} {limit}, got {self.tip_radius}")
+            limit = f"must lie in 0 < tip_radius <= {self.diameter * 500:.3g} mm (the rod's radius)"
+            raise ShapeError(f"tip_radius of tip {self.tip} {limit}, got {self.tip_radius * 1e3:.3g} mm")
         if not self.z_side < self.length:
-            raise ShapeError(f"the nose is {self.z_side:.6g} m long, the rod only {self.length} m")
+            nose, rod = self.z_side * 1e3, self.length * 1e3
+            raise ShapeError(f"the nose is {nose:.3g} mm long, the rod only {rod:.3g} mm")
 
     @property
     def nose(self) -> Nose:

@@ -22,6 +22,9 @@ FAST, STEEP = math.log(1.5), math.radians(10.0)
 DENSITY = 7850.0
 """Density of the measured steel rods, kg/m3."""
 
+HIGHEST = 1000.0
+"""Height of fall, m, above which the resistance of the air would have to count."""
+
 TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
 """Radius of each measured tip, m (a plain tip has a sharp edge); other tips have no default."""
 
@@ -58,14 +61,16 @@ class DroppedRod:
     surface: str
 
     def __post_init__(self) -> None:
-        if not (math.isfinite(self.height) and self.height > 0):
-            raise SceneError("must be above 0.", key="--height", value=f"{self.height:g} m")
+        if not 0 < self.height < HIGHEST:
+            raise SceneError(
+                f"must be above 0 and below {HIGHEST:g} m.", key="--height", value=f"{self.height:.3g} m"
+            )
         if not 0 < self.alpha < math.pi / 2:
             problem = (
                 "must lie between 0 and 90 degrees; "
                 "a rod that falls flat on its end has no one contact point."
             )
-            raise SceneError(problem, key="--angle", value=f"{math.degrees(self.alpha):g} deg")
+            raise SceneError(problem, key="--angle", value=f"{math.degrees(self.alpha):.3g} deg")
 
     @property
     def velocity(self) -> tuple[float, float]:

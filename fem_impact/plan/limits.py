@@ -130,9 +130,9 @@ def require_shallow(bodies: ContactBodies) -> None:
     if depth > radius:
         raise SceneError(
             f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
-            f"({radius * 1e3:g} mm): the whole end would flow and break, which the model does not hold.",
+            f"({radius * 1e3:.3g} mm): the whole end would flow and break, which the model does not hold.",
             key="impact.v_n",
-            value=f"{scene.impact.v_n:g} m/s",
+            value=f"{scene.impact.v_n:.3g} m/s",
             remedy="Give a lower speed or stronger materials.",
         )
 
@@ -145,6 +145,6 @@ def require_approach(scene: Scene) -> None:
             f"lifts the contact point off the barrier at {max(-speed, 0.0):.3g} m/s: "
             "another part would strike.",
             key="impact.omega",
-            value=f"{scene.impact.omega:g} rad/s",
+            value=f"{scene.impact.omega:.3g} rad/s",
             remedy=f"Keep it under {abs(scene.impact.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
         )

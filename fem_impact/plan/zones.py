@@ -126,6 +126,6 @@ def require_fine_zone(bodies: ContactBodies) -> None:
         raise SceneError(
             "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
             key="accuracy.tip_size",
-            value=scene.accuracy.tip_size,
+            value=f"{scene.accuracy.tip_size * 1e3:.3g} mm",
             remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
         )

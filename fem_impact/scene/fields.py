@@ -86,10 +86,17 @@ class Parameter:
         if self.even and number % 2:
             raise SceneError(f"({self.meaning}) must be an even number.", key=self.key, value=value)
         if not self.allows(number):
-            shown = value if self.whole else _Shown(self.write(number))
+            shown = value if self.whole else _Shown(self._refused(number))
             problem = f"({self.meaning}) must be {self.bounds}."
             raise SceneError(problem, key=self.key, value=shown, remedy=self.remedy)
         return int(number) if self.whole else number + 0.0
+
+    def _refused(self, number: float) -> str:
+        """Return a value outside the bounds in three digits, or as many as leave it outside."""
+        text, _, unit = str(self.write(number)).partition(" ")
+        scale = number / float(text) if number else 1.0
+        shorter = (f"{float(text):.{digits}g}" for digits in range(3, 17))
+        return f"{next((s for s in shorter if not self.allows(float(s) * scale)), text)} {unit}".rstrip()
 
     def read(self, value: float | str) -> float:
         """Return a checked value in SI from a number in SI, or from text with or without a unit."""

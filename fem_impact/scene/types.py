@@ -37,7 +37,7 @@ class Material:
             raise SceneError(
                 "is below the yield stress.",
                 key="ultimate_stress",
-                value=f"{self.ultimate_stress / 1e6:g} MPa",
+                value=f"{self.ultimate_stress / 1e6:.3g} MPa",
                 remedy=f"Give at least {self.yield_stress / 1e6:g} MPa.",
             )
 
@@ -58,9 +58,9 @@ class ProjectileSpec:
         _check_tip(self)
         if self.length < self.diameter:
             raise SceneError(
-                f"is shorter than the diameter ({self.diameter * 1e3:g} mm); this is a study of rods.",
+                f"is shorter than the diameter ({self.diameter * 1e3:.3g} mm); this is a study of rods.",
                 key="length",
-                value=f"{self.length * 1e3:g} mm",
+                value=f"{self.length * 1e3:.3g} mm",
                 remedy="Give a length of at least one diameter.",
             )
 
@@ -210,16 +210,16 @@ def _check_tip_name(tip: str) -> None:
 def _check_tip(rod: ProjectileSpec) -> None:
     if rod.tip_radius > rod.diameter / 2:
         raise SceneError(
-            f"is larger than the rod's radius ({rod.diameter * 500:g} mm).",
+            f"is larger than the rod's radius ({rod.diameter * 500:.3g} mm).",
             key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:g} mm",
+            value=f"{rod.tip_radius * 1e3:.3g} mm",
             remedy="Give a tip radius of at most half the diameter.",
         )
     if (rod.tip == "plain") != (rod.tip_radius == 0.0):
         raise SceneError(
             f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
             key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:g} mm",
+            value=f"{rod.tip_radius * 1e3:.3g} mm",
             remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
         )
 
@@ -230,6 +230,6 @@ def _check_tip_size(scene: Scene) -> None:
         raise SceneError(
             f"is too coarse for a rod of {scene.projectile.diameter * 1e3:g} mm diameter.",
             key="accuracy.tip_size",
-            value=f"{scene.accuracy.tip_size * 1e3:g} mm",
+            value=f"{scene.accuracy.tip_size * 1e3:.3g} mm",
             remedy=f"Give at most {largest * 1e3:g} mm.",
         )

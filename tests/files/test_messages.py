@@ -104,6 +104,31 @@ def test_numbers_in_refusals_are_short(value, shown):
     assert str(SceneError("is too small.", key="radius", value=value)) == f"radius = {shown}: is too small."
 
 
+@pytest.mark.parametrize(
+    ("line", "shown"),
+    [
+        (("--set", "impact.angle_rad=1.6789012345"), "angle = 96.2 deg: "),
+        (("--set", "projectile.diameter='1000.00012 mm'"), "diameter = 1000.0001 mm: "),
+        (("--set", "projectile.diameter_m=1.23456789"), "diameter = 1.23e+03 mm: "),
+        (("--set", "accuracy.tip_size_m=0.00467862"), 'tip_size = "4.68 mm": '),
+        (("--set", "projectile.tip_radius='12.3456789 mm'"), 'tip_radius = "12.3 mm": '),
+        (("--set", "surface.friction=-0.123456789"), "friction = -0.123: "),
+    ],
+)
+def test_refused_values_have_the_users_unit_and_few_digits(cli, line, shown):
+    code, _, err = cli("check", "t5b", *line)
+    assert code == 3
+    assert shown in err
+
+
+def test_a_refused_drop_names_what_the_user_stated(cli):
+    rod = ("--length", "80 mm", "--diameter", "19.123456789 mm", "--angle", "45 deg")
+    _, _, err = cli("assess", *rod, "--height", "1000000 m", "--surface", "machined")
+    assert '--height = "1e+06 m": must be above 0 and below 1000 m' in err
+    _, _, err = cli("coefficients", "x.csv", *rod, "--tip-radius", "12.3456789 mm")
+    assert "<= 9.56 mm (the rod's radius), got 12.3 mm" in err
+
+
 def test_the_nearest_name_is_found_in_any_case():
     assert did_you_mean("Plane", ("plain", "A"), "Known: A.") == "Did you mean plain?"
     assert did_you_mean("MM", ("mm", "m"), "") == "Did you mean mm?"
