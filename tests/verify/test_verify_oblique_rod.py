@@ -6,10 +6,10 @@ import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.verify.catalogue import verify
-
-pytestmark = pytest.mark.validation  # minutes of solver time, with a reference that is still being mended
+from fem_impact.verify.oblique_rod import NAMES
 
 SHORT = {"length": "80 mm", "v_n": 2.97, "v_t": 2.97}
+BRIEF = {"length": "50 mm", "v_n": 8.0, "max_time": 1e-5}
 COARSE = SHORT | {"tip_size": "0.3 mm", "max_time": "0.3 ms"}
 
 
@@ -23,12 +23,15 @@ def drop(degrees, **changes):
     return {"angle": angle, "v_n": 2.1 * cos(angle), "v_t": 2.1 * sin(angle)} | changes
 
 
+@pytest.mark.slow
 def test_a_coarse_tip_on_a_rigid_plane():
+    """A rigid plane is unlike the rod: with friction only the ratio of a sliding blow is judged."""
     found = verify("oblique-rod", COARSE | {"elastic_barrier": 0})
     assert found.passed
     values = checks(found)
-    assert values["restitution e"].tolerance < 0.01
-    assert values["impulse ratio mu"].computed == pytest.approx(0.34, abs=1e-3)
+    assert [values[name].kind for name in NAMES] == ["shown", "absolute", "shown"]
+    assert values["restitution e"].error == pytest.approx(0.0, abs=4e-3)
+    assert values["impulse ratio mu"].tolerance < 2e-3
 
 
 def test_a_coarse_tip_on_a_block_leans_and_bends():
@@ -94,17 +97,17 @@ def test_a_graze_between_two_contacts_with_a_rigid_plane():
 def test_a_rod_that_sticks_to_a_rigid_plane_is_shown():
     found = verify("oblique-rod", drop(37, f=0.57, elastic_barrier=0, tip_size="0.3 mm"))
     assert found.passed
-    assert checks(found)["restitution e"].kind == "shown"
+    assert checks(found)["impulse ratio mu"].kind == "shown"
 
 
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"length": "25 mm"}, "2.5 to 100 times the diameter"),
-        ({"max_time": 2e-5, "f": 0.0, "elastic_barrier": 0, "tip_size": "0.3 mm"}, "ends in mid contact"),
+        (BRIEF | {"f": 0.0, "elastic_barrier": 0, "tip_size": "0.5 mm"}, "ends in mid contact"),
         ({"tip_size": "0.8 mm"}, "as narrow on either side"),
         ({"angle": "6 deg"}, "over the end of the rounded edge"),
-        ({"v_n": 20.0}, "over the end of the rounded edge"),
+        ({"v_n": 150.0}, "over the end of the rounded edge"),
     ],
 )
 def test_what_the_reference_is_not_for_is_refused(changes, words):
