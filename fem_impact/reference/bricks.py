@@ -1,14 +1,15 @@
 """A straight bar of equal bricks by central differences: an explicit code of its own.
 
-All elements are the same box, so a single 24 x 24 stiffness is assembled. Rotations are small. The contact is
-that of public codes: a normal spring under each node, and a tangential one that slips at Coulomb's limit.
+All elements are the same box, so a single 24 x 24 stiffness is assembled. Strains are small; a bar that
+bounces turns, and its stiffness with it. The contact is that of public codes: a normal spring under each
+node, and a tangential one that slips at Coulomb's limit.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import product
-from math import cos, sin, sqrt
+from math import atan2, cos, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
@@ -165,9 +166,9 @@ def rebound(
     K, mass = bar.operators()
     area = bar.end_areas()
     end = np.flatnonzero(area)
-    turn = np.array([[cos(angle), 0, sin(angle)], [0, 1, 0], [-sin(angle), 0, cos(angle)]])
-    start = bar.points @ turn.T
-    start[:, 2] -= start[:, 2].min()
+    shape = bar.points - mass @ bar.points / mass.sum()
+    x = shape @ _turned(angle).T
+    x[:, 2] -= x[:, 2].min()
     free = np.ones((len(mass), 3))
     free[bar.points[:, 1] == 0.0, 1] = 0.0
     inverse = free / mass[:, None]
@@ -177,13 +178,24 @@ def rebound(
     scaled = csr_matrix(K.multiply(root[:, None]).multiply(root))
     fastest += float(eigsh(scaled, 1, return_eigenvectors=False, tol=1e-3)[0])
     step = 1 / sqrt(fastest)  # half the largest stable one: springs open and close
-    u, v = np.zeros_like(start), np.tile([0.0, 0.0, -speed], (len(mass), 1))
-    anchor = start[end][:, :2].copy()
+    v, anchor = np.tile([-speed * sin(angle), 0.0, -speed * cos(angle)], (len(mass), 1)), x[end][:, :2].copy()
     for _ in range(int(time / step)):
-        force = -(K @ u.ravel()).reshape(-1, 3)
-        place = start[end] + u[end] @ turn.T
-        pull, press, anchor = spring_force(place, anchor, stiffness, springs[1], f)
-        force[end] += np.column_stack([pull, press]) @ turn
+        centre = mass @ x / mass.sum()
+        turn = _turned(_attitude(shape, x - centre, mass))
+        force = -(K @ ((x - centre) @ turn - shape).ravel()).reshape(-1, 3) @ turn.T
+        pull, press, anchor = spring_force(x[end], anchor, stiffness, springs[1], f)
+        force[end] += np.column_stack([pull, press])
         v += step * inverse * force
-        u += step * v
-    return float(mass @ (v @ turn.T)[:, 2] / mass.sum())
+        x += step * v
+    return float(mass @ v[:, 2] / mass.sum())
+
+
+def _turned(angle: float) -> Array:
+    """Return the rotation (3, 3) about y by ``angle``, z towards x."""
+    return np.array([[cos(angle), 0, sin(angle)], [0, 1, 0], [-sin(angle), 0, cos(angle)]])
+
+
+def _attitude(shape: Array, x: Array, mass: Array) -> float:
+    """Return the angle by which points x (n, 3) are turned from ``shape``, both about the mass centre."""
+    along = mass @ (x[:, 0] * shape[:, 0] + x[:, 2] * shape[:, 2])
+    return atan2(float(mass @ (x[:, 0] * shape[:, 2] - x[:, 2] * shape[:, 0])), float(along))

@@ -3,12 +3,14 @@
 Printed, 4 x 4 x 48 plain hexahedra at 3 m/s: a normal rebound of 1.403 m/s without friction in two public
 codes, about 1.91 m/s with f = 0.2. Their contacts are springs under nodes, and friction pulls at springs a
 tenth as stiff. The same mesh on such springs (`NodeSprings`, CalculiX' stiffness) gives both numbers within
-1.5 %. Without friction the hard contact of the project is held to the printed one too.
+1.5 %.
 
-With friction hard contact differs by 4 to 6 % on any mesh, and the sticking springs are why: a third of the
+Hard contact differs from them, with friction by 4 to 6 % on any mesh, and the springs are why: a third of the
 impulse sticks, and these springs give back what they stored. An explicit code of bricks (`reference.bricks`)
 that gives the printed numbers on those springs goes to the hard contact with stiffer ones, so at all
-parameters its springs of 20 E / cell decide. Normal rebounds of plain hexahedra, m/s:
+parameters its springs of 20 E / cell decide. They differ from hard contact by what goes with the root of
+their give, which softer ones (6 E / cell) tell, and by the mass of half a cell that stops dead. Normal
+rebounds of plain hexahedra, m/s, bricks in a fixed attitude (turning takes 0.005):
 
 ==============================  ==================  ==================  ==================
 contact                         4 cells, f = 0, .2  8 cells, f = 0, .2  12 cells, f = 0, .2
@@ -41,6 +43,7 @@ from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.square_bars import (
     KINDS,
     NodeSprings,
+    counts,
     is_printed,
     node_areas,
     parameters,
@@ -50,13 +53,13 @@ from fem_impact.verify.square_bars import (
 from fem_impact.verify.watch import Until
 
 ANGLE, SPEED = radians(20), 3.0
-PRINTED, REBOUND = {0.0: 1.403, 0.2: 1.91}, 0.03  # m/s, by friction; tolerance
+PRINTED, REBOUND = {0.0: 1.403, 0.2: 1.91}, 0.015  # m/s, by friction; its springs' stiffness is not printed
 PRINTED_MESH = {"cells": 4, "element": 0}
 SPRINGS = "normal rebound, springs of public codes"
-HARD = "the printed one has springs for friction that store and give back"
+HARD = "the printed one has springs that store and give back, on 4 cells"
 TIME = 2.5  # round trips of a wave that are followed: bars leave after 1.4 and may come again after 3
-FASTEST = 2e-3  # over c0: rotations are small in the reference
-STIFF = 20.0  # stiffness of springs that are nearly hard, over E / cell
+FASTEST = 0.01  # over c0
+STIFF, SOFTER = 20.0, 6.0  # stiffness of springs that are nearly hard, over E / cell
 CLOSED, LEDGER = 1e-6, 1e-5
 
 
@@ -75,8 +78,8 @@ def _time(p: Values) -> float:
     return TIME * 2 * p["length"] / bar_speed(p["E"], p["rho"])
 
 
-def _on_springs(p: Values) -> float:
-    """Return the solver's normal rebound, m/s, on the springs of public codes."""
+def _on_springs(p: Values) -> tuple[float, float]:
+    """Return the solver's normal rebound, m/s, on the springs of public codes, and its step, s."""
     model = _model(p)
     mesh = model.geometry.rod.mesh
     area = node_areas(mesh, (mesh.points[mesh.faces, 2] == 0.0).all(axis=1))
@@ -86,7 +89,7 @@ def _on_springs(p: Values) -> float:
     springs = NodeSprings(nodes, stiffness, p["stick"], p["f"])
     sprung = replace(model, forces=[*model.forces, springs], impulses=[], steps={"rod": step})
     march(sprung, state := sprung.initial_state(), [Until(sprung.ledger(), _time(p))])
-    return rigid_of(sprung, state).V_n
+    return rigid_of(sprung, state).V_n, step
 
 
 def _reference(p: Values, springs: tuple[float, float]) -> float:
@@ -96,14 +99,18 @@ def _reference(p: Values, springs: tuple[float, float]) -> float:
 def _rebounds(p: Values, hard: float) -> list[Check]:
     """Return the rebounds beside the reference's, and beside the printed ones where there is one."""
     coarse, name = {**p, **PRINTED_MESH}, "normal rebound, hard contact"
-    soft = _on_springs(coarse)
-    # the approach counts: a rebound that friction has nearly stopped has no relative error of its own
-    allowed = REBOUND * p["speed"] * cos(p["angle"])
-    pairs = [
-        (SPRINGS, soft, _reference(coarse, (p["stiffness"], p["stick"]))),
-        (name, hard, _reference(p, (STIFF * p["E"] * p["cells"] / p["side"], 1.0))),
+    soft, step = _on_springs(coarse)
+    approach, passage = p["speed"] * cos(p["angle"]), 2 * p["length"] / bar_speed(p["E"], p["rho"])
+    # springs open and close between steps, of which the impact has so many
+    jerks = approach * step / passage
+    stiff, softer = (_reference(p, (k * p["E"] * p["cells"] / p["side"], 1.0)) for k in (STIFF, SOFTER))
+    tail = abs(stiff - softer) / (sqrt(STIFF / SOFTER) - 1)
+    # as in `bar` the energy of half a cell's mass is lost, and half that share of the speed
+    closing = 0.25 * approach / counts(p)[1]
+    checks = [
+        Check(SPRINGS, "m/s", soft, _reference(coarse, (p["stiffness"], p["stick"])), jerks, "absolute"),
+        Check(name, "m/s", hard, stiff, tail + closing, "absolute"),
     ]
-    checks = [Check(what, "m/s", v, exact, allowed, "absolute") for what, v, exact in pairs]
     slow = p["speed"] <= SPEED  # faster bars turn farther while they touch
     if not (slow and is_printed(p) and p["f"] in PRINTED and abs(p["angle"] - ANGLE) < 1e-9):
         return checks
@@ -112,9 +119,7 @@ def _rebounds(p: Values, hard: float) -> list[Check]:
     return [
         *checks,
         Check(f"{SPRINGS}, printed", "m/s", soft, printed, REBOUND),
-        Check.shown(beside, "m/s", hard, printed, HARD)
-        if p["f"]
-        else Check(beside, "m/s", hard, printed, REBOUND),
+        Check.shown(beside, "m/s", hard, printed, HARD),
     ]
 
 
@@ -127,7 +132,7 @@ def solve(p: Values) -> Solved:
         If the bar is too stubby, too slender or too fast.
     """
     fastest = FASTEST * bar_speed(p["E"], p["rho"])
-    within(p, "speed", 0.0, fastest, "m/s", "the reference holds for small rotations.")
+    within(p, "speed", 0.0, fastest, "m/s", "the reference holds for small strains.")
     model = _model(p)
     state, watch = model.initial_state(), Until(model.ledger(), _time(p))
     start = rigid_of(model, state)
@@ -155,7 +160,7 @@ PROBLEM = Problem(
             "bar's axis to the plate's normal; printed is 20 degrees",
             "angle",
             0.02,
-            0.7,
+            1.4,
             default=ANGLE,
         ),
         Parameter("f", "Coulomb friction; printed are 0 and 0.2", "", 0.0, 5.0, default=0.0),
