@@ -21,7 +21,7 @@ from fem_impact.reference.hertz import (
     yield_speed,
 )
 from fem_impact.reference.oblique import oblique_drop, oblique_rod
-from fem_impact.reference.rod_end import sears, strike
+from fem_impact.reference.rod_end import chain_restitution, sears, strike
 from fem_impact.reference.sphere import INERTIA, oblique_sphere, reversal
 from fem_impact.reference.waves import flexural_speed, longitudinal_speed, rayleigh_speed
 from rigid import Projectile
@@ -62,6 +62,13 @@ def test_bar():
     found = strike(219e9, 7850.0, pi * RADIUS**2, 0.24, 2.0)
     assert found.force == pytest.approx(23512, abs=0.5)
     assert found.duration == pytest.approx(90.88e-6, abs=5e-9)
+
+
+def test_a_chain_rings_on_less_the_finer_it_is():
+    """As links^(-2/3), what an Airy front leaves behind."""
+    lost = [1 - chain_restitution(links, 0.3) for links in (50, 400)]
+    assert lost[0] / lost[1] == pytest.approx(8 ** (2 / 3), rel=0.1)
+    assert lost[0] < 0.03
 
 
 SQUARE, METAL = (0.019, 0.24), (206e9, 0.29, 7850.0)
