@@ -6,6 +6,9 @@ the runs named with it.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from math import pi
+
 
 def contact_error(size: float, half: float) -> float:
     """Return the relative error of a contact's stiffness, cells of edge ``size``, half-axis ``half``, m.
@@ -40,13 +43,39 @@ def wave_error(wave: float, height: float) -> float:
     return (wave * height) ** 2 / 24
 
 
-def section_error(nu: float, across: float, wave: float) -> float:
-    """Return the relative error of a bending frequency from the cells of a round section.
+@dataclass(frozen=True, slots=True)
+class BarMesh:
+    """A round bar of slices: Poisson's ratio, cells over the diameter, radius, m, height of a slice, m."""
 
-    ``across`` is their number over the diameter, ``wave`` the wave number times the section's radius.
-    Straight cell edges do not follow the section as it curves (displacements nu (x^2 - y^2) / 2), which costs
-    energy as nu^2 / 2 times the square of a cell over the radius: frequencies of bars with 8 cells are 0.06 %
-    low for nu = 0, 0.36 % high for nu = 0.49. Shear over the section is lumped as waves are.
-    """
-    cell = 2 / across
-    return cell**2 * (nu**2 / 4 + wave**2 / 24)
+    nu: float
+    across: float
+    radius: float
+    height: float
+
+    def _cell(self, wave: float) -> float:
+        """Return the square of a cell times the wave number, both by the radius."""
+        return (2 / self.across * wave * self.radius) ** 2
+
+    def bending_error(self, wave: float) -> float:
+        """Return that of a bending frequency of a wave number, 1/m.
+
+        Slices; shear lumped over the section; its polygon's moment; straight edges that do not follow the
+        section as it curves across the bending; cells that are not square and stiffen where volume is kept.
+        Of bars with 8 cells, those of 0.5 m are 0.01 to 0.02 % high for nu = 0 and 0.29, those of 120 mm
+        0.06 % low, but 0.36 % high for nu = 0.49.
+        """
+        locking = 1.4e-3 * 2 * self.nu / (1 - 2 * self.nu)
+        section = (2 / self.across) ** 2 * (self.nu**2 / 32 + locking + 2e-3)
+        return wave_error(wave, self.height) + self._cell(wave) / 12 + section
+
+    def stretching_error(self, wave: float) -> float:
+        """Return that of a longitudinal frequency: slices, and lateral inertia lumped over the section."""
+        return wave_error(wave, self.height) + self.nu**2 * self._cell(wave) / 24
+
+    def twisting_error(self, length: float) -> float:
+        """Return that of the first torsional frequency: slices, and the section at its ends.
+
+        Of the second part, with R / L, bars of 47.5 to 240 mm with 8 and 12 cells have 0.45 to 0.9.
+        """
+        ends = 0.1 * (2 / self.across) ** 2 * self.radius / length
+        return wave_error(pi / length, self.height) + ends

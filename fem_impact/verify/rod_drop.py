@@ -21,7 +21,7 @@ from fem_impact.reference.hertz import (
 from fem_impact.reference.oblique import ObliqueRebound, ObliqueRod, oblique_drop, oblique_rod
 from fem_impact.reference.rod_edge import edge_excess
 from fem_impact.reference.waves import radiation_resistance, shear_resistance
-from fem_impact.verify.discretisation import contact_error, lean_error, radiation_error, section_error
+from fem_impact.verify.discretisation import BarMesh, contact_error, lean_error, radiation_error
 from fem_impact.verify.problem import Values
 from rigid import Projectile
 
@@ -139,7 +139,6 @@ class RodDrop:
             yield Change(waves=radiation_error())
         else:
             yield Change(friction=-p["f"] * self.sideways())
-        yield Change(
-            frequency=section_error(p["nu"], p["across"], SECOND * p["diameter"] / (2 * p["length"]))
-        )
+        mesh = BarMesh(p["nu"], p["across"], p["diameter"] / 2, p["diameter"] / p["across"])
+        yield Change(frequency=mesh.bending_error(SECOND / p["length"]))
         yield from (Change(patch=i) for i in range(len(PATCHES)) if i != USUAL)
