@@ -121,7 +121,7 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
         contacts=contacts[: end.touches],
         force=tally[HARDEST],
         finished=end.over,
-        reason=_reason(rod, end, V_n, bounds),
+        reason=_reason(rod, end, bounds),
         step=dt,
         steps=end.steps,
         wall=wall,
@@ -129,15 +129,10 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     )
 
 
-def _reason(rod: ModalRod, end: ModalEnd, V_n: float, bounds: Bounds) -> str:
+def _reason(rod: ModalRod, end: ModalEnd, bounds: Bounds) -> str:
     """Return why the march ended, as a sentence."""
-    if end.over and V_n > 0:
-        return f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no further contact."
     if end.over:
-        return (
-            f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no contact; the rod, whose mass "
-            f"centre still comes down at {-V_n:.3g} m/s, strikes again later."
-        )
+        return f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no contact."
     if end.struck == NOTHING:
         return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
     when = f"{end.wait * 1e6:.3g} us later" if end.wait else f"at {end.time * 1e6:.4g} us"

@@ -162,6 +162,7 @@ def installed_versions() -> dict[str, str]:
     return {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}}
 
 
+@cache
 def _version(name: str) -> str:
     try:
         return metadata.version(name)

@@ -115,8 +115,12 @@ def fall(gravity: float | None, time: float, intervals: Array) -> float:
     time : s since first contact at which the rod's motion is taken
     intervals : (k, 2) start and end of each contact, s; speed gained in flights between them is not included
     """
-    between = (intervals[1:, 0] - intervals[:-1, 1]).sum()
-    return float((gravity or 0.0) * (time - between))
+    return (gravity or 0.0) * (time - between(intervals))
+
+
+def between(intervals: Array) -> float:
+    """Return the time of flight between contacts whose start and end, s, are the rows of (k, 2)."""
+    return float((intervals[1:, 0] - intervals[:-1, 1]).sum())
 
 
 def shear_speed(scene: Scene) -> float:

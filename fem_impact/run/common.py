@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import cos
+from math import cos, sin
 from typing import TYPE_CHECKING
 
 import rigid
@@ -62,14 +62,18 @@ def validity(
     plan: Plan,
     finished: bool,
     stopped_because: str,
+    V_n: float,
     meshes: str,
     assumptions: Iterable[str] = (),
     warnings: Iterable[str] = (),
 ) -> Validity:
-    """Return how far to trust a record of one run; ``meshes`` says why it has no limit of two meshes."""
+    """Return how far to trust a record of one run that ends with a normal velocity, m/s.
+
+    ``meshes`` says why it has no limit of two meshes.
+    """
     return Validity(
         finished=finished,
-        stopped_because=stopped_because,
+        stopped_because=stopped_because + (strikes_again(V_n) if finished else ""),
         assumptions=tuple(assumptions),
         outside=plan.validity,
         warnings=tuple(warnings),
@@ -82,6 +86,13 @@ def validity(
         mesh_limit=Unknown(meshes),
         mesh_band=Unknown(meshes),
     )
+
+
+def strikes_again(V_n: float) -> str:
+    """Return that a mass centre with a normal velocity, m/s, still comes down, nothing if it does not."""
+    if V_n > 0:
+        return ""
+    return f" The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
 
 
 def open_ledger(share: float) -> str:
@@ -137,20 +148,23 @@ def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: fl
     )
 
 
-def restitution(scene: Scene, motion: RodMotion) -> Restitution:
+def restitution(scene: Scene, motion: RodMotion, fallen: float = 0.0) -> Restitution:
     """Return impulse ratios, and the coefficients with the three sets of arms.
 
+    ``fallen`` is the speed, m/s, that gravity gave the rod in flights between contacts: a part of the motion,
+    but no impulse.
     The centre of the impulse is the point at the height of the geometric contact where the moment
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
     (d_c, d_d), omega, m = arms(scene), scene.impact.omega, motion
+    before = m.v_n, m.v_t
     e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
-    spin = m.k_squared * (m.Omega - omega)
+    spin, alpha = m.k_squared * (m.Omega - omega), scene.impact.angle
     centre = (spin + d_d * (m.V_t - m.v_t)) / (m.V_n - m.v_n)
     table = measured_set(scene.measured).arms if scene.measured else None
     return Restitution(
-        mu=float(rigid.impulse_ratio(m.v_n, m.v_t, m.V_n, m.V_t)),
-        mu_c=float(rigid.critical_ratio(m.v_n, m.v_t, e=e, d_c=d_c, d_d=d_d, k2=m.k_squared, omega=omega)),
+        mu=float(rigid.impulse_ratio(*before, m.V_n + fallen * cos(alpha), m.V_t + fallen * sin(alpha))),
+        mu_c=float(rigid.critical_ratio(*before, e=e, d_c=d_c, d_d=d_d, k2=m.k_squared, omega=omega)),
         paper=_with_arms(float(table.d_c), float(table.d_d), omega, m)
         if table
         else unknown(ArmCoefficients, NO_TABLE),

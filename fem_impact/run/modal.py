@@ -7,9 +7,10 @@ from functools import cache
 from typing import Any
 
 from fem_impact.modal.impact import ModalResult
-from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, Restitution, RunCost
-from fem_impact.outcome.keys import Unknown, or_none, unknown
+from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import between
 from fem_impact.plan.measured import summary
 from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
@@ -22,6 +23,7 @@ from fem_impact.run.common import (
     too_slow,
     validity,
 )
+from fem_impact.run.doubts import doubts
 from fem_impact.scene.types import Scene
 
 WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
@@ -35,36 +37,28 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
     rod, scene, contacts = result.rod, plan.scene, result.contacts[:, :2]
     moved = motion(plan, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
-    coefficients = restitution(scene, moved)
+    fallen = (plan.slots.gravity or 0.0) * between(contacts)
+    coefficients, energy = restitution(scene, moved, fallen), _energy(plan, result)
+    origin = provenance(plan, CHOICES, WITHOUT)
     failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
     return Outcome(
-        provenance=provenance(plan, CHOICES, WITHOUT),
+        provenance=origin,
         validity=validity(
             plan,
             result.finished and not failed,
             failed or result.reason,
+            result.V_n,
             "the reduced model has no second mesh",
             (*ASSUMPTIONS, *beside_solid(scene)),
-            [*_doubts(coefficients), *gravity_warning(plan, contacts)],
+            [*doubts(origin, moved, coefficients, energy), *gravity_warning(plan, contacts)],
         ),
         motion=moved,
         restitution=coefficients,
-        energy=_energy(plan, result),
+        energy=energy,
         contact=_contact(result),
         heat=unknown(Heat, "heat is followed on the finite elements only"),
         cost=_cost(result),
     )
-
-
-def _doubts(coefficients: Restitution) -> list[str]:
-    """Say why the restitution is negative, where it is."""
-    e = or_none(coefficients.edge.e)
-    if e is None or e >= 0:
-        return []
-    return [
-        f"e = {e:.3g} is below 0: the rod turns so fast that its tip lifts off by turning, while its contact "
-        "point, with the arms at first contact, still approaches."
-    ]
 
 
 def _energy(plan: Plan, result: ModalResult) -> Energy:

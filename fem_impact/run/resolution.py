@@ -12,15 +12,13 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.plan.limits import ADVISED_CELLS, LEAST_CELLS, contact_radius
 
 if TYPE_CHECKING:
-    from fem_impact.outcome.groups import ArmCoefficients, Energy, Restitution
+    from fem_impact.outcome.groups import ArmCoefficients, Energy
     from fem_impact.solid.run import SolidResult
 
 
 T = TypeVar("T", "ArmCoefficients", "Energy")
 LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # nodes of the half model in contact at its peak
 ARM_LENGTHS = ("d_c", "d_d")
-PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
-ROUND_OFF = 0.01  # mu allowed where f is 0
 LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 
 
@@ -39,31 +37,6 @@ def too_narrow(result: SolidResult) -> str:
         f"pressed, fewer than {LEAST_NODES}, on elements of {h * 1e3:.2g} mm. Give accuracy.tip_size = "
         f'{advised * 1e3:.2g} mm or less, or accuracy.unresolved = "report"'
     )
-
-
-def doubted(restitution: Restitution, f: float, E_r: float) -> list[str]:
-    """Return a sentence for each number that an impact on a resting barrier makes doubtful.
-
-    Parameters
-    ----------
-    restitution : coefficients of the run; f : Coulomb coefficient in force
-    E_r : kinetic energy of the rigid motion after the last separation over E_0
-    """
-    e, mu = restitution.edge.e, restitution.mu
-    doubts: list[str] = []
-    if not isinstance(e, Unknown) and e > 1:
-        doubts.append(
-            f"e = {e:.3g} is above 1: bending, spin or friction handed energy to the contact point, or the "
-            "mesh did. Confirm it with half the accuracy.tip_size."
-        )
-    if not isinstance(mu, Unknown) and abs(mu) > PLOUGHING * f + ROUND_OFF:
-        doubts.append(
-            f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form "
-            "of its crater, or by the mesh. Confirm it with half the accuracy.tip_size."
-        )
-    if E_r > 1:
-        doubts.append(f"E_r is {E_r:.4g} of E_0, more than the rod brought: distrust every share.")
-    return doubts
 
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:

@@ -17,6 +17,7 @@ from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.run.common import heat, motion, plastic_shares, provenance, restitution, validity
+from fem_impact.run.doubts import doubts
 
 if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
@@ -32,31 +33,26 @@ ASSUMPTIONS = (
 
 def rigid_outcome(plan: Plan) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
-    scene = plan.scene
-    rod, impact = projectile(scene), scene.impact
-    d_c, d_d = arms(scene)
+    scene, rod = plan.scene, projectile(plan.scene)
     e, source = _normal_restitution(plan.bodies)
-    impulse = partial(
-        rigid.sliding_path,
-        *(impact.v_n, impact.v_t),
-        e=e,
-        f=plan.bodies.f,
-        d_c=d_c,
-        d_d=d_d,
-        k2=rod.k2,
-        omega=impact.omega,
-    )
-    impulse()  # a first call is slow: the second is timed
-    wall, cpu = time.perf_counter(), time.process_time()
-    path = impulse()
-    wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+    path, wall, cpu = _timed_path(plan.bodies, e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
     moved, energy = motion(plan, V_n, V_t, Omega, rod.mass, rod.k2), _energy(plan.bodies, path, rod)
+    origin, coefficients = provenance(plan, Unknown(UNKNOWN), WITHOUT), restitution(scene, moved)
+    warnings = doubts(origin, moved, coefficients, energy)
     return Outcome(
-        provenance=provenance(plan, Unknown(UNKNOWN), WITHOUT),
-        validity=validity(plan, True, "A rigid impact is over at once.", UNKNOWN, (source, *ASSUMPTIONS)),
+        provenance=origin,
+        validity=validity(
+            plan,
+            True,
+            "A rigid impact is over at once.",
+            V_n,
+            UNKNOWN,
+            assumptions=(source, *ASSUMPTIONS),
+            warnings=warnings,
+        ),
         motion=moved,
-        restitution=restitution(scene, moved),
+        restitution=coefficients,
         energy=energy,
         contact=Contact(
             intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
@@ -64,6 +60,17 @@ def rigid_outcome(plan: Plan) -> Outcome:
         heat=_heat(plan, known(energy.friction) * energy.E_0),
         cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
     )
+
+
+def _timed_path(bodies: ContactBodies, e: float) -> tuple[rigid.SlidingPath, float, float]:
+    """Return the impact of energetic restitution e, and its wall and processor time, s."""
+    rod, impact, (d_c, d_d) = projectile(bodies.scene), bodies.scene.impact, arms(bodies.scene)
+    moving = partial(rigid.sliding_path, impact.v_n, impact.v_t, omega=impact.omega)
+    impulse = partial(moving, e=e, f=bodies.f, d_c=d_c, d_d=d_d, k2=rod.k2)
+    impulse()  # a first call is slow: the second is timed
+    wall, cpu = time.perf_counter(), time.process_time()
+    path = impulse()
+    return path, time.perf_counter() - wall, time.process_time() - cpu
 
 
 def _heat(plan: Plan, friction_work: float) -> Heat:

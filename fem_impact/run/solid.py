@@ -20,7 +20,7 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import fall
+from fem_impact.physics.contact import between, fall
 from fem_impact.physics.flash import flash, halves
 from fem_impact.run.common import (
     gravity_warning,
@@ -32,8 +32,9 @@ from fem_impact.run.common import (
     too_slow,
     validity,
 )
+from fem_impact.run.doubts import doubts
 from fem_impact.run.markers import replay
-from fem_impact.run.resolution import doubted, is_resolved, too_narrow, without
+from fem_impact.run.resolution import is_resolved, too_narrow, without
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
@@ -55,11 +56,15 @@ def reduce(result: SolidResult) -> Outcome:
     if not result.model.book.intervals:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
-    moved = _motion(result)
-    coefficients, energy = restitution(result.plan.scene, moved), _energy(result, moved)
+    plan, moved = result.plan, _motion(result)
+    fallen = (plan.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
+    coefficients, energy = restitution(plan.scene, moved, fallen), _energy(result, moved)
+    origin = provenance(plan, _choices(result))
+    withheld = not is_resolved(result) and plan.scene.accuracy.unresolved == "withhold"
+    doubted = [] if withheld else doubts(origin, moved, coefficients, energy)
     outcome = Outcome(
-        provenance=provenance(result.plan, _choices(result)),
-        validity=_validity(result, doubted(coefficients, result.plan.bodies.f, known(energy.rigid))),
+        provenance=origin,
+        validity=_validity(result, moved.V_n, doubted),
         motion=moved,
         restitution=coefficients,
         energy=energy,
@@ -67,7 +72,6 @@ def reduce(result: SolidResult) -> Outcome:
         heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
         cost=_cost(result),
     )
-    withheld = not is_resolved(result) and result.plan.scene.accuracy.unresolved == "withhold"
     return without(outcome, Unknown(too_narrow(result))) if withheld else outcome
 
 
@@ -76,13 +80,14 @@ def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
     return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in result.plan.choices)
 
 
-def _validity(result: SolidResult, doubts: list[str]) -> Validity:
+def _validity(result: SolidResult, V_n: float, doubts: list[str]) -> Validity:
     plan, contacts = result.plan, result.model.book.table[:, :2]
     failed = open_ledger(result.worst / result.E_0) or too_slow(plan, contacts)
     return validity(
         plan,
         result.finished and not failed,
         failed or result.reason,
+        V_n,
         ONE_MESH,
         warnings=[*_doubts(result), *doubts, *gravity_warning(plan, contacts), *plan.warnings],
     )

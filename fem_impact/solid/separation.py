@@ -62,7 +62,7 @@ class Separation:
             )
             return True
         self.finished = True
-        self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no further contact."
+        self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no contact."
         return True
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:

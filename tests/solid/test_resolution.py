@@ -9,7 +9,6 @@ from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.plan.plan import plan
-from fem_impact.run.resolution import doubted
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
 from fem_impact.scene.read import read_dict
@@ -65,15 +64,6 @@ def test_a_narrow_contact_is_told_before_the_run(result):
 @pytest.mark.parametrize("name", [*MEASURED_SETS, "quick", "elastic-frictionless"])
 def test_shipped_scenes_resolve_their_contact(name):
     assert not [words for words in plan(load(name)).warnings if "too narrow" in words]
-
-
-def test_what_a_blow_cannot_give_by_itself_is_doubted(result):
-    found = reduce(replace(result, peak_nodes=4)).restitution
-    fine = replace(found, mu=0.2, edge=replace(found.edge, e=0.9))
-    assert doubted(fine, 0.2, 0.9) == []
-    assert "above 1" in doubted(replace(fine, edge=replace(found.edge, e=1.01)), 0.2, 0.9)[0]
-    assert "beyond f = 0.2" in doubted(replace(fine, mu=-0.24), 0.2, 0.9)[0]
-    assert "E_r is 1.01 of E_0" in doubted(fine, 0.2, 1.01)[0]
 
 
 def test_a_choice_that_differs_is_written_and_another_refused():

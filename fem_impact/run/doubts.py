@@ -1,0 +1,54 @@
+"""Sentences on numbers of an outcome that an impact on a resting barrier does not give by itself."""
+
+from __future__ import annotations
+
+from fem_impact.outcome.groups import Energy, Provenance, Restitution, RodMotion
+from fem_impact.outcome.keys import or_none
+from fem_impact.run.common import RESIDUAL_LIMIT
+
+PLOUGHING = 1.1  # largest mu over f that the slope of a crater explains
+ROUND_OFF = 1e-9  # of e
+LEAST_RATIO = 0.01  # mu allowed where f is 0
+CONFIRM = " Confirm it with half the accuracy.tip_size."
+
+
+def doubts(provenance: Provenance, motion: RodMotion, restitution: Restitution, energy: Energy) -> list[str]:
+    """Return a sentence on each of e, mu and E_r that is out of the range of a plain impact."""
+    found = (_on_restitution(provenance, motion, restitution), _on_ratio(provenance, motion, restitution))
+    return [sentence for sentence in (*found, _on_rigid(energy)) if sentence]
+
+
+def _on_restitution(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:
+    """Say where the kinematic restitution gets its speed from, if it is not within 0 to 1."""
+    e, meshed = or_none(restitution.edge.e), provenance.fidelity == "solid"
+    if e is None or -ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT:
+        return ""
+    names = {"friction": motion.friction > 0, "bending": "vibration" in provenance.effects}
+    names |= {"gravity": "gravity" in provenance.effects, "turning": provenance.fidelity != "rigid"}
+    causes = " or ".join(name for name, possible in names.items() if possible)
+    if e < 0:
+        why = "while the contact point, with the arms at first contact, still approaches"
+        return f"e = {e:.3g} is below 0: the tip lifts off by {causes}, {why}.{CONFIRM * meshed}"
+    if not causes:
+        return f"e = {e:.5g} is above 1, and nothing in the model explains that: do not use this run."
+    mesh = f", or the mesh did.{CONFIRM}" if meshed else "."
+    return f"e = {e:.5g} is above 1: {causes} gave the contact point speed along the normal{mesh}"
+
+
+def _on_ratio(provenance: Provenance, motion: RodMotion, restitution: Restitution) -> str:
+    mu, f = or_none(restitution.mu), motion.friction
+    if mu is None or abs(mu) <= PLOUGHING * f + LEAST_RATIO:
+        return ""
+    return (
+        f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form "
+        f"of its crater, or by the mesh.{CONFIRM}"
+    )
+
+
+def _on_rigid(energy: Energy) -> str:
+    rigid, gravity = or_none(energy.rigid), or_none(energy.gravity) or 0.0
+    if rigid is None or rigid <= 1 + RESIDUAL_LIMIT:
+        return ""
+    if rigid <= 1 + gravity + RESIDUAL_LIMIT:
+        return f"E_r is {rigid:.4g} of E_0: gravity gave the rod {gravity:.2g} of it while it touched."
+    return f"E_r is {rigid:.4g} of E_0, more than the rod brought: distrust every share."
