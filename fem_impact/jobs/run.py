@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterable, Mapping
 from concurrent.futures import Executor, Future, as_completed
 from contextlib import nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from statistics import median
 from typing import TYPE_CHECKING
@@ -69,25 +69,22 @@ def makespan(costs: Iterable[float], workers: int) -> float:
 
 @dataclass(slots=True)
 class Eta:
-    """Reports the time, s, until all jobs are done: expected costs, scaled by time so far over work done."""
+    """Reports the time, s, until all jobs are done: expected costs, scaled by time so far over work done.
+
+    ``costs`` are those of the jobs to do, ``total`` is the number of all jobs; the time counts from here on.
+    """
 
     costs: dict[str, float]
     total: int
     meter: ProgressMeter
-    begun: float
-    remaining: float
+    begun: float = field(default_factory=lambda: time.monotonic())
     done: float = 0.0
-
-    @classmethod
-    def start(cls, costs: dict[str, float], total: int, meter: ProgressMeter) -> Eta:
-        """Begin to count now."""
-        return cls(costs, total, meter, time.monotonic(), sum(costs.values()))
 
     def __call__(self, name: str, count: int) -> None:
         """Report that ``name`` is done, ``count`` jobs in all."""
         self.done += self.costs[name]
-        self.remaining -= self.costs[name]
-        eta = (time.monotonic() - self.begun) * max(self.remaining, 0.0) / self.done
+        remaining = max(sum(self.costs.values()) - self.done, 0.0)
+        eta = (time.monotonic() - self.begun) * remaining / self.done
         self.meter(CaseProgress(name, count, self.total, eta))
 
 
@@ -105,8 +102,8 @@ def run_jobs(
     ----------
     jobs : names must differ
     store : SQLite file, made if it is not there
-    progress : told after every job, with the time that all jobs still need, and of every stored answer that
-        is not of its job and is computed again
+    progress : called after every job with the time that all jobs still need, and for every stored answer
+        that is not of its job and is computed again
     executor : any, such as what `on_scheduler` lends; local processes, one a core, when None
 
     Raises
@@ -123,7 +120,7 @@ def run_jobs(
             # the longest first, so that no worker is left alone with one at the end
             waiting = [wanted[name] for name in sorted(costs, key=lambda name: -costs[name])]
             with LocalProcesses() if executor is None else nullcontext(executor) as engine:
-                _compute(waiting, base, engine, results, Eta.start(costs, len(wanted), progress))
+                _compute(waiting, base, engine, results, Eta(costs, len(wanted), progress))
     return {name: results[name] for name in wanted}
 
 
@@ -148,21 +145,15 @@ def _compute(waiting: list[Job], base: Store, executor: Executor, results: Resul
             job, answer = futures[future], _answer(future)
             if answer.outcome or answer.lasting:
                 base.put(job, answer)
-            results[job.name] = _result(job, answer)
+            try:
+                reason = answer.reason
+                results[job.name] = Failure(job.name, reason) if reason else read_outcome(job, answer.outcome)
+            except ResultError as error:  # the text is checked like a stored one
+                results[job.name] = Failure(job.name, str(error))
             meter(job.name, len(results))
     finally:
         for future in futures:
             future.cancel()
-
-
-def _result(job: Job, answer: Answer) -> Outcome | Failure:
-    """Return the result of a worker's answer, checked like a stored one."""
-    if answer.reason:
-        return Failure(job.name, answer.reason)
-    try:
-        return read_outcome(job, answer.outcome)
-    except ResultError as error:
-        return Failure(job.name, str(error))
 
 
 def _answer(future: Future[Answer]) -> Answer:

@@ -36,7 +36,7 @@ def test_a_makespan_lies_between_its_bounds(costs, workers):
 def test_the_eta_follows_the_work_not_the_number_of_jobs(monkeypatch):
     seen, now = [], [100.0]
     monkeypatch.setattr("fem_impact.jobs.run.time.monotonic", lambda: now[0])
-    eta = Eta.start({"long": 8.0, "short": 2.0}, 3, seen.append)
+    eta = Eta({"long": 8.0, "short": 2.0}, 3, seen.append)
     now[0] = 116.0
     eta("long", 2)
     assert (seen[0].done, seen[0].total, seen[0].eta_s) == (2, 3, pytest.approx(4.0))
