@@ -10,7 +10,7 @@ import numpy as np
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.study.criterion_measure import linear_rods, rods_of
-from fem_impact.study.criterion_tell import HERTZ, YIELDING, study_report
+from fem_impact.study.criterion_report import HERTZ, YIELDING, study_report
 from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, TIP, Drop, length_of
 

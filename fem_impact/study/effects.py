@@ -208,7 +208,7 @@ def _study_report(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[
             f"{len(rows) - len(beyond)} of {len(rows)} scenes agree with everything on within {limits}.",
             f"{len(cheaper)} of {len(rows)} take less processor time.",
             *([f"Beyond: {', '.join(beyond)}."] if beyond else []),
-            f"E_vib is met by a quick strike within a factor of two in {_within(2, beside)}, of three in "
+            f"The quick impact gives E_vib within a factor of two in {_within(2, beside)}, of three in "
             f"{_within(3, beside)} of {len(beside)} scenes.",
         ],
         sheets=[
@@ -221,7 +221,7 @@ def _study_report(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[
             ),
             Sheet(
                 "expected",
-                "Everything on beside the quick strike that `check` tells changes from.",
+                "Everything on beside the quick impact, from which `check` expects changes.",
                 Table.of(BESIDE_COLUMNS, beside),
             ),
         ],

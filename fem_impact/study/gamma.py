@@ -15,7 +15,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.gamma_tell import FIRST, SOLID, Maps, study_report
+from fem_impact.study.gamma_report import FIRST, SOLID, Maps, study_report
 from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
 
 if TYPE_CHECKING:

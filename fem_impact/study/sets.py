@@ -101,13 +101,18 @@ def sets_report(
     """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
     explained = explanations(comparison, changed)
     sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
+    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
+    names = dict.fromkeys(row["set"] for row in comparison)
+    beside = Table.of(
+        ("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names]
+    )
     return StudyReport(
         "sets",
         "Model beside measurement",
         sentences,
         sheets=[
             Sheet("comparison", "Every compared quantity", Table.of(COMPARISON, comparison), shown=False),
-            Sheet("beside", BESIDE, _beside(comparison)),
+            Sheet("beside", BESIDE, beside),
             Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
             *_limits(outcomes),
             *(_input_sheets(changed, explained) if changed else ()),
@@ -143,13 +148,6 @@ BESIDE = (
     "Model, with the band of its two meshes, / measured mean with standard deviation; bold: inside the 95 % "
     "interval of the mean, ?: undecided by the mesh"
 )
-
-
-def _beside(comparison: Sequence[Row]) -> Table:
-    """Return one row per set with the quantities of `COMPARED`, computed and measured."""
-    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
-    names = list(dict.fromkeys(row["set"] for row in comparison))
-    return Table.of(("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names])
 
 
 def _cell(row: Row) -> str:

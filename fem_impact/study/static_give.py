@@ -71,8 +71,8 @@ def give_sentences(gives: Gives) -> list[str]:
         )
     return [
         f"Yielding, frictionless: below gamma {SHORT:g} the error, up to {error:.3f}, is no loss to "
-        "vibration. A rod that gives way elastically stores part of the blow and hands it back, so that less "
-        "flows plastically and it bounces more than a rigid one; that static give alone predicts e within "
+        "vibration. A rod that deforms elastically stores part of the energy and returns it, so that less is "
+        "left for plastic flow and e is larger than that of a rigid rod; static give alone predicts e within "
         f"{left:.3f}, and it goes to zero with gamma.",
         "Without friction this makes long rods bounce more than short ones, which no contact law does; e at "
         f"45 degrees: {'; '.join(values)}.",

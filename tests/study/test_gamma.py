@@ -10,7 +10,7 @@ from fem_impact.progress import NullMeter
 from fem_impact.study import document
 from fem_impact.study.document import Request
 from fem_impact.study.gamma import SLACK, anchors, conclude, grid, line, plan
-from fem_impact.study.gamma_tell import Maps
+from fem_impact.study.gamma_report import Maps
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of
 from rigid import slenderness
 
