@@ -43,9 +43,10 @@ def own_coefficients(
     mean = {name: values.mean() for name, values in camera.motion.items()}
     centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
     fall = float(mean["v_n"]), float(mean["v_t"])
+    sizes = {f"{name}_m": getattr(rod, name) for name in ("length", "diameter", "tip_radius")}
     document = {
         "tests": len(camera.tests),
-        "rod": _rod_entry(rod, alpha),
+        "rod": {**sizes, "tip": rod.tip, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha},
         "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
         "coefficients": _estimates(camera.motion, body),
         "scatter": {
@@ -61,12 +62,6 @@ def own_coefficients(
         ],
     }
     return {**document, "notes": _notes(camera, tests, document)}
-
-
-def _rod_entry(rod: Projectile, alpha: float) -> dict[str, Any]:
-    names = ("length", "diameter", "tip_radius")
-    sizes = {f"{name}_m": getattr(rod, name) for name in names}
-    return {**sizes, "tip": rod.tip, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha}
 
 
 def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[str, Any]:

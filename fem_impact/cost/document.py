@@ -43,15 +43,15 @@ Scenes = dict[str, tuple[dict[str, Any], list[Judged]]]
 def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
     """Write cost.json, cost.csv, cost.txt and the plot of the targeted quantities, cost.svg."""
     write_text(out / "cost.json", json.dumps(cost.to_dict(), indent=1, allow_nan=False) + "\n")
-    write_text(out / "cost.csv", Table.of(COLUMNS, map(_row, cost.settings)).csv())
+    rows: list[list[Cell]] = []
+    for one in cost.settings:
+        fields = [getattr(one, key) for key in (*SCALARS, *COSTS)]
+        by_name = (one.value, one.error, one.scatter, one.band)
+        numbers = (values.get(name) for values in by_name for name in NAMES)
+        rows.append([*fields, *numbers, " ".join(one.front)])
+    write_text(out / "cost.csv", Table.of(COLUMNS, rows).csv())
     write_text(out / "cost.txt", text_table(cost) + "\n")
     work_precision(cost.settings, names, out / "cost.svg")
-
-
-def _row(setting: Judged) -> list[Cell]:
-    fields = [getattr(setting, key) for key in (*SCALARS, *COSTS)]
-    by_name = (setting.value, setting.error, setting.scatter, setting.band)
-    return [*fields, *(values.get(name) for values in by_name for name in NAMES), " ".join(setting.front)]
 
 
 COST_COLUMNS = (

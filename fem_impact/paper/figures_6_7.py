@@ -48,8 +48,13 @@ def figure_6(out: Path) -> Drawn:
     """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
     picture = out / "figure-6.png"
     curves = [_curve(s) for s in angle_sets()]
-    write_data(picture, COLUMNS_6, [row for curve in curves for row in _rows(curve)])
-    share = [_share_at_critical(curve) for curve in curves]
+    rows = []
+    for curve in curves:
+        total = curve["total"]
+        columns = zip(MU, total[0], total.min(axis=0), total.max(axis=0), curve["tangential"], strict=True)
+        rows += [[round(curve["alpha"], 6), *map(float, row), curve["mu_c"]] for row in columns]
+    write_data(picture, COLUMNS_6, rows)
+    share = [curve["share"] for curve in curves]
     sentence = (
         f"At the critical ratio the predicted total loss is {100 * min(share):.0f} to "
         f"{100 * max(share):.0f} % "
@@ -64,7 +69,10 @@ def figure_6(out: Path) -> Drawn:
 
 
 def _curve(s: MeasuredSet) -> dict[str, Any]:
-    """Return loss against mu of one set, with the band of the 95 % interval of its mean e."""
+    """Return loss against mu of one set, with the band of the 95 % interval of its mean e.
+
+    ``share`` is the loss at mu_c over the largest loss at mu <= mu_c.
+    """
     mean = s.statistics()
     motion = mean["v_n"].mean, mean["v_t"].mean
     mass = 2.0 / (motion[0] ** 2 + motion[1] ** 2)  # so that losses come as fractions of E_0
@@ -73,21 +81,10 @@ def _curve(s: MeasuredSet) -> dict[str, Any]:
     lost = predicted_losses(*motion, e=restitution[:, None], mu=MU, mass=mass, **body)
     total = lost.E_ln + lost.E_lt
     mu_c = float(critical_ratio(*motion, e=restitution[0], **body))
-    return {"alpha": float(np.degrees(s.alpha)), "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c}
-
-
-def _rows(curve: dict[str, Any]) -> list[list[float]]:
-    total: Floats = curve["total"]
-    low, high = total.min(axis=0), total.max(axis=0)
-    columns = zip(MU, total[0], low, high, curve["tangential"], strict=True)
-    return [[round(curve["alpha"], 6), *map(float, row), curve["mu_c"]] for row in columns]
-
-
-def _share_at_critical(curve: dict[str, Any]) -> float:
-    """Return the loss at mu_c over the largest loss at mu <= mu_c."""
-    below = MU <= curve["mu_c"]
-    there = float(np.interp(curve["mu_c"], MU, curve["total"][0]))
-    return there / max(there, float(curve["total"][0][below].max()))
+    there = float(np.interp(mu_c, MU, total[0]))
+    share = there / max(there, float(total[0][mu_c >= MU].max()))
+    angle = float(np.degrees(s.alpha))
+    return {"alpha": angle, "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c, "share": share}
 
 
 def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> None:
@@ -156,10 +153,19 @@ def _loss_of(s: MeasuredSet, mu: float) -> float:
 def figure_7(out: Path) -> Drawn:
     """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of resampled tests."""
     picture = out / "figure-7.png"
-    curves, drawn_curves = _curves()
+    x = np.radians(DEGREES)
+    # of the measured means (173,), and of resampled tests (draws, 173)
+    curves, resampled = (
+        {"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln}
+        for p in (loss_against_angle(x), drawn_losses(x))
+    )
+    bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
     measured = [_measured(s.recomputed()) for s in angle_sets()]
-    write_data(picture, COLUMNS_7, [*_curve_rows(curves, drawn_curves), *_measured_rows(measured)])
-    peaks = {name: _peak(curves[name], drawn_curves[name]) for name in ("total", "E_lt")}
+    write_data(picture, COLUMNS_7, _rows_7(curves, bands, measured))
+    peaks = {}
+    for name in ("total", "E_lt"):
+        low, high = np.percentile(DEGREES[resampled[name].argmax(axis=1)], [2.5, 97.5])
+        peaks[name] = (float(DEGREES[curves[name].argmax()]), float(low), float(high))
     sentence = (
         f"With interpolated coefficients the total loss is largest at {_words(peaks['total'])} degrees and "
         f"the tangential loss at {_words(peaks['E_lt'])} degrees (95 % by resampling the tests; linear "
@@ -168,7 +174,7 @@ def figure_7(out: Path) -> Drawn:
     with canvas(picture, 4.4, sentence) as drawn:
         axes = drawn.add_subplot()
         for name in LOOKS:
-            _draw_7(axes, name, curves[name], drawn_curves[name], [row[name] for row in measured])
+            _draw_7(axes, name, curves[name], bands[name], [row[name] for row in measured])
         axes.set(
             xlabel="inclination α, degrees", ylabel="loss as a fraction of $E_0$", xlim=(15, 62), ylim=(0, 1)
         )
@@ -180,45 +186,29 @@ def figure_7(out: Path) -> Drawn:
     return Drawn(7, picture, sentence, _statements(peaks))
 
 
-def _curves() -> tuple[dict[str, Floats], dict[str, Floats]]:
-    """Return the calculated losses (173,) and those of resampled tests (draws, 173) by name."""
-    x = np.radians(DEGREES)
-    best, many = loss_against_angle(x), drawn_losses(x)
-    return tuple({"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln} for p in (best, many))  # type: ignore[return-value]
-
-
 def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
     """Return the measured losses of one set; the total is 1 - E_r/E_0, independent of e_m."""
     losses = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
     return {name: statistic(values) for name, values in losses.items()}
 
 
-def _band(many: Floats) -> Floats:
-    return np.percentile(many, [2.5, 97.5], axis=0)
-
-
-def _curve_rows(curves: dict[str, Floats], many: dict[str, Floats]) -> list[list[float | str]]:
-    columns = [column for name in LOOKS for column in (curves[name], *_band(many[name]))]
-    return [["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)]
-
-
-def _measured_rows(measured: list[dict[str, Statistic]]) -> list[list[float | str]]:
-    rows: list[list[float | str]] = []
+def _rows_7(
+    curves: dict[str, Floats], bands: dict[str, Floats], measured: list[dict[str, Statistic]]
+) -> list[list[float | str]]:
+    """Return the rows of `COLUMNS_7`: the calculated ones, then the measured ones."""
+    columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
+    rows: list[list[float | str]] = [
+        ["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)
+    ]
     for s, losses in zip(angle_sets(), measured, strict=True):
         ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
         rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
     return rows
 
 
-def _peak(best: Floats, many: Floats) -> tuple[float, float, float]:
-    """Return the angle of the largest loss with its 95 % interval, degrees."""
-    low, high = np.percentile(DEGREES[many.argmax(axis=1)], [2.5, 97.5])
-    return float(DEGREES[best.argmax()]), float(low), float(high)
-
-
-def _draw_7(axes: Axes, name: str, curve: Floats, many: Floats, measured: list[Statistic]) -> None:
+def _draw_7(axes: Axes, name: str, curve: Floats, band: Floats, measured: list[Statistic]) -> None:
     colour, mark = PALETTE[LOOKS[name][0]], LOOKS[name][1]
-    axes.fill_between(DEGREES, *_band(many), color=colour, alpha=0.18, lw=0)
+    axes.fill_between(DEGREES, *band, color=colour, alpha=0.18, lw=0)
     axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{LABELS[name]} by Eq 23-25, 95 % band")
     angles = [float(np.degrees(s.alpha)) for s in angle_sets()]
     means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
