@@ -17,10 +17,10 @@ from fem_impact.assess.bounds import (
     worst_losses,
 )
 from fem_impact.assess.drop import DroppedRod, outside_of, warnings_of, weights_of
-from rigid import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres
+from rigid import LIMIT, LIMIT_MM, Errors, behaves_rigidly, in_millimetres
 from rigid.arrays import Floats
 
-CONTACT = 0.5e-3
+CONTACT = Errors().contact
 """Error of the contact point, m."""
 
 ASSUMPTIONS = (

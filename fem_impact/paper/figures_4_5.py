@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_impact.figures.style import INK, PALETTE, QUIET, write_data
 from fem_impact.paper.drawn import Drawn, Statement, canvas
-from rigid import coefficients, critical_ratio
+from rigid import Errors, coefficients, critical_ratio
 from rigid.arrays import Floats
 from rigid.experiments import (
     Correlation,
@@ -34,9 +34,6 @@ OTHER_ARM = 0.084
 
 FRICTION = 0.57
 """Sliding friction of steel on steel that the paper quotes (its footnote 2)."""
-
-CONTACT = 0.5e-3
-"""Error of the contact point, m."""
 
 COLUMNS_5 = ("alpha_deg", "mu_mean", "mu_low", "mu_high", "mu_c", "mu_c_low", "mu_c_high")
 
@@ -137,7 +134,7 @@ def _row(s: MeasuredSet, mu_c: float) -> list[float]:
     mean = s.statistics()
     mu, e = mean["mu"], np.array([mean["e"].low, mean["e"].high])[:, None, None]
     # least and largest mu_c over the interval of e and the error of the contact point
-    shift = CONTACT * np.array([-1.0, 1.0])
+    shift = Errors().contact * np.array([-1.0, 1.0])
     given: dict[str, Any] = {"d_c": s.arms.d_c + shift, "d_d": (s.arms.d_d + shift)[:, None], "k2": s.k2}
     critical = critical_ratio(mean["v_n"].mean, mean["v_t"].mean, e=e, **given)
     ends = float(critical.min()), float(critical.max())

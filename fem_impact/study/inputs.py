@@ -20,6 +20,7 @@ from fem_impact.outcome.keys import Num, known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import replace_all
 from fem_impact.study.compare import COMPARED, MEASURED, UNSEEN, Row
+from rigid import Errors
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
@@ -27,8 +28,8 @@ if TYPE_CHECKING:
 
 
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)
-CONTACT = 0.5e-3  # m, half the range of the contact point's position
-TRACKING = 0.02  # relative error of a tracked speed (paper)
+CONTACT = Errors().contact  # m, half the range of the contact point's position
+TRACKING = Errors().tracking  # relative error of a tracked speed (paper)
 YIELD = (1.0, 1.5)  # times the scene's yield and ultimate stress
 BACKING = (0.5, 1.0)  # times the plate's modulus
 LEVELS = 5  # tip radii of the sample: few, as each needs its own modes
