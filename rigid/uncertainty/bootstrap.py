@@ -12,7 +12,6 @@ from ..coefficients import coefficients
 from .estimate import MOTION, Errors, Estimate, stack_tests
 
 SOURCES = ("scatter", "contact", "tracking")
-BLOCK = 500_000  # tests drawn at a time: five velocities and an index of each take 24 MB
 
 
 def bootstrap(
@@ -60,12 +59,11 @@ def bootstrap(
 
 
 def _resampled(rows: Floats, samples: int, rng: np.random.Generator) -> Floats:
-    """Means (5, samples) of the tests drawn anew with replacement, at most `BLOCK` numbers at a time."""
+    """Means (5, samples) of the tests drawn anew with replacement; one sample's tests are held at a time."""
     n = rows.shape[1]
-    means, height = np.empty((len(rows), samples)), max(1, BLOCK // n)
-    for first in range(0, samples, height):
-        block = means[:, first : first + height]
-        block[:] = rows[:, rng.integers(n, size=(block.shape[1], n))].mean(axis=2)
+    means = np.empty((len(rows), samples))
+    for sample in range(samples):
+        means[:, sample] = rows @ np.bincount(rng.integers(n, size=n), minlength=n) / n
     return means
 
 
