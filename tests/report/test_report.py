@@ -173,7 +173,7 @@ def study(tmp_path):
     """A study's folder with one run's histories."""
     (tmp_path / "t4").mkdir()
     result_maker.write_result(tmp_path / "t4", scene_id="t4")
-    return result_maker.write_study(tmp_path, result_maker.SETS[:4])
+    return result_maker.write_study(tmp_path, ("t4", "t5b"))
 
 
 def edit(study, **changes):
