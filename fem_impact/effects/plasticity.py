@@ -1,4 +1,4 @@
-"""Yielding of the rod's tip (J2, isotropic power-law hardening through yield and ultimate stress)."""
+"""Yielding of the rod's tip (J2, isotropic hardening)."""
 
 from __future__ import annotations
 
@@ -36,9 +36,17 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
 
 def hardening_of(material: Material) -> Hardening:
-    """Return the hardening law of a material; SceneError if no power law reaches its ultimate stress."""
-    from fem_impact.physics.hardening import power_hardening
+    """Return the hardening law of a material: linear by its modulus, or through its ultimate stress.
 
+    Raises
+    ------
+    SceneError
+        If no power law reaches the ultimate stress.
+    """
+    from fem_impact.physics.hardening import linear_hardening, power_hardening
+
+    if material.hardening is not None:
+        return linear_hardening(material.yield_stress, material.hardening)
     try:
         return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
     except ValueError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.errors import SceneError
 from fem_impact.physics.contact import approach
 
 if TYPE_CHECKING:
@@ -12,7 +13,12 @@ if TYPE_CHECKING:
 
 
 def number(scene: Scene) -> float:
-    """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter)."""
+    """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter).
+
+    Nothing leaves a block with fixed faces.
+    """
+    if scene.barrier.boundary == "fixed":
+        return 0.0
     plate = scene.barrier.material
     return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
 
@@ -23,7 +29,20 @@ def harm(scene: Scene) -> Harm:
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Put dashpots on the outer boundary of the block."""
+    """Put dashpots on the outer boundary of the block.
+
+    Raises
+    ------
+    SceneError
+        If the block's faces are fixed.
+    """
+    if scene.barrier.boundary == "fixed":
+        raise SceneError(
+            "lets no waves out, which radiation asks for.",
+            key="barrier.boundary",
+            value="fixed",
+            remedy='Leave "radiation" out of the effects, or "fixed" out of the scene.',
+        )
     spec.radiating = True
 
 

@@ -22,7 +22,7 @@ from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import Plan
-from meshes import HexMesh, RodMesh
+from meshes import OUTER, HexMesh, RodMesh
 
 HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
 
@@ -47,7 +47,7 @@ class MeshedBody:
     points : (n, 3) node positions in the barrier frame, m
     places : (n, 3) int64, indices of the node unknowns in the flat vectors
     yields : (m,) bool, cells that may yield
-    element : element type of the cells that cannot yield
+    element, yielding : element types of the cells that cannot yield, and of those that may
     mass : (m, 8) lumped masses of each cell at its nodes, kg
     """
 
@@ -59,6 +59,7 @@ class MeshedBody:
     yields: Bools
     element: Kind
     mass: Array
+    yielding: Kind = "bbar"
 
 
 def make_body(
@@ -69,10 +70,11 @@ def make_body(
     material: Elastic,
     yields: Bools,
     element: Kind = "incompatible",
+    yielding: Kind = "bbar",
 ) -> MeshedBody:
-    """Return a body with its lumped masses; ``element`` is the type of the cells that cannot yield."""
+    """Return a body with its lumped masses, and the types of cells that cannot yield and that may."""
     mass = lumped_mass(points, mesh.cells, material.rho)
-    return MeshedBody(name, mesh, points, places, material, yields, element, mass)
+    return MeshedBody(name, mesh, points, places, material, yields, element, mass, yielding)
 
 
 def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
@@ -83,7 +85,7 @@ def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> 
     T = tie_operator(body.mesh.tie, body.places - shift, size)
     lame, cells = lame_constants(body.material.E, body.material.nu), body.mesh.cells
     elastic = assemble(body.points, cells[chosen & ~body.yields], lame, body.element, T)
-    return elastic + assemble(body.points, cells[chosen & body.yields], lame, "bbar", T)
+    return elastic + assemble(body.points, cells[chosen & body.yields], lame, body.yielding, T)
 
 
 def slices_of(body: MeshedBody, rod: RodMesh) -> SliceOperator:
@@ -168,8 +170,9 @@ class MeshedBodies:
         The mass that the flat faces of the mesh cut off the round skin is spread over the nose's cells.
         """
         g, yields = self.geometry, self.geometry.may_yield["rod"] & (self.spec.rod_law is not None)
-        steel, kind = self.scene.projectile.material, self.scene.accuracy.element
-        rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, kind)
+        steel, accuracy = self.scene.projectile.material, self.scene.accuracy
+        kinds = accuracy.element, accuracy.yielding_element
+        rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
         nose = np.ones(len(rod.mass), dtype=bool)
         nose[g.rod.body_cells] = False
         missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
@@ -183,8 +186,9 @@ class MeshedBodies:
         if mesh is None:
             return None
         yields = g.may_yield["barrier"] & (self.spec.barrier_law is not None)
-        steel, kind = self.scene.barrier.material, self.scene.accuracy.element
-        barrier = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, kind)
+        steel, accuracy = self.scene.barrier.material, self.scene.accuracy
+        kinds = accuracy.element, accuracy.yielding_element
+        barrier = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, *kinds)
         if g.skin_rows:
             barrier.mass[:] *= skin_weight(mesh, g.tip_size)[:, None]
         return barrier
@@ -205,7 +209,10 @@ class MeshedBodies:
     @cached_property
     def inverse_mass(self) -> Array:
         """Return the inverse lumped masses (size,), 1/kg, 0 where an unknown is fixed."""
-        return invert(self.mass, self.bodies)
+        inverse = invert(self.mass, self.bodies)
+        if self.barrier and self.scene.barrier.boundary == "fixed":
+            inverse[self.barrier.places[np.unique(self.barrier.mesh.faces_with(OUTER))]] = 0.0
+        return inverse
 
     @cached_property
     def drawn(self) -> MassPoints:

@@ -130,6 +130,14 @@ MATERIAL = (
     Parameter("rho", "density", "density", 10.0, 3e4),
     Parameter("yield_stress", "yield stress in tension", "stress", 1e3, 1e11),
     Parameter("ultimate_stress", "ultimate stress (engineering)", "stress", 1e3, 1e11),
+    Parameter(
+        "hardening",
+        "plastic modulus of linear hardening",
+        "stress",
+        0.0,
+        1e12,
+        derived="none: hardening is a power law through yield and ultimate stress",
+    ),
 )
 SURFACE = (
     Parameter("friction", "Coulomb coefficient f", "", 0.0, 10.0),
@@ -220,6 +228,8 @@ ACCURACY = (
     ),
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
+YieldingElement = Literal["bbar", "full"]  # element of cells that may yield
+Boundary = Literal["half-space", "fixed"]  # of a meshed barrier's outer faces
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces
 SAVE = (

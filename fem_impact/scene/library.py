@@ -70,6 +70,7 @@ def _material(name: str, table: dict[str, Any]) -> Material:
     values = {
         f.key: parse_quantity(table[f.key], f.dimension, f.key) if f.dimension else table[f.key]
         for f in fields.MATERIAL
+        if f.key in table
     }
     return Material(name=name, **values)
 

@@ -147,16 +147,18 @@ def _projectile(table: Table) -> ProjectileSpec:
 
 
 def _barrier(table: Table) -> Barrier:
-    _check_keys(table, ("material",))
-    return Barrier(_within(table, "material", _material))
+    _check_keys(table, ("material", "boundary"))
+    given = {"boundary": table["boundary"]} if "boundary" in table else {}
+    return Barrier(_within(table, "material", _material), **given)
 
 
 def _accuracy(table: Table | str) -> Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
         return Accuracy(target=parse_share(table, ""))
-    numbers = _numbers(table, fields.ACCURACY, ("element", "unresolved", "target"))
-    numbers |= {key: table[key] for key in ("element", "unresolved") if key in table}
+    choices = ("element", "yielding_element", "unresolved")
+    numbers = _numbers(table, fields.ACCURACY, (*choices, "target"))
+    numbers |= {key: table[key] for key in choices if key in table}
     if "target" not in table:
         return Accuracy(**numbers)
     for key in fields.MESH:

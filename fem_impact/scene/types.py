@@ -21,7 +21,11 @@ MEASURED_SETS = (
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """A metal: E, yield_stress and ultimate_stress in Pa, nu dimensionless, rho in kg/m3."""
+    """A metal: E, yield_stress and ultimate_stress in Pa, nu dimensionless, rho in kg/m3.
+
+    ``hardening`` is the plastic modulus d sigma / d eps_p, Pa, of linear hardening; without it flow stress is
+    a power law through yield and ultimate stress.
+    """
 
     name: str
     E: float
@@ -29,6 +33,7 @@ class Material:
     rho: float
     yield_stress: float
     ultimate_stress: float
+    hardening: float | None = None
 
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
@@ -67,9 +72,17 @@ class ProjectileSpec:
 
 @dataclass(frozen=True, slots=True)
 class Barrier:
-    """The massive plate that the rod strikes."""
+    """The massive plate that the rod strikes.
+
+    ``boundary`` is what holds the outer faces of a meshed block: springs and dashpots of the half-space
+    around it, or a rigid frame (``fixed``), as in plain models of other codes.
+    """
 
     material: Material
+    boundary: fields.Boundary = "half-space"
+
+    def __post_init__(self) -> None:
+        check_choice(self.boundary, get_args(fields.Boundary), "boundary")
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,8 +126,9 @@ class Accuracy:
     """What the answer may cost: element size at the tip and margin of the block in m, latest time in s.
 
     ``step`` is the time step over the largest stable one. ``element`` names the operator of cells that
-    cannot yield: with incompatible modes, fully integrated, or with mean dilatation, which yielding cells
-    always have.
+    cannot yield: with incompatible modes, fully integrated, or with mean dilatation (B-bar).
+    ``yielding_element`` names that of cells that may yield; plain full integration locks there, it is meant
+    for comparisons with codes that have it.
     ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
@@ -129,12 +143,14 @@ class Accuracy:
     max_time: float | None = None
     step: float = 0.9
     element: fields.Element = "incompatible"
+    yielding_element: fields.YieldingElement = "bbar"
     unresolved: fields.Unresolved = "withhold"
     target: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.ACCURACY)
         check_choice(self.element, get_args(fields.Element), "element")
+        check_choice(self.yielding_element, get_args(fields.YieldingElement), "yielding_element")
         check_choice(self.unresolved, get_args(fields.Unresolved), "unresolved")
         if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
             raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)

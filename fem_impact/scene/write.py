@@ -9,7 +9,7 @@ from typing import Any
 
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
-from fem_impact.scene.types import Accuracy, Material, Scene
+from fem_impact.scene.types import Accuracy, Barrier, Material, Scene
 
 
 def to_dict(scene: Scene) -> dict[str, Any]:
@@ -27,7 +27,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
             **_written(rod, fields.PROJECTILE),
             "material": _material(rod.material),
         },
-        "barrier": {"material": _material(scene.barrier.material)},
+        "barrier": _barrier(scene.barrier),
         "surface": surface | _written(scene.surface, fields.SURFACE),
         "impact": _written(scene.impact, fields.IMPACT),
         "accuracy": _accuracy(scene.accuracy),
@@ -47,10 +47,16 @@ def digest(scene: Scene) -> str:
     return hashlib.sha256(text.encode()).hexdigest()
 
 
+def _barrier(barrier: Barrier) -> dict[str, Any]:
+    written = {"boundary": barrier.boundary} if barrier.boundary != "half-space" else {}
+    return {**written, "material": _material(barrier.material)}
+
+
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
     written = _written(accuracy, fields.ACCURACY) | {"element": accuracy.element}
-    if accuracy.unresolved != Accuracy().unresolved:
-        written["unresolved"] = accuracy.unresolved
+    for key in ("yielding_element", "unresolved"):
+        if getattr(accuracy, key) != getattr(Accuracy(), key):
+            written[key] = getattr(accuracy, key)
     if accuracy.target is None:
         return written
     rest = {key: value for key, value in written.items() if key not in fields.MESH}

@@ -100,8 +100,9 @@ def yielding_zone(body: MeshedBody, law: Hardening, layout: DofLayout) -> Yieldi
     """Return the item of a body's cells that may yield."""
     from fem_impact.solid.yielding import YieldingZone
 
-    cells, m = body.mesh.cells[body.yields], body.material
-    return YieldingZone.of(body.name, body.places[cells], body.points[cells], m.E, m.nu, law, layout.dummy)
+    cells, m, full = body.mesh.cells[body.yields], body.material, body.yielding == "full"
+    dof, points = body.places[cells], body.points[cells]
+    return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full)
 
 
 def facing_skin(body: MeshedBody) -> Ints:

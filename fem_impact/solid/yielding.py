@@ -1,4 +1,4 @@
-"""The zone that may yield: blocks of B-bar elements with J2 plasticity."""
+"""The zone that may yield: blocks of elements with J2 plasticity."""
 
 from __future__ import annotations
 
@@ -32,6 +32,7 @@ class YieldingZone:
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
     rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
+    full : plain full integration in place of the mean dilatation
     """
 
     moving: ClassVar[tuple[str, ...]] = ("blocks.stress", "blocks.strain", "blocks.flow", "blocks.work")
@@ -44,10 +45,19 @@ class YieldingZone:
     K: float
     law: Array
     rate: Array | None
+    full: bool = False
 
     @classmethod
     def of(
-        cls, body: str, dof: Ints, points: Array, E: float, nu: float, law: Hardening, dummy: Ints
+        cls,
+        body: str,
+        dof: Ints,
+        points: Array,
+        E: float,
+        nu: float,
+        law: Hardening,
+        dummy: Ints,
+        full: bool = False,
     ) -> YieldingZone:
         """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes."""
         blocks = -(-len(dof) // LANES)
@@ -69,12 +79,12 @@ class YieldingZone:
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
         room = np.zeros(ROWS * LANES)
-        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate)
+        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate, full)
 
     def add(self, state: State) -> None:
         """Advance the blocks and subtract their nodal forces."""
         constants = self.G, self.K, self.law, self.rate
-        update(state.x, state.v, state.dt, self.blocks, *constants, self.room)
+        update(state.x, state.v, state.dt, self.blocks, *constants, self.full, self.room)
         subtract_nodal(*self.around, self.blocks.nodal.ravel(), state.force)
 
     def places(self) -> Ints:
@@ -93,7 +103,7 @@ class YieldingZone:
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return elastic energy and plastic work at the last force evaluation."""
-        elastic = float(elastic_energy(state.x, self.blocks, self.G, self.K, self.room))
+        elastic = float(elastic_energy(state.x, self.blocks, self.G, self.K, self.full, self.room))
         return elastic, float(self.blocks.work.sum())
 
     def plastic_strain(self) -> Array:

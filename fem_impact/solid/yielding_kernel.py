@@ -1,8 +1,9 @@
-"""Compiled update of B-bar hexahedra with J2 plasticity in the current configuration.
+"""Compiled update of hexahedra with J2 plasticity in the current configuration.
 
 Per step and Gauss point: gradient of the displacement increment referred to the middle of the step,
 Jaumann-rotated deviatoric stress, radial return; the pressure comes from the element's exact volume
-(mean dilatation), so that one pressure per element replaces eight.
+(mean dilatation, B-bar), so that one pressure per element replaces eight; with plain full integration each
+Gauss point has that of its own volume.
 
 Stresses are Kirchhoff's and every integral runs over the reference volume: the deviator works on weights
 that never change and the pressure p = K ln(J) / J is the exact derivative of K ln(J)^2 V_0 / 2. With
@@ -164,6 +165,14 @@ def _update_pressure(w, volume, pressure, K):  # type: ignore[no-untyped-def]
         pressure[l] = K * np.log(J) / J
 
 
+@inlined
+def _update_point_pressure(w, weight, pressure, K):  # type: ignore[no-untyped-def]
+    """Set the pressures of one Gauss point from its own volume ratio: plain full integration."""
+    for l in range(LANES):
+        J = w[DET * LANES + l] / weight[l]
+        pressure[l] = K * np.log(J) / J
+
+
 class Blocks(NamedTuple):
     """State of all elements in blocks of ``LANES`` (a named tuple, so that compiled code reads it).
 
@@ -190,10 +199,11 @@ class Blocks(NamedTuple):
 
 
 @kernel
-def update(x, v, dt, z, G, K, law, rate, w):  # type: ignore[no-untyped-def]
+def update(x, v, dt, z, G, K, law, rate, full, w):  # type: ignore[no-untyped-def]
     """Advance blocks ``z`` by the increment ``dt v`` to ``x`` and set their nodal forces.
 
-    ``w`` (ROWS * LANES,) is work space.
+    ``full`` takes plain full integration in place of the mean dilatation; ``w`` (ROWS * LANES,) is work
+    space.
     """
     for b in range(len(z.dof)):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
@@ -208,6 +218,8 @@ def update(x, v, dt, z, G, K, law, rate, w):  # type: ignore[no-untyped-def]
                 trial2, rotated = w[TRIAL2 * LANES :], w[ROTATED * LANES :]
                 strain, work, room = z.strain[b, g], z.work[b], w[RETURN * LANES :]
                 return_map(room, trial2, rotated, stress, weight, flow, strain, work, 3.0 * G, law, rate, dt)
+            if full:
+                _update_point_pressure(w, weight, z.pressure[b], K)
             _add_force(w, stress, weight, z.pressure[b], X, Y, Z)
         nodal_forces(w[FORCE * LANES :], z.nodal[b])
 
@@ -239,16 +251,30 @@ def _add_energy(sums, stress, weight, G4):  # type: ignore[no-untyped-def]
         sums[l] += (square + 2.0 * shear) * weight[l] / G4
 
 
+@inlined
+def _add_swelling(sums, w, weight, K, X, Y, Z):  # type: ignore[no-untyped-def]
+    """Add the energy of one Gauss point's volume ratio to each lane's sum, J."""
+    for l in range(LANES):
+        j = slope(w, POSITION, l, X, Y, Z)
+        c = cofactors(*j)
+        swelling = np.log((j[0] * c[0] + j[3] * c[3] + j[6] * c[6]) / weight[l])
+        sums[l] += 0.5 * K * swelling * swelling * weight[l]
+
+
 @kernel
-def elastic_energy(x, z, G, K, w):  # type: ignore[no-untyped-def]
+def elastic_energy(x, z, G, K, full, w):  # type: ignore[no-untyped-def]
     """Return the elastic energy, J, of all blocks ``z`` at the positions ``x`` of the last update."""
     sums = w[FORCE * LANES : (FORCE + 1) * LANES]
     sums[:] = 0.0
     for b in range(z.dof.shape[0]):
         gather_modes(x, 1.0, z.dof[b], w[POSITION * LANES :])
-        for l in range(LANES):
-            swelling = np.log(hex_volume(w, POSITION, l) / z.volume[b, l])
-            sums[l] += 0.5 * K * swelling * swelling * z.volume[b, l]
+        if full:
+            for g in range(8):
+                _add_swelling(sums, w, z.weight[b, g], K, CORNERS[g, 0], CORNERS[g, 1], CORNERS[g, 2])
+        else:
+            for l in range(LANES):
+                swelling = np.log(hex_volume(w, POSITION, l) / z.volume[b, l])
+                sums[l] += 0.5 * K * swelling * swelling * z.volume[b, l]
         for g in range(8):
             _add_energy(sums, z.stress[b, g], z.weight[b, g], 4.0 * G)
     return sums.sum()

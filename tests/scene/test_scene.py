@@ -11,14 +11,15 @@ from hypothesis import strategies as st
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import SceneError
-from fem_impact.scene.fields import Element
+from fem_impact.scene.fields import Boundary, Element, YieldingElement
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
+from fem_impact.scene.types import Accuracy, Barrier, Impact, Material, ProjectileSpec, Save, Scene, Surface
 from fem_impact.scene.write import digest, to_dict, to_toml
 
-STEELS = st.sampled_from(list(materials().values()))
+LINEAR = Material("linear", 206e9, 0.29, 7850.0, 300e6, 400e6, hardening=2e9)
+STEELS = st.sampled_from([*materials().values(), LINEAR])
 OPTIONAL = ("vibration", "friction", "rod-plasticity", "gravity", "large-rotation")
 
 
@@ -37,14 +38,14 @@ def scenes(draw):
         id=draw(st.from_regex(r"[a-z0-9]([a-z0-9-]{0,20}[a-z0-9])?", fullmatch=True)),
         title=draw(st.text(st.characters(exclude_categories=["C", "Z"]), max_size=30)),
         projectile=rod,
-        barrier=Barrier(draw(STEELS)),
+        barrier=Barrier(draw(STEELS), draw(st.sampled_from(get_args(Boundary)))),
         surface=draw(st.one_of(custom, st.sampled_from(list(surfaces().values())))),
         impact=Impact(angle, draw(speed), draw(speed), draw(st.floats(-100, 100))),
         effects=effects,
         accuracy=Accuracy(
             *(draw(st.floats(1e-4, 1e-3)), 2 * draw(st.integers(3, 32)), draw(st.sampled_from([0.0, 0.5]))),
             *(6e-3, draw(st.floats(1e-5, 1e-1)), draw(st.floats(0.01, 0.99))),
-            draw(st.sampled_from(get_args(Element))),
+            *(draw(st.sampled_from(get_args(kinds))) for kinds in (Element, YieldingElement)),
         ),
         save=Save(draw(st.integers(0, 1000)), draw(st.integers(1, 1000))),
         measured=None,

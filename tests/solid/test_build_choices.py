@@ -1,15 +1,18 @@
-"""What a scene chooses of the numerics: the step and the operator of the cells that cannot yield."""
+"""What a scene chooses of the model: step, elements, faces of the block, hardening."""
 
 import tracemalloc
 from dataclasses import replace
 
+import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
+from meshes import OUTER
 
 BASE = scenes.scene("vibration", "barrier-elastic", length=0.08)
 
@@ -33,6 +36,47 @@ def test_the_step_is_the_stated_share_of_the_stable_one():
 def test_fully_integrated_cells_are_stiffer_in_bending_than_incompatible_ones():
     soft, full = lowest(model()), lowest(model(element="full"))
     assert 1.005 * soft < full < 1.2 * soft
+
+
+def test_cells_that_yield_may_be_fully_integrated():
+    scene = scenes.scene("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
+    accuracy = replace(scene.accuracy, yielding_element="full")
+    plain, full = build(plan(scene)), build(plan(replace(scene, accuracy=accuracy)))
+    assert [zone.full for zone in (*plain.zones, *full.zones)] == [False, True]
+    assert full.steps["rod"] <= plain.steps["rod"]
+
+
+def faces_inverse(model):
+    """Return the inverse masses of the nodes on the block's outer faces."""
+    return model.inverse_mass[model.layout.barrier[np.unique(model.geometry.barrier.faces_with(OUTER))]]
+
+
+def test_faces_of_a_block_are_held_where_the_scene_says_so():
+    fixed = replace(BASE, barrier=replace(BASE.barrier, boundary="fixed"))
+    around, held = build(plan(BASE)), build(plan(fixed))
+    assert (faces_inverse(around) > 0.0).mean() > 0.5
+    assert faces_inverse(held).max() == 0.0
+    free = np.count_nonzero(around.inverse_mass) - np.count_nonzero(faces_inverse(around))
+    assert np.count_nonzero(held.inverse_mass) == free
+
+
+def test_faces_that_are_held_let_no_waves_out():
+    effects = ("vibration", "barrier-elastic", "radiation")
+    fast = replace(BASE, impact=replace(BASE.impact, v_n=-6.0), effects=effects)
+    fixed = replace(fast, barrier=replace(fast.barrier, boundary="fixed"))
+    with pytest.raises(SceneError, match="lets no waves out"):
+        plan(fixed)
+    assert "radiation" in plan(replace(fast, effects=("auto",))).active
+    assert "radiation" not in plan(replace(fixed, effects=("auto",))).active
+
+
+def test_hardening_is_linear_where_its_modulus_is_stated():
+    rod = replace(BASE.projectile.material, name="linear", hardening=2e9)
+    scene = replace(
+        BASE, projectile=replace(BASE.projectile, material=rod), effects=("rod-plasticity", "barrier-rigid")
+    )
+    law = plan(scene).slots.rod_law
+    assert law.flow_stress(0.1) == pytest.approx(rod.yield_stress + 2e8)
 
 
 def test_building_takes_little_memory():
