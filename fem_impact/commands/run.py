@@ -236,12 +236,26 @@ def _size_lines(planned: Plan) -> list[str]:
 
     size = planned.size
     sentences = (
+        _cells_line(planned),
         f"about {_elements(size)} of {size.step * 1e9:.2g} ns ({about(size.most_steps)} if it lasts until "
         f"max_time), {about(size.memory / 1e6)} MB of memory",
         f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
         "machine of the stored costs, within a factor of two there",
     )
     return ["", "Size of a run with finite elements", *_wrapped(sentences)]
+
+
+def _cells_line(planned: Plan) -> str:
+    """Return how fine the mesh is at the contact, and the tip size that the program advises."""
+    from fem_impact.plan.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
+
+    bodies = planned.bodies
+    cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
+    line = (
+        f"about {cells:.2g} cells over the radius of the contact, {contact_radius(bodies) * 1e3:.2g} mm: "
+        f"e and mu within some {100 * error / cells:.2g} %"
+    )
+    return line if cells >= advised else f"{line}. {advice(bodies)} for {100 * error / advised:.2g} %"
 
 
 def _wrapped(sentences: Iterable[str]) -> list[str]:

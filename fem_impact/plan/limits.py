@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
-from math import sqrt
 
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
-from fem_impact.plan.zones import levels_of
 from fem_impact.scene import library
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
@@ -21,11 +19,6 @@ ANGLES = (math.radians(17.0), math.radians(60.0))
 TIPS = {("A", 0.007), ("B", 0.003)}
 FALL = 2.0  # deg between velocity and axis of a dropped rod at most; of the measured ones 1.0 (t6-60)
 SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
-# Cells over the radius of the contact at its peak. Four impacts (two on a rigid plane, one on an elastic, one
-# on a yielding block, 20 to 50 degrees) on meshes halved two or three times: with 0.3 to 1.1 cells e was off
-# by up to 0.1, mu and Omega by up to 30 %; from 1.6 cells on e by up to 0.03, mu and Omega by up to 8 %.
-LEAST_CELLS = 1.6
-ADVISED_CELLS = 4.0  # splitting may leave 2.8 of them: e and mu within some 2 %
 
 
 def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
@@ -94,33 +87,6 @@ def _idealised(active: Collection[str]) -> str:
     real = ("friction", "rod-plasticity", "barrier-elastoplastic")
     missing = [name for name in real if name not in active]
     return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
-
-
-def contact_radius(bodies: ContactBodies) -> float:
-    """Return the estimated radius of the contact, m: the geometric mean of its semi-axes."""
-    size = contact_estimate(bodies)
-    return sqrt(size.a_t * size.a_b)
-
-
-def widest_tip_size(bodies: ContactBodies) -> float:
-    """Return the largest ``accuracy.tip_size``, m, two digits, that just resolves the estimated contact.
-
-    Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
-    """
-    return float(f"{contact_radius(bodies) / (LEAST_CELLS * sqrt(2)):.1e}")
-
-
-def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
-    """Return a sentence when the mesh may not resolve the contact."""
-    scene, radius = bodies.scene, contact_radius(bodies)
-    h = scene.projectile.diameter / scene.accuracy.across / 2 ** levels_of(scene)
-    if radius >= LEAST_CELLS * h or scene.accuracy.target is not None:  # a target chooses its own mesh
-        return ()
-    return (
-        f"The contact, about {radius * 1e3:.2g} mm in radius, may be too narrow for elements of "
-        f"{h * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. Give "
-        f"accuracy.tip_size = {radius / ADVISED_CELLS * 1e3:.2g} mm or less.",
-    )
 
 
 def require_shallow(bodies: ContactBodies) -> None:

@@ -10,8 +10,9 @@ from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
+from fem_impact.plan.cells import coarse_tip
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.limits import coarse_tip, require_approach, require_shallow, validity
+from fem_impact.plan.limits import require_approach, require_shallow, validity
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
 from fem_impact.scene.types import Scene

@@ -9,33 +9,38 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.limits import ADVISED_CELLS, LEAST_CELLS, contact_radius
+from fem_impact.plan.cells import LEAST, advice, contact_radius, kind
 
 if TYPE_CHECKING:
     from fem_impact.outcome.groups import ArmCoefficients, Energy
+    from fem_impact.physics.contact import ContactBodies
     from fem_impact.solid.run import SolidResult
 
 
 T = TypeVar("T", "ArmCoefficients", "Energy")
-LEAST_NODES = round(pi / 2 * LEAST_CELLS**2)  # nodes of the half model in contact at its peak
 ARM_LENGTHS = ("d_c", "d_d")
 LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 
 
 def is_resolved(result: SolidResult) -> bool:
-    """Return whether enough nodes were pressed at once when the contact was widest."""
-    return result.peak_nodes >= LEAST_NODES
+    """Return whether enough nodes were pressed at once when the force was largest."""
+    return result.peak_nodes >= least_nodes(result.plan.bodies)
+
+
+def least_nodes(bodies: ContactBodies) -> int:
+    """Return the nodes of the half model that a resolved contact presses at once: half a disc of cells."""
+    return round(pi / 2 * LEAST[kind(bodies)] ** 2)
 
 
 def too_narrow(result: SolidResult) -> str:
     """Return the sentence that says how narrow the contact was and what resolves it."""
     h = result.model.geometry.tip_size
     radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
-    advised = min(radius, contact_radius(result.plan.bodies)) / ADVISED_CELLS
+    bodies = result.plan.bodies
     return (
         f"the contact was not resolved: at its peak {result.peak_nodes} nodes of the half model were "
-        f"pressed, fewer than {LEAST_NODES}, on elements of {h * 1e3:.2g} mm. Give accuracy.tip_size = "
-        f'{advised * 1e3:.2g} mm or less, or accuracy.unresolved = "report"'
+        f"pressed, fewer than {least_nodes(bodies)}, on elements of {h * 1e3:.2g} mm. "
+        f'{advice(bodies, min(radius, contact_radius(bodies)))}, or accuracy.unresolved = "report"'
     )
 
 

@@ -17,8 +17,8 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam_impact import BeamImpact
+from fem_impact.plan.cells import widest_tip_size
 from fem_impact.plan.choose import choices, everything, resolved
-from fem_impact.plan.limits import widest_tip_size
 from fem_impact.plan.plan import plan as plan_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS

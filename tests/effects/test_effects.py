@@ -14,7 +14,6 @@ from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate, contact_modulus, effective_mass, principal_radii
 from fem_impact.physics.contact_law import thornton
 from fem_impact.plan.choose import active, choices, neglected, resolved
-from fem_impact.plan.limits import coarse_tip, widest_tip_size
 from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
@@ -308,17 +307,6 @@ def test_a_soft_plate_limits_the_pressure():
     assert work == pytest.approx(0.5 * effective_mass(bodies(stated)) * stated.impact.v_n**2)
     slow = replace(stated, impact=replace(stated.impact, v_n=-1e-3))
     assert contact_estimate(bodies(slow)).pressure < 2.8 * 320e6
-
-
-def test_an_element_wider_than_the_contact_is_doubted():
-    gentle = changed(changed(load("t5b"), "impact.v_n", "-0.05 m/s"), "accuracy.tip_size", "0.8 mm")
-    size, widest = contact_estimate(bodies(gentle)), widest_tip_size(bodies(gentle))
-    radius = sqrt(size.a_t * size.a_b)
-    assert widest == pytest.approx(radius / (1.6 * sqrt(2)), rel=0.05)
-    (told,) = coarse_tip(bodies(gentle))
-    assert f"{radius / 4 * 1e3:.2g} mm or less" in told
-    assert coarse_tip(bodies(changed(gentle, "accuracy.tip_size", f"{widest} m"))) == ()
-    assert coarse_tip(bodies(changed(load("t5b"), "accuracy.tip_size", "0.8 mm"))) == ()
 
 
 def test_edge_radii_of_profile_b():

@@ -71,11 +71,10 @@ def shares(outcome: Outcome) -> float:
 def _of_restitution(outcome: Outcome) -> Iterator[str]:
     """A number that no blow on a resting barrier gives by itself is explained on the outcome."""
     e, mu, f = or_none(outcome.restitution.edge.e), or_none(outcome.restitution.mu), outcome.motion.friction
-    told = outcome.validity.warnings
-    if e is not None and not LOWEST_E <= e <= HIGHEST_E and not any("e = " in words for words in told):
+    rigid, told = or_none(outcome.energy.rigid), {words[:3] for words in outcome.validity.warnings}
+    if e is not None and not LOWEST_E <= e <= HIGHEST_E and "e =" not in told:
         yield f"e = {e:.4g} without a word"
-    if mu is not None and abs(mu) > 1.2 * f + 0.02 and not any("mu = " in words for words in told):
+    if mu is not None and abs(mu) > 1.2 * f + 0.02 and "mu " not in told:
         yield f"mu = {mu:.4g} at f = {f:.4g} without a word"
-    rigid = or_none(outcome.energy.rigid)
-    if rigid is not None and rigid > 1 + LEDGER and not any("E_r is" in words for words in told):
+    if rigid is not None and rigid > 1 + LEDGER and "E_r" not in told:
         yield f"E_r = {rigid:.5f} without a word"

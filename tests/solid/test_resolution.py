@@ -1,6 +1,7 @@
 """A contact that the mesh does not resolve: what is withheld, what is said beforehand, what stays."""
 
 from dataclasses import replace
+from math import cos, radians, sin
 
 import pytest
 import solid_scenes as scenes
@@ -13,7 +14,7 @@ from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.scene.types import MEASURED_SETS, Barrier, Impact, Material, ProjectileSpec
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.solid.run import solve
 
@@ -74,3 +75,41 @@ def test_a_choice_that_differs_is_written_and_another_refused():
     assert "unresolved" not in to_dict(scene)["accuracy"]
     with pytest.raises(SceneError, match=r"accuracy\.unresolved"):
         shipped.replace(scene, "accuracy.unresolved", "hide")
+
+
+@pytest.fixture(scope="module")
+def thick():
+    """A thick steel rod that brushes an aluminium block: a contact of .8 mm radius on cells of 3.7 mm."""
+    base = scenes.scene("vibration", "friction", "barrier-elastoplastic", f=0.07, tip=3.67e-3, across=8)
+    steel = Material("mild steel", 210e9, 0.29, 7850.0, 350e6, 520e6)
+    soft = Material("aluminium", 70e9, 0.33, 2700.0, 270e6, 310e6)
+    angle = radians(56)
+    return replace(
+        base,
+        projectile=ProjectileSpec(0.158, 58.7e-3, "A", 13.2e-3, steel),
+        barrier=Barrier(soft),
+        impact=Impact(angle, -0.35 * cos(angle), -0.35 * sin(angle)),
+    )
+
+
+def test_a_thick_rod_on_coarse_cells_is_not_resolved(thick):
+    """One node slides down the slope of a facet: e = 1.43 where the reduced model has .70, and mu = 2.8 f."""
+    result = solve(plan(thick))
+    told = reduce(result)
+    assert told.restitution.edge.e > 1.3
+    assert told.restitution.mu > 2.5 * 0.07
+    assert any("is above 1" in words for words in told.validity.warnings)
+    assert any("beyond f = 0.07" in words for words in told.validity.warnings)
+    withheld = reduce(replace(result, plan=plan(shipped.replace(thick, "accuracy.unresolved", "withhold"))))
+    for value in (withheld.restitution.mu, withheld.restitution.edge.e, withheld.energy.rigid):
+        assert "the contact was not resolved" in value.reason
+        assert "Give accuracy.tip_size = 0.17 mm or less" in value.reason
+    assert not any(words.startswith(("e = ", "mu = ")) for words in withheld.validity.warnings)
+
+
+@pytest.mark.slow
+def test_a_thick_rod_on_the_advised_cells_is_resolved(thick):
+    """Half the size moves e by .018 and mu by 4 %."""
+    outcome = reduce(solve(plan(shipped.replace(thick, "accuracy.tip_size", "0.25 mm"))))
+    assert outcome.restitution.edge.e == pytest.approx(0.78, abs=0.03)
+    assert outcome.restitution.mu == pytest.approx(0.07, abs=0.006)

@@ -1,0 +1,95 @@
+"""How many cells the radius of a contact has at its peak, and how far e and mu are off with so many.
+
+Largest difference from the finest mesh: of four elastic rods (aluminium, steel, tungsten) and of three that
+yield, with 0.8 to 9 cells on meshes halved up to three times, and of the 13 measured sets on three or four
+(``plan/data/summary.json``).
+
+=========  ==========  ====  ====  ====  =================================
+bodies     cells       runs  e     mu    plastic and friction work, of E_0
+=========  ==========  ====  ====  ====  =================================
+elastic    1.1 to 1.6  3     .3 %  5 %   .007
+elastic    1.6 to 2.3  3     .3 %  3 %   .001
+elastic    2.3 to 3.6  3     .2 %  .3 %  .001
+elastic    3.6 to 6    3     0     1 %   0
+yielding   1.1 to 1.6  1     3 %   35 %  .22
+yielding   1.6 to 2.3  5     8 %   25 %  .10
+yielding   2.3 to 3.6  18    6 %   21 %  .12
+yielding   3.6 to 6    19    5 %   7 %   .05
+=========  ==========  ====  ====  ====  =================================
+
+The errors go down as one over the number n of cells. Extrapolated to vanishing cells, e and mu of the
+measured sets are off by 10 to 25 % over n (a yielding tip that sticks shears a skin as thick as a cell), mu
+of the elastic rods by 8 % over n. With fewer cells than `LEAST` a single node may slide down the slope of one
+facet: e was 1.4 instead of .8, and mu three times f.
+"""
+
+from __future__ import annotations
+
+from math import sqrt
+
+from fem_impact.physics.contact import ContactBodies, contact_estimate
+from fem_impact.plan.zones import levels_of
+from fem_impact.scene.fields import ACCURACY
+
+LEAST = {"elastic": 1.6, "yielding": 2.0}  # below it e, mu and all shares are not given
+ADVISED = {"elastic": 4.0, "yielding": 5.0}  # e and mu within 2 and 5 %
+ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number of cells
+RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
+COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
+FINEST = next(f.low for f in ACCURACY if f.key == "tip_size")  # m
+
+
+def kind(bodies: ContactBodies) -> str:
+    """Return which numbers of this module a contact has."""
+    return "yielding" if bodies.yielding else "elastic"
+
+
+def contact_radius(bodies: ContactBodies) -> float:
+    """Return the estimated radius of the contact, m: the geometric mean of its semi-axes."""
+    size = contact_estimate(bodies)
+    return sqrt(size.a_t * size.a_b)
+
+
+def expected_cells(bodies: ContactBodies) -> float:
+    """Return the cells over the radius that are expected on the mesh of the scene."""
+    scene = bodies.scene
+    h = scene.projectile.diameter / scene.accuracy.across / 2 ** levels_of(scene)
+    return float(contact_radius(bodies) / h + RIM)
+
+
+def size_for(bodies: ContactBodies, cells: float, radius: float | None = None) -> float:
+    """Return the tip size, m, with so many cells over a radius, m, by default the estimated one.
+
+    Halving comes as near to it as it can: the cells may be a factor of sqrt(2) larger or smaller.
+    """
+    scene = bodies.scene
+    widest = COARSEST * scene.projectile.diameter / scene.accuracy.across
+    return min((contact_radius(bodies) if radius is None else radius) / (cells - RIM), widest)
+
+
+def advice(bodies: ContactBodies, radius: float | None = None) -> str:
+    """Return what to give so that a contact, of a radius, m, if that is known, is resolved."""
+    h = size_for(bodies, ADVISED[kind(bodies)], radius)
+    if h < FINEST:
+        return "No tip size resolves it: use the modal fidelity"
+    return f"Give accuracy.tip_size = {h * 1e3:.2g} mm or less"
+
+
+def widest_tip_size(bodies: ContactBodies) -> float:
+    """Return the largest ``accuracy.tip_size``, m, two digits, that just resolves the estimated contact.
+
+    Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
+    """
+    return float(f"{size_for(bodies, LEAST[kind(bodies)]) / sqrt(2):.1e}")
+
+
+def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
+    """Return a sentence when the mesh may not resolve the contact."""
+    scene = bodies.scene
+    if expected_cells(bodies) >= LEAST[kind(bodies)] or scene.accuracy.target is not None:
+        return ()  # a target chooses its own mesh
+    h = scene.projectile.diameter / scene.accuracy.across / 2 ** levels_of(scene)
+    return (
+        f"The contact, about {contact_radius(bodies) * 1e3:.2g} mm in radius, may be too narrow for elements "
+        f"of {h * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. {advice(bodies)}.",
+    )
