@@ -5,17 +5,22 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from invariants import faults, is_resolved
+from invariants import HIGHEST_E, LOWEST_E, faults, is_resolved
 
 from fem_impact.errors import FemImpactError
+from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
+from fem_impact.plan.cells import ADVISED, FINEST, kind, size_for
+from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.types import Scene
 
 FINISHED, UNRESOLVED, ENDED, REFUSED, DEAR = "finished", "not resolved", "ended", "refused", "over budget"
 SLENDER, BRISK = 3.0, 0.5  # length over diameter, m/s
+COARSEST = 10e-3  # m, largest tip size that a scene may state
+LITTLE = 0.1  # of e, by which half the tip size may move one that is out of the plain range
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +38,13 @@ class Case:
     def slender(self) -> bool:
         """Whether it is one of those of which two of three must finish: a slender rod at .5 m/s or more."""
         rod, impact = self.scene.projectile, self.scene.impact
-        return rod.length >= SLENDER * rod.diameter and impact.v_n**2 + impact.v_t**2 >= BRISK**2
+        brisk = impact.v_n**2 + impact.v_t**2 >= BRISK**2
+        return brisk and rod.length >= SLENDER * rod.diameter
+
+    @property
+    def no_impact(self) -> bool:
+        """Whether it was refused because its tip does not come down, or would be crushed as a whole."""
+        return self.end == REFUSED and any(word in self.reason for word in ("lifts the", "would press"))
 
 
 def run(scene: Scene, fidelity: str) -> Case:
@@ -46,6 +57,62 @@ def run(scene: Scene, fidelity: str) -> Case:
     if told.finished:
         end = FINISHED if is_resolved(outcome) else UNRESOLVED
     return Case(scene, fidelity, end, told.stopped_because, tuple(faults(outcome)), outcome)
+
+
+def run_solid(scene: Scene, budget: float, cells: float | None = None) -> Case:
+    """Compute a scene with so many cells over the contact's radius, if it takes at most a budget, s.
+
+    Without a number they are as many as the program advises.
+    """
+    try:
+        fine = with_cells(scene, cells)
+        cost = plan(fine).size.time
+    except FemImpactError as refusal:
+        return Case(scene, "solid", REFUSED, str(refusal))
+    if cost > budget:
+        return Case(fine, "solid", DEAR)
+    case = run(fine, "solid")
+    if case.end != FINISHED:
+        return case
+    return replace(case, faults=(*case.faults, *_beside_finer(case), *_beside_modal(case)))
+
+
+def with_cells(scene: Scene, cells: float | None) -> Scene:
+    """Return the scene with so many cells over the radius of its contact, by default as many as advised."""
+    bodies = plan(scene, "modal").bodies
+    size = size_for(bodies, cells or ADVISED[kind(bodies)])
+    size = min(max(size, FINEST), COARSEST, scene.projectile.diameter / 4)
+    return replace(scene, accuracy=replace(scene.accuracy, tip_size=size))
+
+
+def _beside_finer(case: Case) -> list[str]:
+    """A restitution that no plain blow gives is the same with half the tip size."""
+    e = restitution(case)
+    if e is None or LOWEST_E <= e <= HIGHEST_E:
+        return []
+    accuracy = replace(case.scene.accuracy, tip_size=case.scene.accuracy.tip_size / 2)
+    finer = restitution(run(replace(case.scene, accuracy=accuracy), "solid"))
+    if finer is not None and abs(finer - e) <= LITTLE * max(1.0, abs(e)):
+        return []
+    return [f"e = {e:.4g} is not confirmed with half the tip size: {finer}"]
+
+
+def _beside_modal(case: Case) -> list[str]:
+    """The tip rebounds in both models or in neither, or the outcome says why not."""
+    e, modal = restitution(case), restitution(run(case.scene, "modal"))
+    if e is None or modal is None or e * modal >= 0 or any("e = -" in w for w in _warnings(case)):
+        return []
+    return [f"e = {e:.4g}, but {modal:.4g} in the reduced model"]
+
+
+def restitution(case: Case) -> float | None:
+    """Return e with the arms of the edge; None where it is not known or the run did not finish."""
+    known = case.outcome is not None and case.end == FINISHED
+    return or_none(case.outcome.restitution.edge.e) if known and case.outcome else None
+
+
+def _warnings(case: Case) -> tuple[str, ...]:
+    return case.outcome.validity.warnings if case.outcome else ()
 
 
 def told(cases: Iterable[Case]) -> str:

@@ -2,16 +2,19 @@
 
 The environment variable ``FUZZ_SEED`` gives the seed, 1 without it. ``pytest -m slow tests/fuzz`` runs the
 many scenes, ``-k "modal and part3"`` a part of them; a session without ``-m slow`` takes a few cheap ones. It
-ends with the number of scenes that finished, were not resolved, refused or left out, by reason.
+ends with the number of scenes that finished, were not resolved, refused or left out, by reason. Scenes of the
+solid fidelity are computed on the tip size that the program advises, if by its estimate they take at most
+``FUZZ_BUDGET`` seconds of computing, 300 without it; all of them then take some three hours.
 """
 
 import os
 
 import numpy as np
 import pytest
-from census import run
+from census import DEAR, FINISHED, REFUSED, run, run_solid
 from random_scenes import one_of, random_rod, random_scene
 
+BUDGET = float(os.environ.get("FUZZ_BUDGET", "300"))
 SEED = int(os.environ.get("FUZZ_SEED", "1"))
 RODS = 4  # of which a part of the modal scenes takes one: modes take seconds, an impact takes milliseconds
 
@@ -47,3 +50,30 @@ def test_modal(numbers, cases):
     random = np.random.default_rng([SEED, numbers.start])
     choice = one_of([random_rod(random) for _ in range(RODS)])
     held(cases, [run(random_scene(SEED, number, choice), "modal") for number in numbers])
+
+
+def test_solid_of_cheap_scenes(cases):
+    """The first two that take less than a second and a half of computing with three cells over the radius."""
+    cheap = []
+    for number in range(300):
+        scene = random_scene(SEED, number)
+        if scene.projectile.length < 5 * scene.projectile.diameter and len(cheap) < 2:
+            case = run_solid(scene, 1.5, cells=3.0)
+            cheap += [case] if case.end not in (DEAR, REFUSED) else []
+    held(cases, cheap)
+    assert cheap
+
+
+@pytest.mark.parametrize("numbers", parts(0, 200, 20))
+def test_solid(numbers, cases):
+    held(cases, [run_solid(random_scene(SEED, number), BUDGET) for number in numbers])
+
+
+@pytest.mark.slow
+def test_most_slender_scenes_finish_resolved(cases):
+    """Of all in this session that are an impact of the tip: refusing for its size is no way to pass."""
+    slender = [case for case in cases if case.fidelity == "solid" and case.slender and not case.no_impact]
+    if len(slender) < 60:
+        pytest.skip("needs the solid scenes of this session")
+    done = [case for case in slender if case.end == FINISHED]
+    assert len(done) >= 2 / 3 * len(slender)
