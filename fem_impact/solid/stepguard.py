@@ -79,6 +79,7 @@ class StepGuard:
 
     Attributes
     ----------
+    crushed : of the first step, below which a run ends
     first : (zones,) their stable steps at the start, s
     places : (m, 8, 3) unknowns of the yielding elements; starts : (zones,) where each zone's begin
     steps : (zones,) last steps found, with the body's safety factor, s; square : (m,) the elements' gradient
@@ -89,6 +90,7 @@ class StepGuard:
     moving: ClassVar[tuple[str, ...]] = ("steps", "square", "allowed", "smallest")
     model: Model
     every: int = 50
+    crushed: float = SMALLEST
     first: Array = field(init=False)
     places: Ints = field(init=False)
     starts: Ints = field(init=False)
@@ -126,9 +128,9 @@ class StepGuard:
         # nine drops was over .94 of the limit at the end of its look (1.04 without, at 100 steps a look)
         state.dt_next = self.allowed * min(1.0, self.allowed / before)
         self.smallest = min(self.smallest, state.dt_next)
-        if self.allowed < SMALLEST * self.model.step:
+        if self.allowed < self.crushed * self.model.step:
             place = self._where(state, int(np.argmax(now)))
-            self.reason = f"An element was crushed to under {SMALLEST:g} of its step {place} {REMEDY}"
+            self.reason = f"An element was crushed to under {self.crushed:g} of its step {place} {REMEDY}"
 
     def _find(self, x: Array, now: Array) -> float:
         """Return the stable step, s, where the elements' gradient numbers are ``now``."""

@@ -4,6 +4,22 @@ Printed: final length 21.42 to 21.43 mm and foot radius 7.22 to 7.23 mm for copp
 m/s, E 117 GPa, nu .35, rho 8930, yield 400 MPa, hardening 100 MPa, 80 us (Foulk et al. 2021, Simo 1992). A
 law without rate has no length of its own, so a larger bar of the same shape ends in the same shape. Any other
 bar is held to an axisymmetric code (`reference.taylor`) that gives 21.46 and 7.20 mm for the printed one.
+
+Without hardening nothing keeps the foot from thinning: its cells at the axis end at a hundredth of their
+height, and the foot is a lip that grows with finer rows. The bar of Abaqus' benchmark manual (impact of a
+copper rod: 110 GPa, 0.3, 8970 kg/m3, 314 MPa without hardening), final length and foot radius, mm:
+
+=========================================  ==============  ==============  ==============
+cells over the radius                      2               3               4
+=========================================  ==============  ==============  ==============
+reference, square cells (6: 18.63, 9.39)   18.895, 8.976   18.745, 9.257   18.686, 9.325
+solver, 20 slices                                          18.961, 9.175   18.812, 9.276
+solver, 48 slices                                          18.862, 9.397   18.711, 9.521
+solver, 96 slices                                                          18.687, 9.588
+=========================================  ==============  ==============  ==============
+
+So lengths differ by the cells over the radius. The foot of such a bar is judged within what halving the
+reference's cells changes, its error if that is of first order.
 """
 
 from __future__ import annotations
@@ -36,7 +52,9 @@ LENGTH, TIME = 32.4e-3, 80e-6
 FINAL, FOOT = 21.42e-3 / LENGTH, 7.22e-3 / 3.2e-3
 NEAR, FOOT_NEAR = 0.06e-3 / LENGTH, 0.08e-3 / 3.2e-3
 SLENDER, HARDEST = (3.0, 20.0), 1.6  # length over radius; rho v^2 over the yield stress
+CRUSHED = 2e-3  # of the first step: at the foot of a bar without hardening it falls to 0.014 and stays there
 CAUTION = 0.8  # the whole bar flows: with the full step coarse cells near the foot came to grow unstable
+CELLS = 4  # over the radius in the reference
 TRIPS = 3.0  # round trips of the elastic wave that are followed at least
 
 
@@ -87,6 +105,12 @@ def _printed(p: Values, length: float, foot: float) -> list[Check]:
     ]
 
 
+def _reference(p: Values, time: float, cells: int) -> tuple[float, float]:
+    """Return the reference's length and foot radius, m, at a time, s, with so many cells over the radius."""
+    metal = Metal(p["E"], p["nu"], p["rho"], p["yield_stress"], p["hardening"])
+    return taylor_bar(metal, p["length"], p["radius"], p["speed"], time, cells)
+
+
 def solve(p: Values) -> Solved:
     """Strike the wall and compare the final shape.
 
@@ -109,13 +133,13 @@ def solve(p: Values) -> Solved:
     )
     model, time = _model(p), _time(p)
     state, energy = model.initial_state(), Until(model.ledger(), time, every=50)
-    follow(model, state, energy, every=2)
+    follow(model, state, energy, every=2, crushed=CRUSHED)
     length, foot = _shape(model, state.x[model.layout.rod], p["radius"])
-    metal = Metal(p["E"], p["nu"], p["rho"], p["yield_stress"], p["hardening"])
-    exact = taylor_bar(metal, p["length"], p["radius"], p["speed"], time)
+    exact = _reference(p, time, CELLS)
+    near = FOOT_NEAR * p["radius"] if p["hardening"] else abs(exact[1] - _reference(p, time, CELLS // 2)[1])
     checks = [
         Check("final length", "m", length, exact[0], NEAR * p["length"], "absolute"),
-        Check("foot radius", "m", foot, exact[1], FOOT_NEAR * p["radius"], "absolute"),
+        Check("foot radius", "m", foot, exact[1], near, "absolute"),
         *_printed(p, length, foot),
         Check("energy ledger / E_0", "1", energy.ledger.worst / energy.ledger.start, 0.0, 1e-3, "at most"),
     ]

@@ -12,7 +12,7 @@ from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
-from fem_impact.solid.stepguard import StepGuard
+from fem_impact.solid.stepguard import SMALLEST, StepGuard
 
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
@@ -74,15 +74,17 @@ class Until:
         return state.time >= self.end or self.done()
 
 
-def follow(model: Model, state: State, until: Until, every: int) -> None:
+def follow(model: Model, state: State, until: Until, every: int, crushed: float = SMALLEST) -> None:
     """March a body that yields to its end, the step following its cells ``every`` so many steps.
+
+    The run ends where the step falls below ``crushed`` of the first.
 
     Raises
     ------
     RunError
         If a cell folds or is crushed.
     """
-    guard = StepGuard(model, every)
+    guard = StepGuard(model, every, crushed)
     march(model, state, [guard, until])
     if guard.reason:
         raise RunError(guard.reason)

@@ -6,6 +6,7 @@ from fem_impact.errors import RunError, SceneError
 from fem_impact.verify.catalogue import verify
 
 COARSE = {"slices": 20, "across": 6}
+PERFECT = {"E": "110 GPa", "nu": 0.3, "rho": 8970, "yield_stress": "314 MPa", "hardening": 0.0}
 
 
 def checks(found):
@@ -30,6 +31,14 @@ def test_another_metal_shape_and_speed():
     assert found["energy ledger / E_0"].passed
 
 
+def test_a_bar_without_hardening_goes_on_though_its_foot_thins():
+    """Its smallest stable step falls to 0.014 of the first, where other runs end as crushed."""
+    found = checks(verify("taylor", {**PERFECT, "slices": 48, "time": "42 us"}))
+    assert abs(found["final length"].error) < 0.2e-3
+    assert found["foot radius"].passed
+    assert found["energy ledger / E_0"].passed
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [({"speed": 300.0}, "cells are crushed"), ({"radius": "1 mm"}, "3 to 20 times the radius")],
@@ -40,7 +49,7 @@ def test_a_bar_that_the_reference_does_not_cover_is_refused(change, words):
 
 
 def test_a_run_that_its_guard_has_stopped_is_no_result(monkeypatch):
-    monkeypatch.setattr("fem_impact.solid.stepguard.SMALLEST", 0.99)
+    monkeypatch.setattr("fem_impact.verify.taylor_bar.CRUSHED", 0.99)
     with pytest.raises(RunError, match="crushed"):
         verify("taylor", COARSE)
 
@@ -58,6 +67,7 @@ def test_the_bar_reaches_the_printed_shape():
         {"speed": 265.0, "slices": 64},
         {"length": "20 mm", "radius": "4 mm", "slices": 48},
         {"length": "60 mm", "slices": 64, "hardening": 0.0, "speed": 150.0},
+        PERFECT,
         {"nu": 0.2, "hardening": "1 GPa", "yield_stress": "300 MPa", "slices": 48, "speed": 180.0},
     ],
 )
