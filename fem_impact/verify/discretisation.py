@@ -30,6 +30,16 @@ def lean_error(size: float, half: float) -> float:
     return min(1.0, 2 * size / half)
 
 
+def boundary_error(reach: float, wave: float) -> float:
+    """Return the relative error of what a block's boundary at ``reach``, m, radiates.
+
+    Its springs and dashpots are those of a slow force: the error goes as (k r)^2, with the wave number k of
+    shear waves that run ``wave``, m, while the contact lasts, half a period. Balls at 0.1 to 8 m/s radiate
+    1.2 to 2 times that too much.
+    """
+    return 2 * (pi * reach / wave) ** 2
+
+
 def radiation_error() -> float:
     """Return the relative error of what a block radiates, found 1 to 13 % high: the contact is no point."""
     return 0.15

@@ -32,7 +32,7 @@ import meshes
 from fem_impact.errors import SceneError
 from fem_impact.fem.flight import flight
 from fem_impact.reference.hertz import contact_modulus
-from fem_impact.reference.rod_end import AxialImpact, end_law, rod_impact, sears
+from fem_impact.reference.rod_end import AxialImpact, bar_speed, end_law, rod_impact, sears
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
@@ -40,12 +40,14 @@ from fem_impact.solid.rodview import modes_of
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import Block, FreeBody, body_model, placed
+from fem_impact.verify.discretisation import contact_error
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import block_under, contact_zone, levels_for_radius, run_strike
 
-FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4
+FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4  # the first for the coarsest cells
 AFTER = 1.1  # contact times that are followed
 SLENDER, CONTACT = (3.5, 100.0), (5e-3, 0.3)  # length over diameter; contact radius over the rod's and tip's
+LONGEST = 1.6  # nose over the rod's radius; the study's 3 mm on 19 mm have 1.58
 LARGEST = 1.3  # contact radii over the plain one's that the law of the round end covers
 PARABOLA = 200  # points of the meridian
 
@@ -95,7 +97,8 @@ def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
 def _allow(p: Values) -> None:
     """Refuse a rod that is no rod, or whose round end is a needle."""
     steel.slender(p, "diameter", *SLENDER)
-    within(p, "tip_radius", p["diameter"] / 4, inf, "m", "a nose of more than a radius is no end of a rod.")
+    least = p["diameter"] / 4 / LONGEST
+    within(p, "tip_radius", least, inf, "m", f"a nose of more than {LONGEST:g} radii is no end of a rod.")
 
 
 def _small(p: Values, touch: float) -> None:
@@ -109,6 +112,18 @@ def _small(p: Values, touch: float) -> None:
             value=p["speed"],
             remedy=f"Take a {'lower' if share > CONTACT[1] else 'higher'} speed.",
         )
+
+
+def _force_error(p: Values, touch: float, exact: AxialImpact) -> float:
+    """Return the relative error of the largest force that cells and the end law make.
+
+    Force goes as stiffness to 2/5 where the rod moves as a whole, and less where it is long. The inertia of
+    the nose, which the end law leaves out, is a share of R / (c0 t_c).
+    """
+    base = p["diameter"] / p["across"]
+    cell = base / 2 ** levels_for_radius(base, touch, p["cells"])
+    nose = p["diameter"] / 2 / (bar_speed(p["E"], p["rho"]) * exact.duration)
+    return min(FORCE, 0.4 * contact_error(cell, touch) + nose)
 
 
 def solve(p: Values) -> Solved:
@@ -130,7 +145,7 @@ def solve(p: Values) -> Solved:
     vibration = _vibration(model, found.state) / (0.5 * found.motion.mass * p["speed"] ** 2)
     note = f"for a / R far below 1, here {2 * touch / p['diameter']:.3f}"
     checks = (
-        Check("largest force", "N", found.force, exact.force, FORCE),
+        Check("largest force", "N", found.force, exact.force, _force_error(p, touch, exact)),
         Check("contact time", "s", found.duration, exact.duration, TIME),
         Check("vibration / E_0", "1", vibration, exact.vibration, VIBRATION, "absolute"),
         Check.shown("force, plain Sears", "N", found.force, plain.force, note),

@@ -102,12 +102,18 @@ def contact_zone(radius: float, depth: float) -> Zone:
     return Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -depth]), np.array([half, half, depth]))
 
 
+def block_reach(radius: float, base: float) -> float:
+    """Return how far the faces of a block lie from the middle of a contact of ``radius``, m."""
+    return REACH * radius + max(MARGIN * radius, 2 * base)
+
+
 def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> HexMesh:
     """Return a block whose cells of edge ``base`` are split as often as the tip's, for a contact radius.
 
     The tip moves on by ``slide``, m, towards -t while it touches.
     """
-    half, around = REACH * radius, max(MARGIN * radius, 2 * base)
+    half = REACH * radius
+    around = block_reach(radius, base) - half
     low, high = np.array([-half - slide, 0.0, -radius]), np.array([half, half, 0.0])
     zone = Zone(np.zeros(3), np.eye(3), low, high)
     low, high = low - around, high + around

@@ -22,10 +22,12 @@ def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
 
 
 def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
-    found = errors(verify("hertz", {"cells": 3, "across": 8, "speed": 4.0, "nu": 0.2}))
+    values = {"cells": 3, "across": 8, "speed": 2.0, "nu": 0.2}
+    done = verify("hertz", values)
+    found, radiated = errors(done), next(c for c in done.checks if c.name.startswith("radiated"))
+    assert radiated.passed and radiated.tolerance < 0.09
     assert abs(found["largest force"]) < 0.02
     assert abs(found["contact time"]) < 0.02
-    assert abs(found["radiated energy / E_0"]) < 0.15
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
 
 
@@ -53,7 +55,7 @@ def test_the_closing_loss_shrinks_with_the_cells():
         ("hertz", {"speed": 1e-3}, "0.005 to 0.12 of the ball"),
         ("oblique-sphere", {"speed": 100.0}, "0.005 to 0.12 of the ball"),
         ("sears", {"speed": 50.0}, "Take a lower speed"),
-        ("sears", {"tip_radius": "3 mm"}, "a nose of more than a radius"),
+        ("sears", {"tip_radius": "2.9 mm"}, "a nose of more than 1.6 radii"),
         ("sears", {"length": "50 mm"}, "3.5 to 100 times the diameter"),
         ("thornton", {"slowest": 1e-3}, "nothing yields"),
         ("thornton", {"fastest": 2.0}, "above the slowest"),
