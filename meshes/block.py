@@ -20,12 +20,11 @@ def block(
     low: Sequence[float] | FloatArray,
     high: Sequence[float] | FloatArray,
     size: float,
-    zone: Zone | None = None,
-    levels: int = 0,
+    zones: Sequence[Zone] = (),
     *,
     buffer: int = 2,
 ) -> HexMesh:
-    """Mesh a block with equal box cells, refined around a zone.
+    """Mesh a block with equal box cells, refined around zones.
 
     Parameters
     ----------
@@ -33,7 +32,7 @@ def block(
         Corners in (t, b, n); low[1] and high[2] are 0: the symmetry plane and the top.
     size : float, m
         Wanted edge of the base cells; the counts are rounded, so edges differ a little from it.
-    zone, levels, buffer
+    zones, buffer
         See `refine`.
 
     Raises
@@ -52,7 +51,7 @@ def block(
     axes = [np.linspace(lo[i], hi[i], counts[i] + 1) for i in range(3)]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     base = from_cells(grid, box_cells(counts), _tag)
-    mesh = base if zone is None else refine(base, zone, levels, buffer=buffer)
+    mesh = refine(base, zones, buffer=buffer)
     require_positive(mesh)
     return mesh
 

@@ -1,4 +1,6 @@
-"""Local refinement of a mesh around a zone, 2:1 balanced, with ties at the level changes."""
+"""Local refinement of a mesh around zones, 2:1 balanced, with ties at the level changes."""
+
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -13,15 +15,15 @@ from meshes.zone import Zone
 __all__ = ["reach", "refine"]
 
 
-def reach(size: FloatArray | float, level: int, levels: int, buffer: int = 2) -> FloatArray:
-    """Distance from the zone up to which cells are split into `level`: `buffer` cells around finer ones.
+def reach(size: FloatArray | float, level: int, finest: int, buffer: int = 2) -> FloatArray:
+    """Distance from a zone of level `finest` up to which cells are split into `level`.
 
     Parameters
     ----------
     size : (m,) float64 or float, m
         Size of the cells to be split.
-    level, levels : int
-        Level of the cells after the split; the finest level.
+    level, finest : int
+        Level of the cells after the split; level of the cells in the zone.
     buffer : int
         Whole cells kept between two level changes.
 
@@ -30,19 +32,18 @@ def reach(size: FloatArray | float, level: int, levels: int, buffer: int = 2) ->
     (m,) float64, m
     """
     made = 0.5 * np.asarray(size)
-    return np.asarray((buffer + 1) * made * (2.0 - 2.0 ** (level - levels + 1)))
+    return np.asarray((buffer + 1) * made * (2.0 - 2.0 ** (level - finest + 1)))
 
 
 def refine(
     mesh: HexMesh,
-    zone: Zone,
-    levels: int,
+    zones: Sequence[Zone],
     snap: Snap | None = None,
     *,
     buffer: int = 2,
     frozen: BoolArray | None = None,
 ) -> HexMesh:
-    """Split the cells in and around a zone.
+    """Split the cells in and around zones.
 
     Nodes and unsplit cells keep their numbers and order; new ones follow. A new node of a SKIN face whose
     cells are all split is moved onto the exact surface by `snap`; a hanging node lies on the coarse face
@@ -52,9 +53,8 @@ def refine(
     ----------
     mesh : HexMesh
         Unrefined.
-    zone : Zone
-    levels : int
-        Splits of a cell that touches the zone.
+    zones : sequence of Zone
+        The first for level 1, the last for the finest: a cell that touches one is split to its level.
     snap : callable, optional
         (k, 3) m to (k, 3) m.
     buffer : int
@@ -69,12 +69,10 @@ def refine(
     """
     if mesh.level.any():
         raise MeshError("the mesh is refined already: refine the base mesh once, with all its levels")
-    if levels < 0:
-        raise MeshError(f"levels must not be negative, not {levels}")
     fixed = np.zeros(len(mesh.cells), np.bool_) if frozen is None else frozen
     forest = Forest.plant(mesh, snap, fixed)
-    for level in range(1, levels + 1):
-        forest.split(_marks(forest, zone, level, levels, buffer))
+    for level in range(1, len(zones) + 1):
+        forest.split(_marks(forest, zones, level, buffer))
     hanging = hanging_births(forest)
     hangs = np.zeros(len(forest.points), np.bool_)
     for nodes, _ in hanging:
@@ -86,12 +84,14 @@ def refine(
     return HexMesh(forest.points, forest.cells, forest.level.astype(np.int8), tie, faces, tags)
 
 
-def _marks(forest: Forest, zone: Zone, level: int, levels: int, buffer: int) -> BoolArray:
+def _marks(forest: Forest, zones: Sequence[Zone], level: int, buffer: int) -> BoolArray:
     """(m,) True for the leaves to split for one level, those for the 2:1 balance included."""
     corners = forest.points[forest.cells]
     diagonals = corners[:, [0, 1, 2, 3]] - corners[:, [6, 7, 4, 5]]
     size = np.linalg.norm(diagonals, axis=2).mean(axis=1) / np.sqrt(3.0)  # edge of a cube of that diagonal, m
-    near = zone.gap(corners, 1e-6 * size) <= reach(size, level, levels, buffer)
+    near = np.zeros(len(corners), np.bool_)
+    for finest, zone in enumerate(zones[level - 1 :], level):
+        near |= zone.gap(corners, 1e-6 * size) <= reach(size, level, finest, buffer)
     marked = _balanced(forest, near & (forest.level == level - 1))
     if np.any(marked & forest.frozen):
         where = corners[marked & forest.frozen].mean(axis=(0, 1))

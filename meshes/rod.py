@@ -1,5 +1,6 @@
 """Half a rod with a shaped tip: a nose that follows its meridian, and a body of identical slices."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,9 +46,9 @@ def rod(
     length: float,
     across: int = 8,
     slice_length: float | None = None,
-    zone: Zone | None = None,
-    levels: int = 0,
+    zones: Sequence[Zone] = (),
     *,
+    contact: FloatArray | None = None,
     nose: bool = True,
     buffer: int = 2,
 ) -> RodMesh:
@@ -62,9 +63,11 @@ def rod(
         Cells over the diameter, even, at least 6.
     slice_length : float, m, optional
         Wanted height of the slices (default: diameter / across); adjusted to divide the body evenly.
-    zone, levels, buffer
-        See `refine`; the zone is in the rod frame. The nose is made long enough to hold the refinement, and
-        where its shape allows it the zone's centre lies in the middle of a finest cell.
+    zones, buffer
+        See `refine`; zones are in the rod frame. The nose is made long enough to hold the refinement.
+    contact : (3,) float64, m, optional
+        Point of the tip, by default the centre of the last zone: where its shape allows it, it lies in the
+        middle of a finest cell.
     nose : bool
         False: only slices, from a flat face at z = 0 (the meridian then gives the radius alone).
 
@@ -77,11 +80,13 @@ def rod(
     half = section(across)
     pitch = 2.0 * shape.radius / across
     wanted = pitch if slice_length is None else slice_length
-    if not nose and zone is not None:
-        raise MeshError("a rod of slices alone cannot be refined: leave the zone out or keep the nose")
-    near = None if zone is None else np.array([np.hypot(*zone.centre[:2]), zone.centre[2]])
-    split = shape.shoulder(near, pitch / 2**levels)
-    start = _body_start(shape, split, half.plug, pitch, zone, levels, buffer) if nose else 0.0
+    if not nose and zones:
+        raise MeshError("a rod of slices alone cannot be refined: leave the zones out or keep the nose")
+    if contact is None and zones:
+        contact = zones[-1].centre
+    near = None if contact is None else np.array([np.hypot(*contact[:2]), contact[2]])
+    split = shape.shoulder(near, pitch / 2 ** len(zones))
+    start = _body_start(shape, split, half.plug, pitch, zones, buffer) if nose else 0.0
     count = _slices(length, start, wanted, pitch)
     slab = (length - start) / count
     points, cells = _body(half, shape.radius, start, slab, count)
@@ -91,24 +96,25 @@ def rod(
         points, cells = _with_nose(half, shape, start, split, pitch, points, cells)
     mesh = from_cells(points, cells, half_body_tags)
     require_positive(mesh)
-    if zone is not None and levels:
+    if zones:
         frozen = np.arange(len(cells)) < body_cells.size
         full = shape.extended(length)
-        mesh = refine(mesh, zone, levels, full.snap, buffer=buffer, frozen=frozen)
+        mesh = refine(mesh, zones, full.snap, buffer=buffer, frozen=frozen)
         require_positive(mesh)
     return RodMesh(mesh, body_nodes, body_cells, slab, start)
 
 
 def _body_start(
-    shape: Meridian, split: float, plug: float, pitch: float, zone: Zone | None, levels: int, buffer: int
+    shape: Meridian, split: float, plug: float, pitch: float, zones: Sequence[Zone], buffer: int
 ) -> float:
     """Height z, m, at which the slices begin: above the tip's shape and all cells that are to be split."""
     inner = float(inner_corner(shape, split, plug)[1])
     start = max(shape.height + pitch, inner + 1.5 * pitch, 2.0 * shape.radius / 3.0)
-    if zone is None or levels == 0:
-        return start
-    top = float(zone.corners()[:, 2].max())
-    return max(start, top + float(reach(1.4 * pitch, 1, levels, buffer)) + 1.5 * pitch)
+    tops = (
+        float(zone.corners()[:, 2].max()) + float(reach(1.4 * pitch, 1, level, buffer)) + 1.5 * pitch
+        for level, zone in enumerate(zones, 1)
+    )
+    return max([start, *tops])
 
 
 def _slices(length: float, start: float, wanted: float, pitch: float) -> int:

@@ -1,5 +1,7 @@
 """Half a ball: a bulged cube inside shells, with a regular grid at the contact point."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from meshes.arrays import FloatArray, IntArray
@@ -19,9 +21,7 @@ CORE = 0.45
 BULGE = 0.35
 
 
-def sphere(
-    radius: float, across: int = 8, zone: Zone | None = None, levels: int = 0, *, buffer: int = 2
-) -> HexMesh:
+def sphere(radius: float, across: int = 8, zones: Sequence[Zone] = (), *, buffer: int = 2) -> HexMesh:
     """Mesh the half y >= 0 of a ball that touches the plane z = 0 at the origin.
 
     Parameters
@@ -29,7 +29,7 @@ def sphere(
     radius : float, m
     across : int
         Cells over the diameter, even, at least 6.
-    zone, levels, buffer
+    zones, buffer
         See `refine`.
 
     Raises
@@ -48,8 +48,7 @@ def sphere(
         arms = points - centre
         return np.asarray(centre + radius * arms / np.linalg.norm(arms, axis=1, keepdims=True))
 
-    if zone is not None:
-        mesh = refine(mesh, zone, levels, snap, buffer=buffer)
+    mesh = refine(mesh, zones, snap, buffer=buffer)
     require_positive(mesh)
     return mesh
 

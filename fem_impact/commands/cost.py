@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sys
 from contextlib import closing
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -43,9 +44,9 @@ def cost(options: Options) -> int:
     from fem_impact.files.lock import directory_lock
 
     with directory_lock(out):
-        study = _measured(scene, out, options, family)
+        study = _measured(scene, out, options, family, budget or inf)
         write_cost(study, out, names)
-    answers = advice(study.settings, names, target, budget)
+    answers = [*_left_out(scene, family, study, budget), *advice(study.settings, names, target, budget)]
     if target is not None:
         answers.append(pair_sentence(study.settings, study.quantities, names, target))
     if options.json:
@@ -73,7 +74,7 @@ def _family(scene: Scene, finest: str) -> list[Mesh]:
     from fem_impact.cost.settings import FAMILY
 
     least = quantity(finest, "length", "--finest") if finest else 0.0
-    sizes = [mesh.tip_size(scene.projectile.diameter) for mesh in FAMILY]
+    sizes = [mesh.sizes(scene)[0] for mesh in FAMILY]
     if least > sizes[1]:
         raise UsageError(
             "leaves less than two meshes.",
@@ -84,13 +85,25 @@ def _family(scene: Scene, finest: str) -> list[Mesh]:
     return [mesh for mesh, size in zip(FAMILY, sizes, strict=True) if size >= least]
 
 
-def _measured(scene: Scene, out: Path, options: Options, family: list[Mesh]) -> CostStudy:
+def _measured(
+    scene: Scene, out: Path, options: Options, family: list[Mesh], budget: float = inf
+) -> CostStudy:
     """Run all settings, or with ``--stored`` read those that have run."""
     from fem_impact.cost.measure import judge_stored, measure
 
-    work = judge_stored if options.stored else measure
     with closing(chosen_meter(options)) as meter:
-        return work(scene, out, meter, family)
+        if options.stored:
+            return judge_stored(scene, out, meter, family)
+        return measure(scene, out, meter, family, budget_s=budget)
+
+
+def _left_out(scene: Scene, family: list[Mesh], study: CostStudy, budget: float | None) -> list[str]:
+    """Return a sentence that names the settings that the budget left out."""
+    from fem_impact.cost.settings import ladder
+
+    done = {one.name for one in study.settings} | {failure["setting"] for failure in study.failures}
+    missing = [setting.name for setting in ladder(scene, family) if setting.name not in done]
+    return [f"Not run within {budget:.3g} s: {', '.join(missing)}."] if budget and missing else []
 
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:

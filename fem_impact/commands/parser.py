@@ -125,6 +125,12 @@ def _add_run(commands: Commands) -> None:
         default="",
         help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
     )
+    parser.add_argument(
+        "--budget",
+        default="",
+        metavar="TIME",
+        help="wall time for a scene that states its error and whose like was not measured (default: 2 min)",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
     parser.add_argument(
@@ -195,7 +201,10 @@ def _add_cost(commands: Commands) -> None:
         help="name the cheapest setting within an error, such as '2 %%'",
     )
     parser.add_argument(
-        "--budget", default="", metavar="TIME", help="name the best setting within a CPU time, such as '30 s'"
+        "--budget",
+        default="",
+        metavar="TIME",
+        help="run no more than takes so much CPU time, such as '30 s', and name the best setting",
     )
     parser.add_argument(
         "--of", default="", metavar="NAMES", help="quantities that count, as --of e,mu (default: e,E_vib)"

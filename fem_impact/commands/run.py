@@ -55,7 +55,7 @@ def run(options: Options) -> int:
     meter, before = chosen_meter(options), earlier(out)
     try:
         run_options = RunOptions(out, meter, options.resume, options.checkpoint)
-        outcome = simulate(scene, options.fidelity or None, run_options, cores())
+        outcome = simulate(scene, options.fidelity or None, run_options, cores(), budget_s=_budget(options))
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
     finally:
@@ -77,11 +77,19 @@ def _say_plan(scene: Scene, options: Options) -> None:
     if scene.accuracy.target is None:
         sentence = "" if options.fidelity in ("rigid", "modal") else _long_run(scene)
     else:
-        from fem_impact.cost.to_target import choose_setting
+        from fem_impact.cost.to_target import settle
 
-        sentence = choose_setting(scene, options.fidelity or None, cores()).sentence
+        sentence = settle(scene, options.fidelity or None, cores(), _budget(options)).sentence
     if sentence and not options.quiet:
         sys.stderr.write(f"{sentence}\n")
+
+
+def _budget(options: Options) -> float:
+    """Return the wall time, s, of ``--budget``, for a scene that states the error it allows."""
+    from fem_impact.assess.drop import quantity
+    from fem_impact.cost.to_target import BUDGET
+
+    return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
 
 
 def _long_run(scene: Scene) -> str:

@@ -185,7 +185,7 @@ def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -
     good = [one for one in pairs if all(one.band[name] <= target for name in names)]
     if good:
         return min(good, key=lambda one: one.two_cores_s)
-    cells = [[mesh["across"] * 2 ** mesh["levels"] for mesh in pair.meshes] for pair in pairs]
+    cells = [[mesh["across"] * 2 ** mesh["tip"] for mesh in pair.meshes] for pair in pairs]
     ranked = [(fine / coarse, fine) for fine, coarse in cells]
     return pairs[ranked.index(max(ranked))] if pairs else None
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass, replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,7 +14,7 @@ from fem_impact.cost.judge import Judged, front, judge
 from fem_impact.cost.limits import Placed, Truth, truths
 from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
-from fem_impact.errors import RunError
+from fem_impact.errors import RunError, UsageError
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
@@ -21,6 +22,7 @@ from fem_impact.jobs.job import Failure, Job, compute
 from fem_impact.jobs.run import Results, run_jobs, stored_results
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
+from fem_impact.plan.plan import plan
 from fem_impact.scene.write import to_dict
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-SCHEMA = "fem-impact/cost/2"
+SCHEMA = "fem-impact/cost/3"
 BRIEF = 5e-6  # s, end of the run that compiles the kernels: within the first contact
 
 
@@ -87,8 +89,11 @@ def measure(
     progress: ProgressMeter,
     family: Sequence[Mesh] = FAMILY,
     executor: Executor | None = None,
+    budget_s: float = inf,
 ) -> CostStudy:
     """Run what is not stored in ``out`` yet, one run at a time so that times are times.
+
+    Settings that do not fit into a processor time of ``budget_s``, s, as `RunSize` expects it, are left out.
 
     Raises
     ------
@@ -97,7 +102,7 @@ def measure(
     RunError
         Fewer than two meshes gave a result, so nothing is known of the limit.
     """
-    settings = ladder(scene, family)
+    settings = affordable(ladder(scene, family), budget_s)
     jobs = _jobs(settings)
     # a process of its own for every run: its peak memory is its own
     processes = LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor)
@@ -105,6 +110,31 @@ def measure(
         _compile(scene, process)
         results = run_jobs(jobs, out / STORE, progress, process)
     return conclude(scene, settings, results)
+
+
+def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
+    """Return the settings that fit into a processor time, s, taken in their order."""
+    taken: list[Setting] = []
+    spent: dict[str, float] = {}
+    for setting in settings:
+        new = {job.name: _expected(job) for job in _jobs([setting]) if job.name not in spent}
+        if sum(spent.values()) + sum(new.values()) <= budget_s:
+            spent |= new
+            taken.append(setting)
+    if sum(setting.kind == "mesh" for setting in taken) < 2:
+        need = sum(_expected(job) for job in _jobs([one for one in settings if one.kind == "mesh"][:2]))
+        raise UsageError(
+            "is too short for two meshes.",
+            key="--budget",
+            value=f"{budget_s:.3g} s",
+            remedy=f"Give some {need:.2g} s or more.",
+        )
+    return taken
+
+
+def _expected(job: Job) -> float:
+    """Return the processor time, s, that a run is expected to take; 0 of a reduced model."""
+    return plan(job.scene).size.time if job.fidelity == "solid" else 0.0
 
 
 def judge_stored(
@@ -157,7 +187,7 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
     if len(meshes) < 2:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    truth, plain = truths(list(meshes.values())), meshes.get(PLAIN)
+    truth, plain = truths(list(meshes.values())), meshes.get(PLAIN, [])[:1]  # the place of the changed runs
     judged = [
         judge(setting, runs[setting.name], truth, plain if setting.kind == "effect" else None)
         for setting in settings

@@ -9,7 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
 from fem_impact.jobs.job import Job
+from fem_impact.plan.cells import levels_of
 from fem_impact.plan.choose import active
+from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import replace_all
 
 if TYPE_CHECKING:
@@ -22,25 +24,33 @@ Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
 
 @dataclass(frozen=True, slots=True, order=True)
 class Mesh:
-    """Cells over the diameter of the body, and how often they are split at the tip.
+    """A mesh relative to that which a scene gets unless it states a size, see `levels_of`.
 
+    ``across`` are the cells over the diameter of the body; ``tip`` and ``barrier`` say how often more, or
+    less often, those of rod and barrier are split at the contact than the scene's own with 8 cells across.
     ``element`` and ``step`` are those of `Accuracy` where they are not the scene's own.
     """
 
     across: int
-    levels: int
+    tip: int
+    barrier: int
     element: Element | None = None
     step: float | None = None
 
-    def tip_size(self, diameter: float) -> float:
-        """Return the element size at the tip, m."""
-        return float(diameter / self.across / 2**self.levels)
+    def sizes(self, scene: Scene) -> tuple[float, float]:
+        """Return the element sizes of rod and barrier at the contact, m."""
+        diameter = scene.projectile.diameter
+        stateless = replace(scene.accuracy, across=OWN, tip_size=None, barrier_size=None)
+        levels, _ = levels_of(plan(replace(scene, accuracy=stateless), "modal").bodies)
+        tip, barrier = (diameter / self.across / 2 ** (levels + more) for more in (self.tip, self.barrier))
+        return tip, barrier
 
 
-# in order of the size at the tip, where meshes with 8 and with 12 cells across are similar
-FAMILY = (Mesh(8, 2), Mesh(12, 2), Mesh(8, 3), Mesh(12, 3))
+OWN = 8  # cells across of a scene that states none
+# from coarse to fine; the barrier's cells, which carry more of the error, are half as large as the rod's
+FAMILY = (Mesh(8, -1, 0), Mesh(12, -1, 0), Mesh(8, 0, 1))
 APART = 2.0  # least ratio of the sizes of a pair: extrapolation of closer meshes amplifies their scatter
-PLAIN = Mesh(8, 2)  # the coarsest: on it elements, steps and effects are changed
+PLAIN = FAMILY[0]  # the coarsest: on it elements, steps and effects are changed
 FINEST = FAMILY[-1]
 # shifts of a meshed barrier's grid along t, in cells at the contact, at each of which a mesh is run; the
 # finest mesh, which scatters least and costs most, at fewer
@@ -83,8 +93,9 @@ def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
 
 def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
     """Return the scene on a mesh, the grid of the barrier at a place."""
-    size = mesh.tip_size(scene.projectile.diameter)
-    changes: dict[str, Any] = {"across": mesh.across, "tip_size": f"{size * 1e3:.9g} mm", "grid_shift": place}
+    tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(scene))
+    changes: dict[str, Any] = {"across": mesh.across, "tip_size": tip, "grid_shift": place}
+    changes |= {"barrier_size": barrier} if "barrier-rigid" not in active(scene) else {}
     changes |= {"unresolved": "report"}  # an unresolved contact is an error of the setting, to be judged too
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
@@ -109,17 +120,19 @@ def _jobs(scene: Scene, mesh: Mesh, name: str) -> tuple[Job, ...]:
 
 
 def _name(scene: Scene, mesh: Mesh, label: str = "") -> str:
-    return f"solid {mesh.tip_size(scene.projectile.diameter) * 1e3:.3g} mm {label}".strip()
+    return f"solid {mesh.sizes(scene)[0] * 1e3:.3g} mm {label}".strip()
 
 
 def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Setting:
+    """Return the setting of one mesh; elements, steps and effects are changed at the first place alone."""
     name = _name(scene, mesh, label)
-    return Setting(name, kind, "solid", (_jobs(scene, mesh, name),), (mesh,))
+    jobs = _jobs(scene, mesh, name)
+    return Setting(name, kind, "solid", (jobs if kind == "mesh" else jobs[:1],), (mesh,))
 
 
 def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[Setting]:
     """Return all pairs of meshes with a ratio of sizes of `APART` or more."""
-    size = {mesh: mesh.tip_size(scene.projectile.diameter) for mesh in family}
+    size = {mesh: mesh.sizes(scene)[0] for mesh in family}
     settings = []
     for coarse, fine in combinations(family, 2):
         if size[coarse] / size[fine] > APART * (1 - 1e-9):

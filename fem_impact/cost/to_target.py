@@ -5,24 +5,23 @@ The costs were measured with `fem_impact.cost.measure` and ship with the package
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from functools import partial
-from itertools import chain, islice, zip_longest
+from itertools import chain, islice
 from math import hypot, inf, log, sqrt
 from typing import Any
 
-from fem_impact.cost.judge import Judged, cheapest, wall_seconds, worst
+from fem_impact.cost.judge import Judged, cheapest, worst
+from fem_impact.cost.lanes import below, side_by_side
 from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
 from fem_impact.cost.measure import CostStudy
+from fem_impact.cost.own_ladder import ALONE, OwnLadder
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
 from fem_impact.files.lock import directory_lock
-from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.options import RunOptions
-from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.plan.choose import active
@@ -32,7 +31,7 @@ from fem_impact.run import simulate as run
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Material, Scene
 
-SUMMARY = "fem-impact/cost-summary/2"
+SUMMARY = "fem-impact/cost-summary/3"
 
 STEEL = ("E", "rho", "yield", "ultimate over yield")
 # largest differences of a scene from one whose cost was measured; of ratios and sizes, of their logarithms
@@ -47,7 +46,11 @@ NEARNESS = {
     "friction f": 0.05,
     **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
-ALONE = Unknown("one mesh alone cannot estimate its own error")
+BUDGET = 120.0  # s of wall time for a scene whose like was not measured
+
+
+class NotMeasured(SceneError):
+    """No stored setting of a near scene meets the target."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,8 +149,10 @@ def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) 
 
     Raises
     ------
-    SceneError
+    NotMeasured
         No stored cost is near enough, or none of its settings meets the target.
+    SceneError
+        The fidelity does not know the quantities of a target.
     """
     target = scene.accuracy.target
     if target is None:
@@ -166,10 +171,10 @@ def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) 
     return ChosenSetting(target, best, name, worst(best, TARGETED), seconds * pace)
 
 
-def _too_far(scene: Scene, name: str, distance: float, differs: str) -> SceneError:
+def _too_far(scene: Scene, name: str, distance: float, differs: str) -> NotMeasured:
     how = "is another" if distance == inf else f"is {distance:.2g} times what is allowed away in its"
     allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
-    return SceneError(
+    return NotMeasured(
         f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
         "element, step and block_margin must be the same and max_time no shorter; allowed are differences "
         "(of logarithms where it is a ratio) of: "
@@ -187,7 +192,7 @@ def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
     if error == inf:
         problem = f"cannot be met: the {best.fidelity} fidelity does not know {quantities}."
         return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
-    return SceneError(
+    return NotMeasured(
         f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
         f"uncertain by {100 * error:.2g} % in {quantities}.",
         key="accuracy",
@@ -200,25 +205,50 @@ def _written(scene: Scene) -> str:
     return f"{100 * (scene.accuracy.target or 0):.3g} %"
 
 
+def settle(
+    scene: Scene, fidelity: str | None = None, workers: int = 1, budget_s: float = BUDGET
+) -> ChosenSetting | OwnLadder:
+    """Return the stored setting that meets the scene's target, or a ladder of its own where there is none.
+
+    Raises
+    ------
+    SceneError
+        The fidelity that is asked for does not know the quantities of a target.
+    """
+    try:
+        return choose_setting(scene, fidelity, workers)
+    except NotMeasured as missing:
+        if fidelity not in (None, "solid"):
+            raise
+        return OwnLadder(scene.accuracy.target or 0.0, budget_s, missing.problem)
+
+
 def simulate(
-    scene: Scene, fidelity: str | None = None, options: RunOptions = RunOptions(), workers: int = 1
+    scene: Scene,
+    fidelity: str | None = None,
+    options: RunOptions = RunOptions(),
+    workers: int = 1,
+    budget_s: float = BUDGET,
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
     A chosen setting runs each mesh at its places of the barrier's grid. The result is the outcome of the
     finer mesh at the first place, with the limits of two meshes, or the means of one, in its ``validity``.
     Files of the other runs stand below ``options.out``. With two or more ``workers`` a second process does
-    half of the runs.
+    half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
+    ``budget_s``, s, and the outcome says what they reached.
 
     Raises
     ------
     UsageError, SceneError, OutputPathError, ResultError, RunError
-        As `fem_impact.run.simulate.simulate` and `choose_setting`.
+        As `fem_impact.run.simulate.simulate` and `settle`.
     """
     if scene.accuracy.target is None:
         return run.simulate(scene, fidelity or "solid", options)
-    chosen = choose_setting(scene, fidelity, workers)
+    chosen = settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):
+        if isinstance(chosen, OwnLadder):
+            return chosen.simulate(scene, options, workers)
         meshes, wall_s = _runs(scene, chosen, options, workers)
         outcome = _stated(chosen, wall_s, meshes)
         if options.out is not None:
@@ -231,27 +261,15 @@ def _runs(
 ) -> tuple[list[Placed], float]:
     """Return the runs on each mesh of a chosen setting, or one of a reduced model, and their wall time, s.
 
-    The first run writes to ``options.out`` itself and reports its progress. With two ``workers`` every second
-    run is done in another process.
+    The first run writes to ``options.out`` itself and reports its progress.
     """
     alone = [replace(scene, accuracy=replace(scene.accuracy, target=None))]  # a reduced model has no mesh
     groups = [placed(scene, mesh) for mesh in chosen.meshes] or [alone]
-    out, work = options.out, []
-    for at, one in enumerate(chain.from_iterable(groups)):
-        own = replace(options, out=out and out / f"run-{at}", progress=None) if at else options
-        work.append(partial(run.simulate, one, chosen.setting.fidelity, own))
-    lanes = [work[0::2], work[1::2]] if workers > 1 and len(work) > 1 else [work]
-    with LocalProcesses(1) as process:
-        later = [process.submit(_in_turn, lane) for lane in lanes[1:]]
-        done = [_in_turn(lanes[0]), *(lane.result() for lane in later)]
-    runs = iter([run for turn in zip_longest(*done) for run in turn if run])
-    wall_s = max(sum(wall_seconds(run) for run in lane) for lane in done)
-    return [list(islice(runs, len(scenes))) for scenes in groups], wall_s
-
-
-def _in_turn(work: Sequence[Callable[[], Outcome]]) -> list[Outcome]:
-    """Do runs one after the other; a function of the module, since it is sent to another process."""
-    return [run() for run in work]
+    scenes = list(chain.from_iterable(groups))
+    own = [options, *(below(options, at) for at in range(1, len(scenes)))]
+    done, wall_s = side_by_side(scenes, chosen.setting.fidelity, own, workers)
+    runs = iter(done)
+    return [list(islice(runs, len(group))) for group in groups], wall_s
 
 
 def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> Outcome:

@@ -5,8 +5,9 @@ Element matrices are assembled in batches and never stored all at once.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+from math import sqrt
 from typing import Protocol
 
 import numpy as np
@@ -15,13 +16,15 @@ import scipy.sparse as sp
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
-from fem_impact.fem.geometry import HEAVY, POINTS, Geometry, build_geometry, rest_mass
+from fem_impact.fem.geometry import POINTS, Geometry, build_geometry, rest_mass
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
+from fem_impact.fem.mass_scaling import crossing_times, mass_factors, reference_time, scaled_rod
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import Plan
+from fem_impact.scene.types import Material
 from meshes import OUTER, HexMesh, RodMesh
 
 HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
@@ -110,16 +113,6 @@ def nose_and_whole(
     return nose, drawn.reduced((nose, rest), layout.body_shape[1])
 
 
-def skin_weight(barrier: HexMesh, h: float) -> Array:
-    """Return the mass factors (m,) of a barrier's cells, whose edge at the contact is ``h``, m.
-
-    A cell of height c h with c < `HEAVY` gets (`HEAVY` / c)^2 times its mass, so that its stable step is that
-    of a cell of height `HEAVY` h. These cells move no faster than the indentation grows.
-    """
-    z = barrier.points[barrier.cells][:, :, 2]
-    return np.asarray(np.maximum(1.0, HEAVY * h / np.ptp(z, axis=1)) ** 2)
-
-
 def assemble_masses(bodies: list[MeshedBody], layout: DofLayout) -> Array:
     """Return the lumped masses (size,), kg."""
     mass = np.zeros(layout.size)
@@ -164,34 +157,74 @@ class MeshedBodies:
         return rest_mass(self.geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
 
     @cached_property
-    def rod(self) -> MeshedBody:
+    def materials(self) -> dict[str, Material]:
+        """Return the materials of the meshed bodies."""
+        rod, barrier = self.scene.projectile.material, self.scene.barrier.material
+        return {"rod": rod, "barrier": barrier} if self.spec.meshed_barrier else {"rod": rod}
+
+    @cached_property
+    def nose(self) -> Bools:
+        """Return the mask (m,) of the rod's cells that are in no slice."""
+        nose = np.ones(len(self.geometry.rod.mesh.cells), dtype=bool)
+        nose[self.geometry.rod.body_cells] = False
+        return nose
+
+    @cached_property
+    def true_rod(self) -> MeshedBody:
         """Return the meshed rod with its exact mass.
 
         The mass that the flat faces of the mesh cut off the round skin is spread over the nose's cells.
         """
         g, yields = self.geometry, self.geometry.may_yield["rod"] & (self.spec.rod_law is not None)
-        steel, accuracy = self.scene.projectile.material, self.scene.accuracy
+        steel, accuracy = self.materials["rod"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
-        nose = np.ones(len(rod.mass), dtype=bool)
-        nose[g.rod.body_cells] = False
         missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
-        rod.mass[nose] *= 1 + missing / rod.mass[nose].sum()
+        rod.mass[self.nose] *= 1 + missing / rod.mass[self.nose].sum()
         return rod
 
     @cached_property
-    def barrier(self) -> MeshedBody | None:
-        """Return the barrier if it is meshed."""
+    def scaled_rod(self) -> tuple[MeshedBody, float]:
+        """Return the rod with the masses of the run, and the mass scaling in force."""
+        rod = self.true_rod
+        crossing = crossing_times(rod.mesh, rod.points, self.materials["rod"])
+        reference = reference_time(self.plan.zones, self.materials)
+        place, wanted = rod.points[rod.mesh.cells], self.scene.accuracy.mass_scaling
+        mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted)
+        return replace(rod, mass=mass), scaling
+
+    @property
+    def rod(self) -> MeshedBody:
+        """Return the rod with the masses of the run."""
+        return self.scaled_rod[0]
+
+    @cached_property
+    def true_barrier(self) -> MeshedBody | None:
+        """Return the barrier with its true masses if it is meshed."""
         g, mesh = self.geometry, self.geometry.barrier
         if mesh is None:
             return None
         yields = g.may_yield["barrier"] & (self.spec.barrier_law is not None)
-        steel, accuracy = self.scene.barrier.material, self.scene.accuracy
+        steel, accuracy = self.materials["barrier"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
-        barrier = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, *kinds)
-        if g.skin_rows:
-            barrier.mass[:] *= skin_weight(mesh, g.tip_size)[:, None]
-        return barrier
+        return make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, *kinds)
+
+    @cached_property
+    def barrier(self) -> MeshedBody | None:
+        """Return the barrier with the masses of the run if it is meshed; thin rows gain mass in any case."""
+        body, scaling = self.true_barrier, self.scaled_rod[1]
+        if body is None or (scaling == 1 and not self.geometry.skin_rows):
+            return body
+        crossing = crossing_times(body.mesh, body.points, self.materials["barrier"])
+        wanted = reference_time(self.plan.zones, self.materials) * sqrt(scaling)
+        return replace(body, mass=body.mass * mass_factors(crossing, wanted)[:, None])
+
+    @cached_property
+    def added_mass(self) -> Array:
+        """Return the masses of the run less the true ones (size,), kg."""
+        true = [self.true_rod, self.true_barrier] if self.true_barrier else [self.true_rod]
+        pairs = zip(self.bodies, true, strict=True)
+        return assemble_masses([replace(a, mass=a.mass - b.mass) for a, b in pairs], self.layout)
 
     @cached_property
     def bodies(self) -> list[MeshedBody]:
@@ -232,7 +265,15 @@ class MeshedBodies:
     def move_rod(self, t: float, n: float) -> None:
         """Shift the rod's start position by ``t`` and ``n``, m."""
         self.x[self.rod.places[:, [0, 2]]] += t, n
-        self.geometry.rod_points[:, [0, 2]] += t, n
+        self.geometry.rod_points[:, [0, 2]] = self.unmoved[:, [0, 2]] + (t, n)
+
+    @cached_property
+    def unmoved(self) -> Array:
+        """Return the rod's positions (n, 3), m, before `move_rod`.
+
+        Its stiffness is computed there, so that rods over all places of the barrier's grid share their modes.
+        """
+        return self.geometry.rod_points.copy()
 
     @cached_property
     def free_nodes(self) -> Ints:
@@ -242,7 +283,8 @@ class MeshedBodies:
     @cached_property
     def rod_stiffness(self) -> tuple[sp.csr_matrix, MassStiffness]:
         """Return both stiffnesses of the rod, N/m, see `nose_and_whole`."""
-        return nose_and_whole(self.rod, self.geometry.rod, self.drawn, self.layout)
+        unmoved = replace(self.rod, points=self.unmoved)
+        return nose_and_whole(unmoved, self.geometry.rod, self.drawn, self.layout)
 
     def rod_modes(self) -> RodModes:
         """Return the free modes of the rod."""

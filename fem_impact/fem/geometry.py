@@ -13,7 +13,7 @@ import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.zones import Zones, lowest_point
+from fem_impact.plan.zones import BUFFER, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
 
 if TYPE_CHECKING:
@@ -26,10 +26,6 @@ MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 
 # zone's box; cells in the corners of the box stay elastic. In the 13 sets on 0.59 mm, and four on 0.30 mm,
 # plastic strains above 1e-3 ended at .93 of the inscribed one, above 1e-5 at 1.13
 ROUND = 1.1
-# height, over the cell size, of the row whose stable step lower rows get by added mass, so that thin rows do
-# not set the run's step. With 0.8, e of t5b fell by .001 on 0.59 and 0.30 mm and the closing loss rose to
-# 4e-4 and 1.2e-4 of E_0; both grow with the square
-HEAVY = 0.65
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +38,7 @@ class Geometry:
     rod_points : (n, 3) float64, m; the rod's lowest point lies at t = 0, n = gap: that of the round
         surface over a conforming barrier, else the lowest node
     barrier : HexMesh or None
-    tip_size : finest cell edge, m; in the barrier along t and b
+    tip_size, barrier_size : finest cell edge of each body, m; that of the barrier along t and b
     conforming : whether the barrier flows under the whole contact, see `SurfaceContact`
     skin_rows : number of thin rows of cells at the top of the barrier
     may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
@@ -52,6 +48,7 @@ class Geometry:
     rod_points: Array
     barrier: HexMesh | None
     tip_size: float
+    barrier_size: float
     conforming: bool = False
     skin_rows: int = 0
     may_yield: Mapping[str, Bools] = field(default_factory=dict)
@@ -73,10 +70,16 @@ def build_geometry(
     scene: Scene, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
 ) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
-    body, h, (t, b, n) = projectile(scene), zones.tip_size, zones.half
+    body = projectile(scene)
     turn, lowest = to_barrier_frame(scene.impact.angle), lowest_point(scene)
-    zone = Zone(lowest, turn, np.array([-t - zones.reach, 0.0, -h]), np.array([t, b, n]))
-    rod = _rod(scene, zone, zones.levels)
+    rod = _rod(
+        scene,
+        lowest,
+        [
+            Zone(lowest, turn, np.array([-t - zones.reach, 0.0, -zones.base / 2**level]), np.array([t, b, n]))
+            for level, (t, b, n) in enumerate(zones.rod, 1)
+        ],
+    )
     if not vibrating:
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
@@ -86,7 +89,8 @@ def build_geometry(
     if meshed_barrier:
         barrier = _block(scene, zones)
         may_yield["barrier"] = _round(barrier, barrier.points, zones.along, zones.half)
-    return Geometry(rod, points, barrier, h, zones.conforming, zones.skin_rows, may_yield)
+    sizes = zones.tip_size, zones.barrier_size
+    return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield)
 
 
 def rest_points(start: float, length: float, diameter: float) -> Array:
@@ -105,11 +109,13 @@ def rest_mass(start: float, length: float, diameter: float, rho: float) -> float
     return rho * pi * diameter**2 / 8 * (length - start)
 
 
-def _rod(scene: Scene, zone: Zone, levels: int) -> RodMesh:
+def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
     body = projectile(scene)
     try:
-        return meshes.rod(body.meridian(), body.length, scene.accuracy.across, zone=zone, levels=levels)
+        return meshes.rod(
+            body.meridian(), body.length, scene.accuracy.across, None, zones, contact=lowest, buffer=BUFFER
+        )
     except meshes.MeshError as error:
         remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy) from None
@@ -128,22 +134,26 @@ def _require_tip_first(points: Array, base: float) -> None:
 
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
-    """Return the mask (m,) of the finest cells that reach into an ellipsoid about the contact.
+    """Return the mask (m,) of the split cells that reach into an ellipsoid about the contact.
 
     The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
     """
     core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
     away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
-    return np.asarray(mesh.finest & (away < ROUND))
+    return np.asarray((mesh.level > 0) & (away < ROUND))
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:
     """Return the barrier block; its fine zone extends towards -t under the path of the rod."""
-    h, base, (t, b, n) = zones.tip_size, zones.base, zones.half
-    n += meshes.thin_skin_rise(zones.skin_rows) * h
-    box = Zone(np.zeros(3), np.eye(3), np.array([-t - zones.along, 0.0, -n]), np.array([t, b, 0.0]))
+    h, base = zones.barrier_size, zones.base
+    rise = meshes.thin_skin_rise(zones.skin_rows) * h
+    boxes = [
+        Zone(np.zeros(3), np.eye(3), np.array([-t - zones.along, 0.0, -n - rise]), np.array([t, b, 0.0]))
+        for t, b, n in zones.barrier
+    ]
+    t, b, n = zones.half
     margin = scene.accuracy.block_margin  # springs replace the half-space beyond
-    low = np.array([-t - zones.along - margin, 0.0, -n - margin])
+    low = np.array([-t - zones.along - margin, 0.0, -n - rise - margin])
     high = np.array([t + margin, b + margin, 0.0])
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
@@ -153,6 +163,6 @@ def _block(scene: Scene, zones: Zones) -> HexMesh:
             value=f"{margin * 1e3:g} mm",
             remedy="Give less: a third of the diameter does.",
         )
-    coarse = meshes.block(low, high, base, zone=box, levels=zones.levels)
+    coarse = meshes.block(low, high, base, boxes, buffer=BUFFER)
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
     return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))

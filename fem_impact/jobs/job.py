@@ -52,7 +52,7 @@ class Job:
     @property
     def kind(self) -> Kind:
         """Fidelity and tip size, m (0 without a mesh): jobs of one kind cost about the same."""
-        return self.fidelity, self.scene.accuracy.tip_size if self.fidelity == "solid" else 0.0
+        return self.fidelity, (self.scene.accuracy.tip_size or 0.0) if self.fidelity == "solid" else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -120,7 +120,7 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         surface=Surface("custom", 0.0, 0.0, 0.0, "no friction"),
         impact=Impact(0.0, -1.0, 0.0),
         effects=("vibration", "barrier-rigid"),
-        accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across),
+        accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
     meshed = MeshedBodies(plan(scene))
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh

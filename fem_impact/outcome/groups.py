@@ -213,6 +213,11 @@ class Energy:
         True,
     )
     residual: float = key("residual_over_E_0", "-", "What the ledger fails to close by" + SHARE)
+    added_mass: Num = key(
+        "E_added_mass_over_E_0",
+        "-",
+        "Largest kinetic energy of the mass added by mass scaling, part of the kinetic energies" + SHARE,
+    )
 
     @property
     def plastic(self) -> Num:
@@ -299,4 +304,8 @@ class RunCost:
     setup_cpu: Num = key("setup_cpu_s", "s", "Processor time around the time loop, compilation apart.")
     peak_memory: Num = key("peak_memory_MB", "MB", "Largest resident memory, in 10^6 bytes.")
     min_step: Num = key("min_step_s", "s", "Smallest time step.")
-    tip_size: Num = key("tip_size_m", "m", "Element edge asked for at the tip.")
+    tip_size: Num = key("tip_size_m", "m", "Smallest element edge of the rod, at its tip.")
+    barrier_size: Num = key("barrier_size_m", "m", "Smallest element edge of the barrier along its surface.")
+    mass_scaling: Num = key(
+        "mass_scaling", "-", "Square of the step over that with true masses; 1: masses are true."
+    )

@@ -25,10 +25,9 @@ facet: e was 1.4 instead of .8, and mu three times f.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import log2, sqrt
 
-from fem_impact.physics.contact import ContactBodies, contact_estimate
-from fem_impact.plan.zones import levels_of
+from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_estimate
 from fem_impact.scene.fields import ACCURACY
 
 LEAST = {"elastic": 1.6, "yielding": 2.0}  # below it e, mu and all shares are not given
@@ -50,11 +49,32 @@ def contact_radius(bodies: ContactBodies) -> float:
     return sqrt(size.a_t * size.a_b)
 
 
+def levels_of(bodies: ContactBodies) -> tuple[int, int]:
+    """Return how often the body's cells are split at the contact, for the rod and for a meshed barrier.
+
+    Splitting comes as near to a stated size as halving can; the rod's is `ADVISED` where none is stated, the
+    barrier's that of the rod.
+    """
+    scene = bodies.scene
+    base = scene.projectile.diameter / scene.accuracy.across
+    tip = scene.accuracy.tip_size or max(size_for(bodies, ADVISED[kind(bodies)]), FINEST)
+    rod, barrier = (max(0, round(log2(base / size))) for size in (tip, scene.accuracy.barrier_size or tip))
+    return rod, barrier
+
+
+def contact_edge(bodies: ContactBodies) -> float:
+    """Return the edge, m, of the cells that resolve the contact, as they are split.
+
+    A barrier that takes the rod's form resolves it with its own cells, else the larger ones count.
+    """
+    rod, barrier = levels_of(bodies)
+    level = barrier if barrier_conforms(bodies) else min(rod, barrier) if bodies.compliant else rod
+    return float(bodies.scene.projectile.diameter / bodies.scene.accuracy.across / 2**level)
+
+
 def expected_cells(bodies: ContactBodies) -> float:
     """Return the cells over the radius that are expected on the mesh of the scene."""
-    scene = bodies.scene
-    h = scene.projectile.diameter / scene.accuracy.across / 2 ** levels_of(scene)
-    return float(contact_radius(bodies) / h + RIM)
+    return float(contact_radius(bodies) / contact_edge(bodies) + RIM)
 
 
 def size_for(bodies: ContactBodies, cells: float, radius: float | None = None) -> float:
@@ -88,8 +108,8 @@ def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
     scene = bodies.scene
     if expected_cells(bodies) >= LEAST[kind(bodies)] or scene.accuracy.target is not None:
         return ()  # a target chooses its own mesh
-    h = scene.projectile.diameter / scene.accuracy.across / 2 ** levels_of(scene)
     return (
         f"The contact, about {contact_radius(bodies) * 1e3:.2g} mm in radius, may be too narrow for elements "
-        f"of {h * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. {advice(bodies)}.",
+        f"of {contact_edge(bodies) * 1e3:.2g} mm at the tip: e, mu and all shares then depend on the mesh. "
+        f"{advice(bodies)}.",
     )

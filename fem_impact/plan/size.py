@@ -1,7 +1,7 @@
 """How large a run of the solid fidelity becomes: elements, memory, steps and time, before a mesh is made.
 
 The elements follow from the volumes of body and fine zone at each level of splitting, as the mesher splits
-them (`meshes.refine`). What an element costs was fitted to the 51 sizes of runs of the 13 measured sets that
+them (`meshes.refine`). What an element costs was fitted to the 39 sizes of runs of the 13 measured sets that
 ship with the package (``plan/data/summary.json``; ``tests/plan/test_size.py`` repeats the comparison):
 elements within a quarter, memory within a third, steps and time within a factor of two.
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from math import cos, pi, sin, sqrt
+from math import cos, sin, sqrt
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +21,7 @@ from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, projectile
-from fem_impact.plan.zones import Zones, lowest_point, zones_of
+from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.types import Material, Scene
 from fem_impact.scene.units import format_quantity
 from meshes import thin_skin_rise
@@ -30,12 +30,13 @@ from meshes.section import section
 
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
-SMALLEST = {"rod": 0.62, "barrier": 0.65}  # stable step over that in which a wave crosses the finest edge
+# mean step of a run over that in which a wave crosses the finest edge: cells that flow are squeezed
+SMALLEST = {"rod": 0.52, "barrier": 0.54}
 UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
-BASE, PER_ELEMENT = 2.1e8, 5.5e3  # bytes: of the program, and of an element
-FILL = 1500.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
-ELASTIC, YIELDING = 84e-9, 365e-9  # s of a step for an element that cannot yield, and for one that may
-SETUP = 5.6e-4  # s for an element: mesh, assembly, modes
+BASE, PER_ELEMENT = 1.8e8, 4.0e3  # bytes: of the program, and of an element
+FILL = 2400.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
+ELASTIC, YIELDING = 65e-9, 430e-9  # s of a step for an element that cannot yield, and for one that may
+SETUP = 3.9e-4  # s for an element: mesh, assembly, modes
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,13 +107,13 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
         f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
         f"GB of memory; this machine has {about(there / 1e9)} GB.",
         key="accuracy.tip_size",
-        value=format_quantity(bodies.scene.accuracy.tip_size, "length"),
+        value=format_quantity(zones.tip_size, "length"),
         remedy=_finest_that_fits(slots, bodies, zones, there),
     )
 
 
 def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
-    for levels in range(zones.levels - 1, 0, -1):
+    for levels in range(len(zones.rod) - 1, 0, -1):
         size = float(f"{zones.base / 2**levels:.2g}")
         accuracy = replace(bodies.scene.accuracy, tip_size=size)
         coarser = replace(bodies, scene=replace(bodies.scene, accuracy=accuracy))
@@ -126,8 +127,9 @@ def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
     shares = {"rod": scene.projectile.material}
     if slots.meshed_barrier:
         shares["barrier"] = scene.barrier.material
-    crossing = (SMALLEST[body] * zones.tip_size / _wave_speed(steel) for body, steel in shares.items())
-    return scene.accuracy.step / 0.9 * min(crossing)
+    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size}
+    crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
+    return scene.accuracy.step / 0.9 * sqrt(scene.accuracy.mass_scaling) * min(crossing)
 
 
 def _wave_speed(steel: Material) -> float:
@@ -136,39 +138,72 @@ def _wave_speed(steel: Material) -> float:
     return sqrt(steel.E / steel.rho * min(stiff, 4.0))
 
 
-def _split_boxes(zones: Zones, low: Array, high: Array) -> Iterator[tuple[float, Array, Array]]:
-    """Yield for each level the edge of the cells that are split and the box about the zone that they fill."""
-    for level in range(1, zones.levels + 1):
-        edge = zones.base / 2 ** (level - 1)
-        margin = float(reach(edge, level, zones.levels)) + edge / 2  # cells that touch stand out by half
-        yield edge, low - margin, high + margin
+def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tuple[float, Array, Array]]:
+    """Yield for each level the edge of the cells that are split, and the box that they fill.
+
+    ``boxes`` are the lowest and highest corners, m, of the zone of each level.
+    """
+    for level in range(1, len(boxes) + 1):
+        edge = base / 2 ** (level - 1)
+        # cells that touch stand out by half
+        margins = [
+            float(reach(edge, level, finest, BUFFER)) + edge / 2 for finest in range(level, len(boxes) + 1)
+        ]
+        pairs = list(zip(boxes[level - 1 :], margins, strict=True))
+        low = np.min([corner - margin for (corner, _), margin in pairs], axis=0)
+        yield edge, low, np.max([corner + margin for (_, corner), margin in pairs], axis=0)
 
 
 def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
     """Return the elements of half the rod, without slices if it cannot vibrate."""
-    (t, b, n), length = zones.half, scene.projectile.length
-    low, high = np.array([-t - zones.reach, 0.0, -zones.tip_size]), np.array([t, b, n])
+    length = scene.projectile.length
+    boxes = _rod_boxes(zones)
     layer = len(section(scene.accuracy.across).quads) / zones.base  # elements of a metre of the coarse rod
-    count = layer * (length if vibrating else min(_body_start(scene, zones, low, high), length))
-    for edge, lowest, highest in _split_boxes(zones, low, high):
+    count = layer * (length if vibrating else min(_body_start(scene, zones, boxes), length))
+    for edge, lowest, highest in _split_boxes(zones.base, boxes):
         count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
     return count
 
 
-def _body_start(scene: Scene, zones: Zones, low: Array, high: Array) -> float:
+def _rod_boxes(zones: Zones) -> list[tuple[Array, Array]]:
+    """Return the lowest and highest corners, m, of the rod's zone of each level."""
+    return [
+        (np.array([-t - zones.reach, 0.0, -zones.base / 2**level]), np.array([t, b, n]))
+        for level, (t, b, n) in enumerate(zones.rod, 1)
+    ]
+
+
+def _block_boxes(zones: Zones) -> list[tuple[Array, Array]]:
+    """Return the lowest and highest corners, m, of the block's zone of each level."""
+    rise = thin_skin_rise(zones.skin_rows) * zones.barrier_size
+    return [
+        (np.array([-t - zones.along, 0.0, -n - rise]), np.array([t, b, 0.0])) for t, b, n in zones.barrier
+    ]
+
+
+def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
     """Return about the height, m, at which the slices begin: a cell above all that is split."""
     alpha, foot = scene.impact.angle, float(lowest_point(scene)[2])
-    top = foot + high[2] * cos(alpha) + max(-low[0], high[0]) * sin(alpha)
-    above = float(reach(1.4 * zones.base, 1, zones.levels)) if zones.levels else 0.0
-    return max(float(top) + above + 1.5 * zones.base, scene.projectile.diameter / 3)
+    tops = (
+        high[2] * cos(alpha)
+        + max(-low[0], high[0]) * sin(alpha)
+        + float(reach(1.4 * zones.base, 1, level, BUFFER))
+        for level, (low, high) in enumerate(boxes, 1)
+    )
+    return max(foot + max(tops, default=0.0) + 1.5 * zones.base, scene.projectile.diameter / 3)
+
+
+def _grid(low: Array, high: Array) -> Array:
+    """Return points (k, 3) evenly over a box."""
+    ends = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    axes = [a + (z - a) * ends for a, z in zip(low, high, strict=True)]
+    return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
 
 
 def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
     """Return points (k, 3), m, of a box that lie in the half rod b >= 0, and the volume there, m3."""
     low = np.array([low[0], 0.0, low[2]])
-    ends = (np.arange(SAMPLES) + 0.5) / SAMPLES
-    grid = np.stack(np.meshgrid(*[a + (z - a) * ends for a, z in zip(low, high, strict=True)]), axis=-1)
-    points, alpha, body = grid.reshape(-1, 3), scene.impact.angle, projectile(scene)
+    points, alpha, body = _grid(low, high), scene.impact.angle, projectile(scene)
     t, b, n = points.T
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
     rho_0, _, z_0 = lowest_point(scene)
@@ -181,33 +216,50 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
 
 def _block_elements(scene: Scene, zones: Zones) -> float:
     """Return the elements of the half block: boxes about the fine zone, cut off at the block's sides."""
-    (t, b, n), margin = zones.half, scene.accuracy.block_margin
-    depth = n + thin_skin_rise(zones.skin_rows) * zones.tip_size
+    margin, boxes, (t, b, n) = scene.accuracy.block_margin, _block_boxes(zones), zones.half
+    depth = n + thin_skin_rise(zones.skin_rows) * zones.barrier_size
     low, high = np.array([-t - zones.along, 0.0, -depth]), np.array([t, b, 0.0])
     bottom, top = low - np.array([margin, 0.0, margin]), high + np.array([margin, margin, 0.0])
     count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
-    for edge, lowest, highest in _split_boxes(zones, low, high):
+    for edge, lowest, highest in _split_boxes(zones.base, boxes):
         sides = np.minimum(highest, top) - np.maximum(lowest, bottom)
         count += SPLIT * float(np.prod(sides)) / edge**3
     return count
 
 
-def _radii(zones: Zones) -> Array:
-    """Return the radii (3,), m, of the ellipsoid whose cells may yield; cells that touch it count half."""
-    return 1.1 * np.array(zones.half) + zones.tip_size / 2
-
-
 def _yielding_rod(scene: Scene, zones: Zones) -> float:
-    radii = _radii(zones)
-    low, high = np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii
-    points, volume = _inside_rod(scene, low, high)
-    points[:, 0] += np.clip(-points[:, 0], 0.0, zones.reach)  # the ellipsoid is drawn out along -t
-    share = float(np.mean(np.sum((points / radii) ** 2, axis=1) < 1)) if len(points) else 0.0
-    return share * volume / zones.tip_size**3
+    """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
+    radii = _radii(zones, zones.tip_size)
+    points, volume = _inside_rod(scene, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
+    return _yielding(points, volume / max(len(points), 1), zones.reach, radii, zones.base, _rod_boxes(zones))
 
 
 def _yielding_block(zones: Zones) -> float:
-    """Return the cells of a quarter of the ellipsoid, drawn out along -t; thin rows stand for more depth."""
-    t, b, n = _radii(zones)
-    depth = n + thin_skin_rise(zones.skin_rows) * zones.tip_size
-    return float(pi * b * depth * (t / 3 + zones.along / 4) / zones.tip_size**3)
+    """Return the split cells of half the block that reach into the ellipsoid; thin rows stand for depth."""
+    radii = _radii(zones, zones.barrier_size)
+    radii[2] += thin_skin_rise(zones.skin_rows) * zones.barrier_size
+    low, high = np.array([-radii[0] - zones.along, 0.0, -radii[2]]), np.array([*radii[:2], 0.0])
+    points = _grid(low, high)
+    each = float(np.prod(high - low)) / len(points)
+    return _yielding(points, each, zones.along, radii, zones.base, _block_boxes(zones))
+
+
+def _radii(zones: Zones, edge: float) -> Array:
+    """Return the radii (3,), m, of the ellipsoid whose cells may yield; cells that touch it count half."""
+    return 1.1 * np.array(zones.half) + edge / 2
+
+
+def _yielding(
+    points: Array, each: float, along: float, radii: Array, base: float, boxes: list[tuple[Array, Array]]
+) -> float:
+    """Return the split cells at ``points`` (k, 3), each of which stands for a volume, m3, in an ellipsoid.
+
+    The ellipsoid is drawn out by ``along``, m, towards -t.
+    """
+    place = points.copy()
+    place[:, 0] += np.clip(-place[:, 0], 0.0, along)
+    inside = points[np.sum((place / radii) ** 2, axis=1) < 1]
+    edges = np.full(len(inside), np.inf)
+    for edge, low, high in _split_boxes(base, boxes):
+        edges[((inside >= low) & (inside <= high)).all(axis=1)] = edge / 2
+    return float(np.sum(each / edges**3))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, floor, log2, sin
+from math import cos, floor, log2, sin, sqrt
 
 import numpy as np
 
@@ -18,11 +18,20 @@ from fem_impact.physics.contact import (
     projectile,
     sliding,
 )
+from fem_impact.plan.cells import levels_of
 from fem_impact.scene.types import Scene
+
+Extents = tuple[float, float, float]
+Shares = tuple[tuple[float, Extents], ...]  # least cells over the contact's radius, shares along t, b, n
 
 # half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
 # geometric mean), and how many cells it has at least
 ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
+# Shares of the fine zone along t, b and n in which cells are split to a level, by how many of its cells lie
+# over the radius of the contact at least: small cells pay where steel flows most, right under the contact
+BARRIER_SHARES: Shares = ((6.0, (0.5, 0.7, 0.2)), (3.0, (0.7, 0.9, 0.45)))
+ROD_SHARES: Shares = ((3.0, (0.8, 1.0, 0.3)),)
+BUFFER = 1  # whole cells between two levels
 # the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha), and
 # at least over the half-width along t, because the surface is dragged along in front of a rod that sticks
 # (at 17 to 37 degrees, where 1.1 to 1.3 half-widths left the edge flowing by up to 0.5 %)
@@ -41,16 +50,18 @@ class Zones:
 
     Attributes
     ----------
-    base : edge of the body's cells; levels : how often they are halved at the contact
-    half : half-widths along t and b, and depth along n
+    base : edge of the body's cells
+    rod, barrier : for each level of splitting, the coarsest first: half-widths along t and b, depth along n
+    half : those of the zone in which cells may yield
     reach : how far the rod's zone follows its flat face along -t; along : how far the barrier's goes along -t
     conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
     skin_rows : thin rows of cells at the top of the barrier
     """
 
     base: float
-    levels: int
-    half: tuple[float, float, float]
+    rod: tuple[Extents, ...]
+    barrier: tuple[Extents, ...]
+    half: Extents
     reach: float
     along: float
     conforming: bool
@@ -58,21 +69,39 @@ class Zones:
 
     @property
     def tip_size(self) -> float:
-        """Return the finest cell edge, m; in the barrier along t and b."""
-        return self.base * 0.5**self.levels
+        """Return the finest cell edge of the rod, m."""
+        return self.base * 0.5 ** len(self.rod)
+
+    @property
+    def barrier_size(self) -> float:
+        """Return the finest cell edge of the barrier along t and b, m."""
+        return self.base * 0.5 ** len(self.barrier)
 
 
 def zones_of(bodies: ContactBodies) -> Zones:
     """Return the fine zones of two bodies that touch."""
-    scene = bodies.scene
-    base, levels = scene.projectile.diameter / scene.accuracy.across, levels_of(scene)
-    h, rho = base / 2**levels, float(lowest_point(scene)[0])
-    t, b, n = half_widths(contact_estimate(bodies), h)
+    scene, size = bodies.scene, contact_estimate(bodies)
+    base, rho = scene.projectile.diameter / scene.accuracy.across, float(lowest_point(scene)[0])
+    levels, below = levels_of(bodies)
     reach = face_reach(bodies, rho)
     conforming = barrier_conforms(bodies)
-    rows = skin_rows(bodies, h) if conforming and bodies.f > 0 else 0
-    half = t, max(b, rho) if reach > 0 else b, n
-    return Zones(base, levels, half, reach, reach + slide(bodies, t), conforming, rows)
+    rows = skin_rows(bodies, base / 2**below) if conforming and bodies.f > 0 else 0
+
+    def extents(level: int, shares: Shares) -> Extents:
+        h = base / 2**level
+        t, b, n = half_widths(size, h, share_of(sqrt(size.a_t * size.a_b) / h, shares))
+        return t, max(b, rho) if reach > 0 else b, n
+
+    return Zones(
+        base,
+        rod=tuple(extents(level, ROD_SHARES) for level in range(1, levels + 1)),
+        barrier=tuple(extents(level, BARRIER_SHARES) for level in range(1, below + 1)),
+        half=extents(max(levels, below), ()),
+        reach=reach,
+        along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
+        conforming=conforming,
+        skin_rows=rows,
+    )
 
 
 def lowest_point(scene: Scene) -> Array:
@@ -81,16 +110,16 @@ def lowest_point(scene: Scene) -> Array:
     return np.array([float(rho), 0.0, float(z)])
 
 
-def levels_of(scene: Scene) -> int:
-    """Return how often base cells are split to come nearest to the wanted tip size."""
-    base = scene.projectile.diameter / scene.accuracy.across
-    return max(0, round(float(np.log2(base / scene.accuracy.tip_size))))
+def share_of(cells: float, shares: Shares) -> Extents:
+    """Return the share of the fine zone for a level of which ``cells`` lie over the radius of the contact."""
+    return next((share for least, share in shares if cells >= least), (1.0, 1.0, 1.0))
 
 
-def half_widths(size: ContactEstimate, h: float) -> tuple[float, float, float]:
-    """Return the fine zone's extents along t (each side), b and n, m."""
-    depth = DEPTH * np.sqrt(size.a_t * size.a_b)
-    return max(ALONG * size.a_t, FEWEST * h), max(AROUND * size.a_b, FEWEST * h), max(depth, FEWEST * h)
+def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0)) -> Extents:
+    """Return a zone's extents along t (each side), b and n, m; ``h``, m, is the edge of its cells."""
+    whole = ALONG * size.a_t, AROUND * size.a_b, DEPTH * sqrt(size.a_t * size.a_b)
+    t, b, n = (max(part * length, FEWEST * h) for part, length in zip(share, whole, strict=True))
+    return t, b, n
 
 
 def skin_rows(bodies: ContactBodies, h: float) -> int:
@@ -121,11 +150,11 @@ def slide(bodies: ContactBodies, t: float) -> float:
 def require_fine_zone(bodies: ContactBodies) -> None:
     """Refuse a tip without a fine zone where one is needed (SceneError)."""
     scene = bodies.scene
-    if levels_of(scene) == 0 and (bodies.compliant or bodies.rod_yields):
+    if levels_of(bodies)[0] == 0 and (bodies.compliant or bodies.rod_yields):
         base = scene.projectile.diameter / scene.accuracy.across
         raise SceneError(
             "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
             key="accuracy.tip_size",
-            value=f"{scene.accuracy.tip_size * 1e3:.3g} mm",
+            value=f"{(scene.accuracy.tip_size or base) * 1e3:.3g} mm",
             remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
         )

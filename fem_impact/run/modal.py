@@ -84,6 +84,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
         gravity=result.fallen / E_0 if plan.slots.gravity else Unknown("the gravity effect is off"),
         residual=result.residual / E_0,
+        added_mass=NOT_MESHED,
     )
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from fem_impact.outcome.groups import ARMS
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.cells import LEAST, advice, contact_radius, kind
+from fem_impact.plan.cells import LEAST, advice, contact_edge, contact_radius, kind
 
 if TYPE_CHECKING:
     from fem_impact.outcome.groups import ArmCoefficients, Energy
@@ -34,9 +34,9 @@ def least_nodes(bodies: ContactBodies) -> int:
 
 def too_narrow(result: SolidResult) -> str:
     """Return the sentence that says how narrow the contact was and what resolves it."""
-    h = result.model.geometry.tip_size
-    radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
     bodies = result.plan.bodies
+    h = contact_edge(bodies)
+    radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
     return (
         f"the contact was not resolved: at its peak {result.peak_nodes} nodes of the half model were "
         f"pressed, fewer than {least_nodes(bodies)}, on elements of {h * 1e3:.2g} mm. "

@@ -160,6 +160,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         contact=Unknown("what a contact holds is strain energy of the meshed bodies"),
         gravity=_if_on("gravity", result, share(kept - result.motion.kinetic - a["gravity"])),
         residual=share(a["residual"]),
+        added_mass=share(result.added_energy),
     )
 
 
@@ -214,4 +215,6 @@ def _cost(result: SolidResult) -> RunCost:
         peak_memory=cost.memory_MB,
         min_step=cost.smallest_step,
         tip_size=g.tip_size,
+        barrier_size=g.barrier_size if g.barrier is not None else Unknown("the barrier is rigid"),
+        mass_scaling=result.model.scaling,
     )

@@ -136,7 +136,9 @@ class Accuracy:
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
-    tip_size: float = 0.35e-3
+    tip_size: float | None = None
+    barrier_size: float | None = None
+    mass_scaling: float = 4.0
     across: int = 8
     grid_shift: float = 0.0
     block_margin: float = 6e-3
@@ -242,10 +244,11 @@ def _check_tip(rod: ProjectileSpec) -> None:
 
 def _check_tip_size(scene: Scene) -> None:
     largest = scene.projectile.diameter / 4
-    if scene.accuracy.tip_size > largest:
+    size = scene.accuracy.tip_size
+    if size is not None and size > largest:
         raise SceneError(
             f"is too coarse for a rod of {scene.projectile.diameter * 1e3:g} mm diameter.",
             key="accuracy.tip_size",
-            value=f"{scene.accuracy.tip_size * 1e3:.3g} mm",
+            value=f"{size * 1e3:.3g} mm",
             remedy=f"Give at most {largest * 1e3:g} mm.",
         )

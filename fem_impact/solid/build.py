@@ -214,7 +214,7 @@ class Builder:
         g, f = self.meshed.geometry, self.spec.friction or 0.0
         if self.meshed.barrier:
             return surface_contact(
-                self.meshed.bodies, self.meshed.inverse_mass, f, g.tip_size, self.meshed.x, g.conforming
+                self.meshed.bodies, self.meshed.inverse_mass, f, g.barrier_size, self.meshed.x, g.conforming
             )
         skin = g.rod.mesh.free_skin
         if not self.spec.vibrating:
@@ -268,6 +268,8 @@ class Builder:
             layout=self.meshed.layout,
             mass=self.meshed.mass,
             inverse_mass=self.meshed.inverse_mass,
+            added_mass=self.meshed.added_mass,
+            scaling=self.meshed.scaled_rod[1],
             drawn=self.meshed.drawn,
             forces=self.forces(),
             impulses=self.impulses(),

@@ -35,6 +35,8 @@ class Model:
     geometry : meshes
     layout : places of the unknowns
     mass, inverse_mass : (size,), kg and 1/kg, of the half model; the inverse is 0 where an unknown is fixed
+    added_mass : (size,) the masses less the true ones, kg
+    scaling : mass scaling in force
     drawn : mass points of the rod's slices
     forces, impulses : items in the order in which they act
     rod : the rod's linear part, one of the forces
@@ -51,6 +53,8 @@ class Model:
     layout: DofLayout
     mass: Array
     inverse_mass: Array
+    added_mass: Array
+    scaling: float
     drawn: MassPoints
     forces: Sequence[Force]
     impulses: Sequence[Impulse]

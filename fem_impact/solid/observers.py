@@ -150,6 +150,24 @@ class ProgressObserver:
         return spent * (self.end - time) / done if done > 0.02 * self.end else None
 
 
+@dataclass(slots=True)
+class AddedMass:
+    """Observer of the kinetic energy of the mass that mass scaling added, less that of the mass taken off.
+
+    ``largest`` is its largest amount, J, of the half model; it is a part of the bodies' kinetic energies.
+    """
+
+    moving: ClassVar[tuple[str, ...]] = ("largest",)
+    mass: Array
+    every: int = 50
+    largest: float = 0.0
+
+    def observe(self, state: State) -> bool:
+        """Compare with the largest so far."""
+        self.largest = max(self.largest, abs(0.5 * float(self.mass @ state.v**2)))
+        return False
+
+
 WINDOW = 2e-6  # s, of mean forces: nodes close one by one, so the impulse of a single step is noise
 
 

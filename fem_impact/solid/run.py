@@ -59,6 +59,7 @@ class SolidResult:
     skin_share : share of the barrier's plastic work done right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     peak_nodes : nodes of the half model that were pressed at once then
+    added_energy : largest kinetic energy of the mass that mass scaling added, J
     vibration_check : kinetic and strain energy of the vibration without modes, see `RodState`, J, or None
     heat : the contact's patch and friction power over time, or None
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
@@ -77,6 +78,7 @@ class SolidResult:
     skin_share: float
     peak_force: float
     peak_nodes: int
+    added_energy: float
     vibration_check: tuple[float, float] | None
     finished: bool
     reason: str
@@ -175,6 +177,7 @@ def _result(
         skin_share=skin_share(model),
         peak_force=watchers.peak.largest,
         peak_nodes=watchers.peak.nodes,
+        added_energy=watchers.added.largest,
         vibration_check=check,
         finished=stop.finished,
         reason=watchers.reason,

@@ -19,7 +19,7 @@ from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.march import Observer
 from fem_impact.solid.model import Model
-from fem_impact.solid.observers import Frames, History, PeakForce, Watch, history_column
+from fem_impact.solid.observers import AddedMass, Frames, History, PeakForce, Watch, history_column
 from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
@@ -89,6 +89,7 @@ class Watchers:
     frames: list[Frames]
     skin: SkinWatch
     peak: PeakForce
+    added: AddedMass
     heat: HeatWatch | None
     stop: Separation
 
@@ -105,16 +106,16 @@ class Watchers:
         if out is not None and scene.save.frames:
             frames = [_frames(plan, model, view, out, go_on)]
         stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
-        skin, peak = SkinWatch(model), PeakForce(model.book)
+        skin, peak, added = SkinWatch(model), PeakForce(model.book), AddedMass(model.added_mass)
         heat = _heat_watch(model) if plan.slots.heat else None
-        return cls(StepGuard(model), watch, history, frames, skin, peak, heat, stop)
+        return cls(StepGuard(model), watch, history, frames, skin, peak, added, heat, stop)
 
     @property
     def all(self) -> list[Saved]:
         """Observers in calling order, step guard to stop rule."""
         heat = [self.heat] if self.heat else []
         first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames]
-        return [*first, self.skin, self.peak, *heat, self.stop]
+        return [*first, self.skin, self.peak, self.added, *heat, self.stop]
 
     @property
     def reason(self) -> str:

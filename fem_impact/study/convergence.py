@@ -49,7 +49,7 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     meshes, positions = (FAMILY[:-1], 1) if quick else (FAMILY, None)
     return [
         [
-            Job(f"{name}-{scene.accuracy.tip_size * 1e3:.3f}-{scene.accuracy.grid_shift:g}", scene)
+            Job(f"{name}-{1e3 * mesh.sizes(plain)[0]:.3f}-{scene.accuracy.grid_shift:g}", scene)
             for scene in placed(plain, mesh)[:positions]
         ]
         for mesh in meshes

@@ -128,10 +128,12 @@ def body_model(body: FreeBody) -> Model:
         impulses.append(build.dashpots(parts[1], layout, inverse, around))
     contact = _contact(body, parts, inverse, x)
     return Model(
-        geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0),
+        geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, 0.0),
         layout=layout,
         mass=mass,
         inverse_mass=inverse,
+        added_mass=np.zeros_like(mass),
+        scaling=1.0,
         drawn=drawn,
         forces=forces,
         impulses=[*impulses, *([contact] if contact else [])],

@@ -64,7 +64,7 @@ def _model(p: Values, touch: float) -> Model:
     base = 2 * R / across
     levels = levels_for_radius(base, touch, p["cells"])
     length = p["length"] + R**2 / (4 * tip)
-    rod = meshes.rod(_meridian(R, tip), length, across, zone=contact_zone(touch, touch), levels=levels)
+    rod = meshes.rod(_meridian(R, tip), length, across, zones=[contact_zone(touch, touch)] * levels)
     points = placed(rod.mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 2] = -p["speed"]

@@ -118,7 +118,7 @@ def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> 
     zone = Zone(np.zeros(3), np.eye(3), low, high)
     low, high = low - around, high + around
     low[1] = high[2] = 0.0
-    return meshes.block(low, high, base, zone=zone, levels=levels)
+    return meshes.block(low, high, base, [zone] * levels)
 
 
 def levels_for_radius(base: float, radius: float, cells: float) -> int:

@@ -77,7 +77,7 @@ def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f:
     base = 2 * R / across
     levels = levels_for_radius(base, touch.radius, p["cells"])
     zone = contact_zone(touch.radius, touch.radius)
-    mesh = unsliced(meshes.sphere(R, across, zone=zone, levels=levels))
+    mesh = unsliced(meshes.sphere(R, across, [zone] * levels))
     points = placed(mesh.mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 0], velocity[:, 2] = -v_t, -v_n

@@ -54,7 +54,7 @@ def _model(p: Values, v: float, cells: float) -> Model:
     # the same cells over the contact radius at every speed: halvings, then the base mesh for the rest
     levels = max(0, floor(log2(2 * R * cells / (touch * ACROSS))))
     across = 2 * round(R * cells / touch / 2**levels)
-    mesh = meshes.sphere(R, max(across, ACROSS), contact_zone(WIDTH * touch, DEPTH * touch), levels)
+    mesh = meshes.sphere(R, max(across, ACROSS), [contact_zone(WIDTH * touch, DEPTH * touch)] * levels)
     points = placed(mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 2] = -v

@@ -29,18 +29,23 @@ PRESENT = Path(__file__).parents[2]
 SETS = ("t5b", "t3-machined", "t6-17")
 # what the plain model has: its block always radiates, and nothing hardens with the rate
 EFFECTS = "vibration, friction, rod-plasticity, barrier-elastoplastic, gravity, large-rotation, radiation"
-COMPARED = (Mesh(8, 2), Mesh(8, 3))
+COMPARED = (Mesh(8, -1, -1), Mesh(8, 0, 0))
 NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
 def outcome(model, name, mesh, out, place=0.0):
     """Return the file of a set's outcome, made by one model in its own process unless it lies in ``out``."""
     kind = "present" if model == PRESENT else "plain"
-    folder = out / f"{kind}-{name}-{mesh.across}-{mesh.levels}{f'-at-{place:g}' if place else ''}"
+    folder = out / f"{kind}-{name}-{mesh.across}-{mesh.tip}-{mesh.barrier}{f'-at-{place:g}' if place else ''}"
     if not (folder / "outcome.json").exists():
-        size = mesh.tip_size(load(name).projectile.diameter) * 1e3
-        changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={size:.9g} mm", "save.frames=0"]
-        changes += [f"effects={EFFECTS}", f"accuracy.grid_shift={place}"] if model == PRESENT else []
+        tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(load(name)))
+        changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={tip}", "save.frames=0"]
+        if model == PRESENT:
+            changes += [
+                f"effects={EFFECTS}",
+                f"accuracy.grid_shift={place}",
+                f"accuracy.barrier_size={barrier}",
+            ]
         words = [word for change in changes for word in ("--set", change)]
         command = [sys.executable, "-m", "fem_impact", "run", name, *words, "--quiet", "--out", str(folder)]
         alone = {"PYTHONPATH": str(model), "OPENBLAS_NUM_THREADS": "1", "NUMBA_NUM_THREADS": "1"}

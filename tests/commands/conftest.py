@@ -36,7 +36,7 @@ def stand(monkeypatch):
     stand = Stand()
 
     def work(name, result):
-        def called(*args):
+        def called(*args, **_):
             stand.calls.append((name, args))
             options = [arg.progress for arg in args if isinstance(arg, RunOptions)]
             progress = next((arg for arg in [*options, *args] if callable(arg)), None)

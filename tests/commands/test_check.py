@@ -25,7 +25,7 @@ def test_check_prints_values_units_sources_and_effects(cli):
     for words in (
         'length = "80 mm"',
         "footnote 2",
-        "accuracy.tip_size = 0.35 mm",
+        "accuracy.tip_size = 5 elements over the estimated radius",
         "on  friction",
         "inside the measured",
     ):

@@ -19,7 +19,7 @@ def run(scene, fidelity="solid", options=None):
     """A record as if it had been computed; leaving friction out doubles mu."""
     values = {"scene_id": scene.id, "fidelity": fidelity, "scene_digest": digest(scene)}
     values |= {"v_n_m_per_s": -1.5, "v_t_m_per_s": -1.5, "k_squared_m2": 5e-4, "mu": 0.25}
-    h = scene.accuracy.tip_size
+    h = scene.accuracy.tip_size or TIP
     part = OFF.get(fidelity)
     values |= {
         key: limit * (1 + part) if part else limit + SLOPE[key] * (h / TIP) ** ORDER

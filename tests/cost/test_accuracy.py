@@ -132,11 +132,11 @@ def test_a_scene_near_a_stored_one_is_taken(costs):
 
 
 def test_two_meshes_state_what_they_achieved(costs, tmp_path):
-    scene = asking(0.05)
+    scene = asking(0.06)
     chosen = choose_setting(scene)
     outcome = to_target.simulate(scene, options=RunOptions(out=tmp_path))
     assert chosen.setting.kind == "pair"
-    assert outcome.validity.accuracy_target == 0.05
+    assert outcome.validity.accuracy_target == 0.06
     assert outcome.validity.accuracy_setting == chosen.setting.name
     assert outcome.validity.expected_error == chosen.expected_error
     assert outcome.validity.achieved_wall == pytest.approx(chosen.setting.wall_s)
@@ -148,7 +148,7 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
 
 
 def test_two_workers_run_two_meshes_side_by_side(costs, tmp_path):
-    scene = asking(0.05)
+    scene = asking(0.06)
     one, two = (to_target.simulate(scene, workers=workers) for workers in (1, 2))
     assert choose_setting(scene, workers=2).expected_wall_s < choose_setting(scene).expected_wall_s
     assert two.validity.achieved_wall < one.validity.achieved_wall
@@ -180,7 +180,8 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
         assert nearest(load(name))[:2] == (name, 0.0)
         assert scene.impact == load(name).impact
         kinds = {setting["kind"] for setting in cost["settings"]}
-        assert {"rigid", "modal", "mesh", "pair"} <= kinds
+        assert {"rigid", "modal", "mesh"} <= kinds
+        assert ("pair" in kinds) == (not cost["failures"])  # a mesh that fails leaves no pair
     assert set(NEARNESS) == set(to_target._features(load("t2")))
 
 
@@ -199,9 +200,9 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
         return run(scene, fidelity)
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
-    outcome = to_target.simulate(asking(0.05), options=RunOptions(out=tmp_path))
-    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
-    fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.05)).meshes)
+    outcome = to_target.simulate(asking(0.06), options=RunOptions(out=tmp_path))
+    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 6))]
+    fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.06)).meshes)
     assert outcome.provenance.scene_digest == digest(fine[0])
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
     means = [sum(values) / len(values) for values in every]

@@ -46,7 +46,7 @@ def whole(form, mesh, **parameters):
 
 def block(levels=1):
     zone = Zone(np.zeros(3), np.eye(3), np.array([-0.9e-3, 0.0, -0.9e-3]), np.array([0.9e-3, 0.9e-3, 0.0]))
-    return meshes.block([-4e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3, zone, levels, buffer=1)
+    return meshes.block([-4e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3, [zone] * levels, buffer=1)
 
 
 @pytest.mark.parametrize("kind", KINDS)

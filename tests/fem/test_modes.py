@@ -51,7 +51,7 @@ def test_runs_with_the_same_rod_find_its_modes_once():
         modes_of(build(plan(s)))
         for s in (
             scene,
-            changed(scene, "accuracy.max_time", "1 ms"),
+            changed(scene, "accuracy.grid_shift", 0.5),
             changed(scene, "projectile.length", "81 mm"),
         )
     )

@@ -71,7 +71,14 @@ def test_write_that_runs_out_of_room_leaves_nothing_half_written(tmp_path):
     assert len(read_csv(tmp_path / "table.csv")) % 10 == 0 < len(read_csv(tmp_path / "table.csv"))
 
 
-@given(st.lists(st.tuples(st.floats(allow_nan=False), st.text(st.characters(codec="ascii"), max_size=8))))
+@given(
+    st.lists(
+        st.tuples(
+            st.floats(allow_nan=False, allow_infinity=False),
+            st.text(st.characters(codec="ascii"), max_size=8),
+        )
+    )
+)
 def test_table_reads_back_exactly(tmp_path_factory, rows):
     path = tmp_path_factory.mktemp("table") / "t.csv"
     write_text(path, Table.of(("time_s", "name"), rows).csv())

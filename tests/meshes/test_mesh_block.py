@@ -10,7 +10,7 @@ ZONE = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), [-1.5e-3, -1e-3, -1.2e-3], [1.5e-
 
 @pytest.fixture(scope="module")
 def fine():
-    return meshes.block(LOW, HIGH, 2e-3, ZONE, 3)
+    return meshes.block(LOW, HIGH, 2e-3, [ZONE] * 3)
 
 
 def test_base_block_has_equal_cells_and_exact_volume():

@@ -13,12 +13,12 @@ CUBE = meshes.Zone(np.zeros(3), np.eye(3), np.full(3, -0.5e-3), np.full(3, 0.5e-
 KEPT = {
     "rod_edge_radius": lambda: (
         meshes.rod(
-            edge_radius(count=100), 0.04, 6, zone=contact_zone(edge_radius(count=100), half=1e-3), levels=2
+            edge_radius(count=100), 0.04, 6, zones=[contact_zone(edge_radius(count=100), half=1e-3)] * 2
         ).mesh
     ),
     "rod_sphere_and_cone": lambda: meshes.rod(sphere_and_cone(count=100), 0.04).mesh,
-    "block": lambda: meshes.block((-6e-3, 0.0, -6e-3), (6e-3, 6e-3, 0.0), 2e-3, CUBE, 2),
-    "sphere": lambda: meshes.sphere(5e-3, 8, CUBE, 1),
+    "block": lambda: meshes.block((-6e-3, 0.0, -6e-3), (6e-3, 6e-3, 0.0), 2e-3, [CUBE] * 2),
+    "sphere": lambda: meshes.sphere(5e-3, 8, [CUBE]),
 }
 
 

@@ -18,15 +18,14 @@ def refined_blocks(draw):
     turn = draw(st.floats(0.0, np.pi))
     axes = [[np.cos(turn), 0.0, np.sin(turn)], [0.0, 1.0, 0.0], [-np.sin(turn), 0.0, np.cos(turn)]]
     half = np.array([draw(small) for _ in range(3)])
-    zone = meshes.Zone(centre, axes, -half, half)
-    return meshes.block(
-        (-3.0, 0.0, -3.0), (3.0, 3.0, 0.0), 1.0, zone, draw(st.integers(1, 3)), buffer=draw(st.integers(0, 2))
-    )
+    shares = draw(st.lists(st.floats(0.2, 1.0), min_size=1, max_size=3))
+    zones = [meshes.Zone(centre, axes, -share * half, share * half) for share in shares]
+    return meshes.block((-3.0, 0.0, -3.0), (3.0, 3.0, 0.0), 1.0, zones, buffer=draw(st.integers(0, 2)))
 
 
 @pytest.fixture(scope="module")
 def rod():
-    return meshes.rod(edge_radius(), 0.06, zone=contact_zone(edge_radius()), levels=3).mesh
+    return meshes.rod(edge_radius(), 0.06, zones=[contact_zone(edge_radius())] * 3).mesh
 
 
 def boxes_touch(mesh):
@@ -63,7 +62,7 @@ def test_refined_blocks_stay_closed_and_keep_their_volume(mesh):
 
 def test_hanging_nodes_exist_exactly_where_the_level_changes():
     zone = meshes.Zone([0.25, 0.25, -0.25], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
-    mesh = meshes.block((0.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0, zone, 1)
+    mesh = meshes.block((0.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0, [zone])
     # One corner cell split: of its 19 new nodes those on its three inner faces hang.
     assert np.bincount(mesh.level).tolist() == [7, 8]
     assert mesh.is_hanging.sum() == 3 + 9
@@ -96,7 +95,7 @@ def test_nose_with_level_changes_has_no_gaps(rod):
 
 def test_two_whole_cells_lie_between_level_changes():
     zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.3), np.full(3, 0.3))
-    mesh = meshes.block((-12.0, 0.0, -12.0), (12.0, 12.0, 0.0), 1.0, zone, 3, buffer=2)
+    mesh = meshes.block((-12.0, 0.0, -12.0), (12.0, 12.0, 0.0), 1.0, [zone] * 3, buffer=2)
     x = mesh.points[mesh.cells]
     for level in (1, 2):
         inner = np.abs(x[mesh.level > level]).max()
@@ -105,7 +104,7 @@ def test_two_whole_cells_lie_between_level_changes():
 
 
 def test_building_twice_gives_the_same_bits(rod):
-    again = meshes.rod(edge_radius(), 0.06, zone=contact_zone(edge_radius()), levels=3).mesh
+    again = meshes.rod(edge_radius(), 0.06, zones=[contact_zone(edge_radius())] * 3).mesh
     assert again.points.tobytes() == rod.points.tobytes()
     assert again.cells.tobytes() == rod.cells.tobytes()
 
@@ -114,17 +113,24 @@ def test_refused_requests():
     zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
     mesh = meshes.block((-2.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0)
     with pytest.raises(meshes.MeshError, match="refined already"):
-        meshes.refine(meshes.refine(mesh, zone, 1), zone, 1)
+        meshes.refine(meshes.refine(mesh, [zone]), [zone])
     with pytest.raises(meshes.MeshError, match="must stay whole"):
-        meshes.refine(mesh, zone, 1, frozen=np.ones(len(mesh.cells), bool))
-    with pytest.raises(meshes.MeshError, match="negative"):
-        meshes.refine(mesh, zone, -1)
+        meshes.refine(mesh, [zone], frozen=np.ones(len(mesh.cells), bool))
+
+
+def test_each_level_has_its_own_zone():
+    wide = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -3.2), np.full(3, 3.2))
+    narrow = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.7), np.full(3, 0.7))
+    mesh = meshes.block((-12.0, 0.0, -12.0), (12.0, 12.0, 0.0), 1.0, [wide, narrow], buffer=1)
+    centres = np.abs(mesh.points[mesh.cells].mean(axis=1)).max(axis=1)
+    assert centres[mesh.level == 2].max() < 1.0  # cells that touch the narrow zone alone
+    assert centres[mesh.level == 0].min() > 4.0  # none that touches the wide one
+    assert set(mesh.level[centres < 4.0]) == {1, 2}
 
 
 def test_no_levels_change_nothing():
-    zone = meshes.Zone([0.0, 0.0, 0.0], np.eye(3), np.full(3, -0.1), np.full(3, 0.1))
     mesh = meshes.block((-2.0, 0.0, -2.0), (2.0, 2.0, 0.0), 1.0)
-    same = meshes.refine(mesh, zone, 0)
+    same = meshes.refine(mesh, [])
     assert (same.cells == mesh.cells).all()
     assert (same.points == mesh.points).all()
     assert len(same.faces) == len(mesh.faces)

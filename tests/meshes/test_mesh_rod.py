@@ -15,7 +15,7 @@ LENGTH = 0.06
 def fine(request):
     meridian = SHAPES[request.param]
     zone = contact_zone(meridian)
-    return meridian, zone, meshes.rod(meridian, LENGTH, zone=zone, levels=3)
+    return meridian, zone, meshes.rod(meridian, LENGTH, zones=[zone] * 3)
 
 
 @pytest.mark.parametrize("name", sorted(SHAPES))
@@ -97,7 +97,7 @@ def test_refined_zone_has_good_cells_and_no_slivers(fine):
 def test_contact_patch_of_the_rounded_edge_is_a_regular_grid():
     meridian = edge_radius()
     zone = contact_zone(meridian, half=1.2e-3)
-    mesh = meshes.rod(meridian, LENGTH, zone=zone, levels=3).mesh
+    mesh = meshes.rod(meridian, LENGTH, zones=[zone] * 3).mesh
     skin = mesh.faces_with(meshes.SKIN)
     node, count = np.unique(skin, return_counts=True)
     on_patch = (zone.distance(mesh.points[node]) == 0.0) & (mesh.points[node, 1] > 0.0)
@@ -117,7 +117,7 @@ def test_edges_of_every_size_give_good_cells(shape, alpha, levels):
     radius, share, slender, across = shape
     meridian = edge_radius(radius, max(0.2e-3, share * radius) if share < 1.0 else radius, 200)
     zone = contact_zone(meridian, alpha, 0.15 * radius)
-    rod = meshes.rod(meridian, slender * radius, across, zone=zone, levels=levels)
+    rod = meshes.rod(meridian, slender * radius, across, zones=[zone] * levels)
     assert scaled_jacobians(rod.mesh).min() > 0.4
     assert edge_lengths(rod.mesh).min() > 0.4 * 2.0 * radius / across / 2**levels
 
@@ -162,7 +162,7 @@ def test_slices_alone_make_a_flat_bar():
         ({"across": 4}, "at least 6"),
         ({"length": 5e-3}, "longer rod"),
         ({"slice_length": 0.0}, "slice_length must be positive"),
-        ({"nose": False, "zone": contact_zone(plain()), "levels": 1}, "keep the nose"),
+        ({"nose": False, "zones": [contact_zone(plain())]}, "keep the nose"),
         ({"meridian": np.array([[0.0, 0.0], [1.0, 0.0], [0.5, 1.0]])}, "turns back"),
         ({"meridian": np.array([[0.1, 0.0], [1.0, 0.0]])}, "pole"),
         ({"meridian": np.zeros(3)}, "two rows"),
@@ -178,7 +178,7 @@ def test_impossible_rods_are_refused(change, words):
 def test_the_contact_lies_in_the_middle_of_a_cell_between_cells_of_one_size(degrees, across, levels):
     meridian = edge_radius()
     zone = contact_zone(meridian, np.deg2rad(degrees))
-    mesh = meshes.rod(meridian, LENGTH, across, zone=zone, levels=levels).mesh
+    mesh = meshes.rod(meridian, LENGTH, across, zones=[zone] * levels).mesh
     place = zone.local(mesh.points[mesh.free_skin])
     along = np.sort(place[(place[:, 1] == 0.0) & (np.abs(place[:, 2]) < 0.5e-3), 0])
     size = 2.0 * RADIUS / across / 2**levels

@@ -16,7 +16,7 @@ def test_volume_converges_to_half_a_ball():
 
 def test_ball_touches_the_plane_at_the_origin_with_regular_fine_cells():
     zone = meshes.Zone(np.zeros(3), np.eye(3), np.full(3, -1e-3), np.full(3, 1e-3))
-    mesh = meshes.sphere(RADIUS, 8, zone, 3)
+    mesh = meshes.sphere(RADIUS, 8, [zone] * 3)
     skin = np.unique(mesh.faces_with(meshes.SKIN))
     skin = skin[~mesh.is_hanging[skin]]
     arms = mesh.points[skin] - np.array([0.0, 0.0, RADIUS])

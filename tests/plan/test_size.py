@@ -4,7 +4,7 @@ from math import exp, log
 
 import pytest
 
-from fem_impact.cost.settings import FEWER_PLACES, FINEST, PLACES
+from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.plan import size as sizes
@@ -55,11 +55,8 @@ def stored_runs():
 
 @pytest.mark.parametrize("data, setting", list(stored_runs()))
 def test_memory_and_time_of_the_stored_runs(data, setting):
-    mesh = setting["meshes"][0]
-    places = FEWER_PLACES if (mesh["across"], mesh["levels"]) == (FINEST.across, FINEST.levels) else PLACES
-    tip_size = f"{setting['tip_size_m'] * 1e3:.9g} mm"
-    changes = {"accuracy.across": mesh["across"], "accuracy.tip_size": tip_size}
-    size = plan(replace_all(read_dict(data), changes)).size
+    places = placed(read_dict(data), Mesh(**setting["meshes"][0]))
+    size = plan(places[0]).size
     steps = setting["element_steps"] / len(places) / (size.rod + size.barrier)
     assert off(size.steps, steps) < 2.0
     assert off(size.time, setting["cpu_s"] / len(places)) < 2.0
@@ -70,7 +67,12 @@ def test_memory_and_time_of_the_stored_runs(data, setting):
     "changes",
     [
         {"accuracy.tip_size": "0.01 mm"},
-        {"projectile.length": "10 m", "projectile.diameter": "1 m", "projectile.tip_radius": "0.1 m"},
+        {
+            "projectile.length": "10 m",
+            "projectile.diameter": "1 m",
+            "projectile.tip_radius": "0.1 m",
+            "accuracy.tip_size": "0.35 mm",
+        },
     ],
 )
 def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(changes, monkeypatch):

@@ -31,7 +31,7 @@ def inner(points):
 def refined_patch(seed, share=0.15):
     """Block with one level of refinement whose free nodes are pushed about; hanging ones follow."""
     zone = Zone(np.zeros(3), np.eye(3), np.array([-0.9e-3, 0.0, -0.9e-3]), np.array([0.9e-3, 0.9e-3, 0.0]))
-    mesh = meshes.block([-3e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3, zone, 1, buffer=1)
+    mesh = meshes.block([-3e-3, 0, -3e-3], [3e-3, 3e-3, 0], 1e-3, [zone], buffer=1)
     push = np.random.default_rng(seed).uniform(-1, 1, mesh.points.shape) * 0.5e-3 * share
     return mesh, mesh.tie @ (mesh.points + push)
 

@@ -138,8 +138,7 @@ def test_lumped_masses_add_up_to_density_times_volume():
         [-2e-3, 0, -3e-3],
         [2e-3, 1e-3, 0],
         1e-3,
-        Zone(np.zeros(3), np.eye(3), -0.5e-3 * np.ones(3), 0.5e-3 * np.ones(3)),
-        1,
+        [Zone(np.zeros(3), np.eye(3), -0.5e-3 * np.ones(3), 0.5e-3 * np.ones(3))],
     )
     assert lumped_mass(mesh.points, mesh.cells, RHO).sum() == pytest.approx(RHO * 12e-9, rel=1e-12)
 

@@ -73,7 +73,7 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
     parts = interrupted(scene, tmp_path / "parts", 400)
     assert (parts / CHECKPOINT).stat().st_size > 0
     found = kept(scene, parts, resume=True)
-    assert found.steps == expected.steps > 500
+    assert found.steps == expected.steps >= 500
     assert outcome_numbers(found) == outcome_numbers(expected)
     assert (parts / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
     same_frames(read_fields(parts / "fields.vtkhdf"), read_fields(whole / "fields.vtkhdf"))

@@ -25,6 +25,7 @@ def run(tmp_path_factory):
         "accuracy.tip_size": "0.8 mm",
         "accuracy.across": 6,
         "accuracy.max_time": "0.1 ms",
+        "accuracy.unresolved": "report",
         "save.frames": 60,
     }
     told = []

@@ -116,9 +116,9 @@ def test_rows_are_no_lower_than_a_share_of_the_indentation():
 
 
 def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
-    scene = replace(SCENE, "save.frames", 0)
+    scene = replace_all(SCENE, {"save.frames": 0, "accuracy.mass_scaling": 1.0})
     heavy = simulate(scene)
-    monkeypatch.setattr("fem_impact.fem.body.HEAVY", 0.0)
+    monkeypatch.setattr("fem_impact.fem.mass_scaling.LOW", 1e-6)
     true = simulate(scene)
     assert heavy.cost.steps < 0.3 * true.cost.steps
     for key in ("e_edge", "mu", "E_vib_over_E_0", "W_friction_over_E_0", "E_plastic_barrier_over_E_0"):

@@ -9,6 +9,7 @@ from study_fakes import outcome
 from fem_impact.cost.limits import LOWEST
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
+from fem_impact.plan.plan import plan as plan_of
 from fem_impact.progress import NullMeter
 from fem_impact.report.study_data import read_study
 from fem_impact.report.study_page import study_page
@@ -25,7 +26,7 @@ def computed(jobs, broken=()):
 
 
 def fake(job):
-    size = job.scene.accuracy.tip_size
+    size = plan_of(job.scene).zones.tip_size
     return outcome(scene_id=job.scene.id, tip_size_m=size, e_paper=0.3 + 100 * size, E_vib_over_E_0=0.01)
 
 
@@ -37,7 +38,7 @@ def study(out, *ids, broken=(), quick=True):
 def test_a_set_is_two_meshes_and_a_table(tmp_path):
     found = study(tmp_path, "t5b")
     (row,) = found.document["rows"]
-    half = 0.5 * 100 * 0.6e-3 / (2**LOWEST - 1)
+    half = 0.5 * 100 * 0.59375e-3 / (2**LOWEST - 1)
     assert row["mesh_band"]["e_paper"] == pytest.approx(half)
     assert row["mesh_limit"]["e_paper"] == pytest.approx(row["e_paper"] - half)
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
@@ -105,6 +106,6 @@ def test_the_study_publishes_as_every_other(tmp_path):
 def test_the_coarser_twin(tmp_path):
     group = jobs_of("t5b", False, tmp_path)
     fine, coarse = group["fine"].scene, group["coarse"].scene
-    assert coarse.accuracy.tip_size == pytest.approx(COARSER * fine.accuracy.tip_size)
+    assert coarse.accuracy.tip_size == pytest.approx(COARSER * plan_of(fine).zones.tip_size, rel=1e-5)
     assert coarse.save.frames == 0
     assert replace(coarse, accuracy=fine.accuracy, save=fine.save) == fine

@@ -1,0 +1,67 @@
+"""A target error for a scene whose like was not measured, and a cost study within a time."""
+
+import pytest
+from cost_fakes import Here, run
+
+import fem_impact.run.simulate
+from fem_impact.cost import own_ladder, to_target
+from fem_impact.cost.measure import affordable, measure
+from fem_impact.cost.own_ladder import OwnLadder
+from fem_impact.cost.settings import FAMILY, ladder, placed
+from fem_impact.cost.to_target import settle
+from fem_impact.errors import SceneError, UsageError
+from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown
+from fem_impact.plan.plan import plan
+from fem_impact.progress import NullMeter
+from fem_impact.scene.shipped import load, replace, replace_all
+
+FAR = replace_all(load("t5b"), {"impact.omega": "30 rad/s", "accuracy": "20 %"})
+
+
+@pytest.fixture
+def fake(monkeypatch):
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
+
+
+def test_a_scene_far_from_every_measured_one_gets_a_ladder_of_its_own():
+    chosen = settle(FAR, budget_s=30.0)
+    assert isinstance(chosen, OwnLadder)
+    assert "nearest scene with a measured cost" in chosen.sentence and "30 s" in chosen.sentence
+    with pytest.raises(SceneError, match="cannot be judged"):
+        settle(FAR, "rigid")
+
+
+def test_the_ladder_ends_where_the_band_is_narrow_enough(fake, tmp_path):
+    outcome = to_target.simulate(FAR, options=RunOptions(out=tmp_path), budget_s=1e9)
+    stated = outcome.validity
+    assert 0 < stated.achieved_error <= 0.2
+    assert stated.accuracy_setting.startswith("2 meshes of its own")
+    assert isinstance(stated.expected_error, Unknown)
+    assert stated.mesh_band["e_edge"] > 0
+    assert (tmp_path / "outcome.json").exists()
+    finer = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=1e9)
+    assert finer.validity.accuracy_setting.startswith(f"{len(FAMILY)} meshes")
+    assert finer.validity.achieved_error > 1e-5  # not reached, and said
+
+
+def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
+    seconds = iter(range(0, 10000, 40))
+    monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
+    outcome = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=60.0)
+    assert outcome.validity.accuracy_setting.startswith("1 meshes of its own")
+    assert isinstance(outcome.validity.achieved_error, Unknown)
+
+
+def test_a_cost_study_runs_what_its_budget_holds(fake, tmp_path):
+    scene = load("t5b")
+    whole = ladder(scene)
+    two = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(scene, mesh))
+    kept = affordable(whole, 1.01 * two)
+    assert [one.name for one in kept if one.kind == "mesh"] == [
+        one.name for one in whole if one.kind == "mesh"
+    ][:2]
+    with pytest.raises(UsageError, match=r"--budget = \"0.1 s\": is too short for two meshes. Give some"):
+        affordable(whole, 0.1)
+    study = measure(scene, tmp_path, NullMeter(), executor=Here(), budget_s=1.01 * two)
+    assert {one.name for one in study.settings} == {one.name for one in kept}
