@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
 
@@ -67,7 +68,7 @@ class OwnLadder:
                 break
             meshes.append(runs)
             pace = (perf_counter() - start) / expected
-            if len(meshes) > 1 and _error(meshes) <= self.target:
+            if len(meshes) > 1 and achieved_error(meshes) <= self.target:
                 break
         return self._stated(meshes, perf_counter() - begun, options)
 
@@ -82,7 +83,7 @@ class OwnLadder:
             expected_error=NOT_MEASURED,
             expected_wall=self.budget_s,
             achieved_wall=wall_s,
-            achieved_error=_error(meshes) if pair else ALONE,
+            achieved_error=achieved_error(meshes) if pair else ALONE,
             mesh_limit=limits,
             mesh_band=bands,
         )
@@ -95,7 +96,7 @@ class OwnLadder:
         return outcome
 
 
-def _error(meshes: list[Placed]) -> float:
+def achieved_error(meshes: Sequence[Placed]) -> float:
     """Return the largest relative uncertainty of the quantities that a target is about."""
     truth = truths(meshes)
     return max(truth[name].uncertainty / truth[name].scale for name in TARGETED)

@@ -14,9 +14,9 @@ from typing import Any
 
 from fem_impact.cost.judge import Judged, cheapest, worst
 from fem_impact.cost.lanes import below, side_by_side
-from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
+from fem_impact.cost.limits import Placed, mesh_limits, mesh_means
 from fem_impact.cost.measure import CostStudy
-from fem_impact.cost.own_ladder import ALONE, OwnLadder
+from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
@@ -277,7 +277,6 @@ def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> O
     first, pair = meshes[0][0], len(meshes) == 2
     means = mesh_means(meshes[0]) if chosen.meshes else ALONE
     limits, bands = mesh_limits(*meshes) if pair else (means, ALONE)
-    truth = truths(meshes) if pair else {}
     stated = replace(
         first.validity,
         accuracy_target=chosen.target,
@@ -285,9 +284,7 @@ def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> O
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
         achieved_wall=wall_s,
-        achieved_error=max(truth[name].uncertainty / truth[name].scale for name in TARGETED)
-        if pair
-        else ALONE,
+        achieved_error=achieved_error(meshes) if pair else ALONE,
         mesh_limit=limits,
         mesh_band=bands,
     )

@@ -72,14 +72,7 @@ def build_geometry(
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
     body = projectile(scene)
     turn, lowest = to_barrier_frame(scene.impact.angle), lowest_point(scene)
-    rod = _rod(
-        scene,
-        lowest,
-        [
-            Zone(lowest, turn, np.array([-t - zones.reach, 0.0, -zones.base / 2**level]), np.array([t, b, n]))
-            for level, (t, b, n) in enumerate(zones.rod, 1)
-        ],
-    )
+    rod = _rod(scene, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
     if not vibrating:
         rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
     points = (rod.mesh.points - lowest) @ turn.T
@@ -144,17 +137,11 @@ def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:
-    """Return the barrier block; its fine zone extends towards -t under the path of the rod."""
+    """Return the barrier block."""
     h, base = zones.barrier_size, zones.base
-    rise = meshes.thin_skin_rise(zones.skin_rows) * h
-    boxes = [
-        Zone(np.zeros(3), np.eye(3), np.array([-t - zones.along, 0.0, -n - rise]), np.array([t, b, 0.0]))
-        for t, b, n in zones.barrier
-    ]
-    t, b, n = zones.half
     margin = scene.accuracy.block_margin  # springs replace the half-space beyond
-    low = np.array([-t - zones.along - margin, 0.0, -n - rise - margin])
-    high = np.array([t + margin, b + margin, 0.0])
+    low, high = zones.block(margin)
+    boxes = [Zone(np.zeros(3), np.eye(3), *box) for box in zones.barrier_boxes]
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
         raise SceneError(

@@ -13,8 +13,8 @@ from math import sqrt
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
-from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.hexmodes import CORNERS, reference_gradients
+from fem_impact.physics.contact import pressure_speed
 from fem_impact.plan.zones import Zones
 from fem_impact.scene.types import Material
 from meshes import HexMesh
@@ -28,26 +28,20 @@ ROUND_OFF = 1e-12  # of the rod's mass
 BACK = 0.9  # over the last mass scaling tried, where the rod could not make up for that
 
 
-def wave_speed(steel: Material) -> float:
-    """Return the speed of pressure waves, m/s."""
-    lame, shear = lame_constants(steel.E, steel.nu)
-    return sqrt((lame + 2 * shear) / steel.rho)
-
-
 def reference_time(zones: Zones, materials: dict[str, Material]) -> float:
     """Return the time, s, in which a wave crosses a cell `LOW` of the finest size high, of the faster body.
 
     ``materials`` are those of the meshed bodies, ``rod`` and ``barrier``.
     """
     sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size}
-    return LOW * min(sizes[body] / wave_speed(steel) for body, steel in materials.items())
+    return LOW * min(sizes[body] / pressure_speed(steel) for body, steel in materials.items())
 
 
 def crossing_times(mesh: HexMesh, points: Array, steel: Material) -> Array:
     """Return the time (m,), s, in which a pressure wave crosses each cell of a mesh where it is thinnest."""
     jacobian = np.einsum("qai,maj->mqij", reference_gradients(CORNERS), points[mesh.cells])
     half = np.linalg.svd(jacobian, compute_uv=False)[:, :, -1].min(axis=1)
-    return np.asarray(2.0 * half / wave_speed(steel))
+    return np.asarray(2.0 * half / pressure_speed(steel))
 
 
 def mass_factors(crossing: Array, wanted: float) -> Array:

@@ -123,6 +123,11 @@ def between(intervals: Array) -> float:
     return float((intervals[1:, 0] - intervals[:-1, 1]).sum())
 
 
+def pressure_speed(steel: Material) -> float:
+    """Return the speed of pressure waves in an unbounded body of a material, m/s."""
+    return sqrt(steel.E * (1 - steel.nu) / ((1 + steel.nu) * (1 - 2 * steel.nu) * steel.rho))
+
+
 def shear_speed(scene: Scene) -> float:
     """Return the speed of shear waves in the rod, m/s."""
     steel = scene.projectile.material

@@ -1,8 +1,8 @@
 """How many cells the radius of a contact has at its peak, and how far e and mu are off with so many.
 
 Largest difference from the finest mesh: of four elastic rods (aluminium, steel, tungsten) and of three that
-yield, with 0.8 to 9 cells on meshes halved up to three times, and of the 13 measured sets on three or four
-(``plan/data/summary.json``).
+yield, with 0.8 to 9 cells on meshes halved up to three times, and of the 13 measured sets on three or four.
+All had one fine zone of equal cells and true masses.
 
 =========  ==========  ====  ====  ====  =================================
 bodies     cells       runs  e     mu    plastic and friction work, of E_0

@@ -20,7 +20,7 @@ from fem_impact.arrays import Array
 from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
-from fem_impact.physics.contact import ContactBodies, contact_estimate, projectile
+from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.types import Material, Scene
 from fem_impact.scene.units import format_quantity
@@ -134,8 +134,7 @@ def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
 
 def _wave_speed(steel: Material) -> float:
     """Return the speed of pressure waves, m/s; of bar waves times 2 where the material is incompressible."""
-    stiff = (1 - steel.nu) / ((1 + steel.nu) * (1 - 2 * steel.nu))
-    return sqrt(steel.E / steel.rho * min(stiff, 4.0))
+    return min(pressure_speed(steel), 2.0 * sqrt(steel.E / steel.rho))
 
 
 def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tuple[float, Array, Array]]:
@@ -157,28 +156,12 @@ def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tupl
 def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
     """Return the elements of half the rod, without slices if it cannot vibrate."""
     length = scene.projectile.length
-    boxes = _rod_boxes(zones)
+    boxes = zones.rod_boxes
     layer = len(section(scene.accuracy.across).quads) / zones.base  # elements of a metre of the coarse rod
     count = layer * (length if vibrating else min(_body_start(scene, zones, boxes), length))
     for edge, lowest, highest in _split_boxes(zones.base, boxes):
         count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
     return count
-
-
-def _rod_boxes(zones: Zones) -> list[tuple[Array, Array]]:
-    """Return the lowest and highest corners, m, of the rod's zone of each level."""
-    return [
-        (np.array([-t - zones.reach, 0.0, -zones.base / 2**level]), np.array([t, b, n]))
-        for level, (t, b, n) in enumerate(zones.rod, 1)
-    ]
-
-
-def _block_boxes(zones: Zones) -> list[tuple[Array, Array]]:
-    """Return the lowest and highest corners, m, of the block's zone of each level."""
-    rise = thin_skin_rise(zones.skin_rows) * zones.barrier_size
-    return [
-        (np.array([-t - zones.along, 0.0, -n - rise]), np.array([t, b, 0.0])) for t, b, n in zones.barrier
-    ]
 
 
 def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
@@ -216,10 +199,7 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
 
 def _block_elements(scene: Scene, zones: Zones) -> float:
     """Return the elements of the half block: boxes about the fine zone, cut off at the block's sides."""
-    margin, boxes, (t, b, n) = scene.accuracy.block_margin, _block_boxes(zones), zones.half
-    depth = n + thin_skin_rise(zones.skin_rows) * zones.barrier_size
-    low, high = np.array([-t - zones.along, 0.0, -depth]), np.array([t, b, 0.0])
-    bottom, top = low - np.array([margin, 0.0, margin]), high + np.array([margin, margin, 0.0])
+    boxes, (bottom, top) = zones.barrier_boxes, zones.block(scene.accuracy.block_margin)
     count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
     for edge, lowest, highest in _split_boxes(zones.base, boxes):
         sides = np.minimum(highest, top) - np.maximum(lowest, bottom)
@@ -231,7 +211,7 @@ def _yielding_rod(scene: Scene, zones: Zones) -> float:
     """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
     radii = _radii(zones, zones.tip_size)
     points, volume = _inside_rod(scene, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
-    return _yielding(points, volume / max(len(points), 1), zones.reach, radii, zones.base, _rod_boxes(zones))
+    return _yielding(points, volume / max(len(points), 1), zones.reach, radii, zones.base, zones.rod_boxes)
 
 
 def _yielding_block(zones: Zones) -> float:
@@ -241,7 +221,7 @@ def _yielding_block(zones: Zones) -> float:
     low, high = np.array([-radii[0] - zones.along, 0.0, -radii[2]]), np.array([*radii[:2], 0.0])
     points = _grid(low, high)
     each = float(np.prod(high - low)) / len(points)
-    return _yielding(points, each, zones.along, radii, zones.base, _block_boxes(zones))
+    return _yielding(points, each, zones.along, radii, zones.base, zones.barrier_boxes)
 
 
 def _radii(zones: Zones, edge: float) -> Array:

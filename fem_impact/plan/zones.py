@@ -18,9 +18,11 @@ from fem_impact.physics.contact import (
     projectile,
     sliding,
 )
-from fem_impact.plan.cells import levels_of
+from fem_impact.plan.cells import contact_radius, levels_of
 from fem_impact.scene.types import Scene
+from meshes import thin_skin_rise
 
+Corners = tuple[Array, Array]  # lowest and highest corner of a box, m
 Extents = tuple[float, float, float]
 Shares = tuple[tuple[float, Extents], ...]  # least cells over the contact's radius, shares along t, b, n
 
@@ -77,6 +79,30 @@ class Zones:
         """Return the finest cell edge of the barrier along t and b, m."""
         return self.base * 0.5 ** len(self.barrier)
 
+    @property
+    def rod_boxes(self) -> list[Corners]:
+        """Return the box of the rod's zone of each level, from the contact along t, b and n."""
+        return [
+            (np.array([-t - self.reach, 0.0, -self.base / 2**level]), np.array([t, b, n]))
+            for level, (t, b, n) in enumerate(self.rod, 1)
+        ]
+
+    @property
+    def barrier_boxes(self) -> list[Corners]:
+        """Return the box of each level of the barrier, before its rows at the skin are drawn together."""
+        return [self._below(extents) for extents in self.barrier]
+
+    def block(self, margin: float) -> Corners:
+        """Return the corners of the barrier's block, ``margin``, m, wider than the zone that may yield."""
+        low, high = self._below(self.half)
+        return low - np.array([margin, 0.0, margin]), high + np.array([margin, margin, 0.0])
+
+    def _below(self, extents: Extents) -> Corners:
+        """Return the box of a zone of the barrier; it goes on towards -t under the path of the rod."""
+        t, b, n = extents
+        rise = thin_skin_rise(self.skin_rows) * self.barrier_size
+        return np.array([-t - self.along, 0.0, -n - rise]), np.array([t, b, 0.0])
+
 
 def zones_of(bodies: ContactBodies) -> Zones:
     """Return the fine zones of two bodies that touch."""
@@ -89,7 +115,7 @@ def zones_of(bodies: ContactBodies) -> Zones:
 
     def extents(level: int, shares: Shares) -> Extents:
         h = base / 2**level
-        t, b, n = half_widths(size, h, share_of(sqrt(size.a_t * size.a_b) / h, shares))
+        t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares))
         return t, max(b, rho) if reach > 0 else b, n
 
     return Zones(
