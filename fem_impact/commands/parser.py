@@ -21,7 +21,7 @@ STUDIES = {
     "gamma": "vibration against slenderness",
     "criterion": "when a rod may be called rigid",
     "effects": "effects chosen by the scene beside everything on, and what each costs",
-    "scatter": "uncertain inputs sampled beside the scatter of the tests, and what causes it",
+    "validation": "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
 }
 REPORT = {"report": "one page over all studies beside it"}
 _RESULT = "directory that a run or a study wrote"
@@ -153,9 +153,6 @@ def _add_study(commands: Commands) -> None:
     listed = "; ".join(f"{name}: {summary}" for name, summary in {**STUDIES, **REPORT}.items())
     parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help=listed)
     parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
-    parser.add_argument(
-        "--fidelity", choices=["modal", "solid"], default="", help="of scatter (default: modal)"
-    )
     parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
     parser.add_argument(

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fem_impact.study.document import Request
 
 
-ABOUT_SETS = ("sets", "scatter", "convergence", "effects")
+ABOUT_SETS = ("sets", "validation", "convergence", "effects")
 
 
 def study(options: Options) -> int:
@@ -33,7 +33,7 @@ def study(options: Options) -> int:
     if options.name == "report":
         with directory_lock(out):
             return _report(options, out)
-    request = Request(out, ids, options.quick, options.fidelity)
+    request = Request(out, ids, options.quick)
     with directory_lock(out), closing(chosen_meter(options)) as meter, _workers(options) as executor:
         if options.estimate:
             return _estimate(options, request, meter, executor)
@@ -122,11 +122,10 @@ def _check_options(options: Options) -> None:
     if options.name == "report" and (options.quick or options.estimate or options.scheduler):
         remedy = "Leave out --quick, --estimate and --scheduler."
         raise UsageError("reads what others have computed.", key="study report", remedy=remedy)
-    looked_at = (("ID", " ".join(options.ids), ABOUT_SETS), ("--fidelity", options.fidelity, ("scatter",)))
-    for key, given, studies in looked_at:
-        if given and options.name not in studies:
-            problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(studies)}."
-            raise UsageError(problem, key=key, value=given, remedy=f"Leave it out. {remedy}")
+    if options.ids and options.name not in ABOUT_SETS:
+        problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(ABOUT_SETS)}."
+        given = " ".join(options.ids)
+        raise UsageError(problem, key="ID", value=given, remedy=f"Leave it out. {remedy}")
 
 
 def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:

@@ -38,19 +38,15 @@ class Request:
         Measured sets, where the study is about them; all when empty.
     quick : bool
         Whether to run the small version.
-    fidelity : str
-        Fidelity of the runs, for studies with a choice; empty for the study's default.
     """
 
     out: Path
     ids: tuple[str, ...] = ()
     quick: bool = False
-    fidelity: str = ""
 
     def command(self, study: str) -> str:
         """Return the command line of this request."""
         options = [*self.ids, *(["--quick"] if self.quick else [])]
-        options += ["--fidelity", self.fidelity] if self.fidelity else []
         return " ".join(["fem-impact study", study, *options])
 
 

@@ -1,7 +1,7 @@
 """Uncertain inputs of a measured set.
 
-`UNCERTAIN_INPUTS` are sampled over their ranges, all at once, by the scatter study. `INPUT_CHANGES` are made
-one at a time by the study of the sets; `sensitivity_rows` lists their changes of the results and
+`UNCERTAIN_INPUTS` are sampled over their ranges, all at once, by the validation study. `INPUT_CHANGES` are
+made one at a time by the study of the sets; `sensitivity_rows` lists their changes of the results and
 `explanations` compares these with the difference from the measurement.
 """
 

@@ -1,4 +1,8 @@
-"""The measured sets, each on two meshes, beside the experiments, and what uncertain inputs could explain."""
+"""The measured sets, each on two meshes, beside the experiments, and what uncertain inputs could explain.
+
+Both meshes run with the barrier's grid at two places half a cell apart, so that a band holds the scatter by
+the place too; the run at the first place of the finer mesh is the one that is kept with its fields.
+"""
 
 from __future__ import annotations
 
@@ -36,10 +40,14 @@ if TYPE_CHECKING:
 QUICK = {"accuracy.tip_size": "0.6 mm", "accuracy.barrier_size": "0.3 mm", "save.frames": 60}
 QUICK_SETS = ("t3-machined", "t4", "t5b")
 COARSER = 2.0  # element sizes of the second mesh over those of the first
+HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
 
 
 def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set: "fine", "coarse" and, unless quick, "coarse" with each input changed."""
+    """Return the jobs of a set: "fine", "coarse" and, unless quick, more.
+
+    These are both meshes with the barrier's grid half a cell further, and "coarse" with each input changed.
+    """
     scene = load(set_id)
     if quick:
         scene = replace_all(scene, QUICK)
@@ -51,9 +59,17 @@ def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
     coarse |= {"accuracy.unresolved": "report", "save.frames": 0}
     coarse_scene = replace_all(scene, coarse)
     coarse_job = Job(f"{set_id}-coarse", coarse_scene, out=out / f"{set_id}-coarse")
-    return {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job} | (
-        {} if quick else sensitivity_jobs(coarse_job, out)
-    )
+    meshes = {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job}
+    if quick:
+        return meshes
+    moved = {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
+    return {**meshes, **moved, **sensitivity_jobs(coarse_job, out)}
+
+
+def _half_cell(job: Job) -> Job:
+    """Return the job with the grid of the barrier half a cell further along t, without fields."""
+    scene = replace_all(job.scene, {"accuracy.grid_shift": 0.5, "save.frames": 0})
+    return Job(f"{job.name}-{HALF_CELL}", scene)
 
 
 def chosen(request: Request) -> tuple[str, ...]:
@@ -73,7 +89,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     for name in chosen(request):
         runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
         if isinstance(runs["fine"], Outcome):
-            outcomes.append(with_limits(runs["fine"], runs["coarse"], out / name))
+            outcomes.append(with_limits(runs["fine"], runs, out / name))
         if not request.quick:
             changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
     comparison = [row for outcome in outcomes for row in compare(outcome)]
@@ -81,19 +97,28 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 
 
-def with_limits(fine: Outcome, coarse: Outcome | Failure, out: Path) -> Outcome:
+def with_limits(fine: Outcome, runs: Results, out: Path) -> Outcome:
     """Return the outcome with the limits of two meshes and their bands, and store it."""
+    meshes, failed = by_mesh(runs)
     limits: Mapping[str, float] | Unknown
     bands: Mapping[str, float] | Unknown
-    if isinstance(coarse, Failure):
-        limits = bands = Unknown(f"the coarser mesh failed: {coarse.reason}")
-    elif known(coarse.cost.tip_size) <= known(fine.cost.tip_size):
+    if failed:
+        limits = bands = Unknown(f"run {failed[0].name} failed: {failed[0].reason}")
+    elif known(meshes["coarse"][0].cost.tip_size) <= known(fine.cost.tip_size):
         limits = bands = Unknown("the second mesh is not coarser: give a smaller accuracy.tip_size")
     else:
-        limits, bands = mesh_limits([fine], [coarse])
+        limits, bands = mesh_limits(meshes["fine"], meshes["coarse"])
     limited = replace(fine, validity=replace(fine.validity, mesh_limit=limits, mesh_band=bands))
     limited.write(out / "outcome.json")
     return limited
+
+
+def by_mesh(runs: Results) -> tuple[dict[str, list[Outcome]], list[Failure]]:
+    """Return the finished runs of "fine" and "coarse" at their places, and the failed ones, of `jobs_of`."""
+    kinds = {mesh: (mesh, f"{mesh}-{HALF_CELL}") for mesh in ("fine", "coarse")}
+    placed = {mesh: [runs[kind] for kind in of if kind in runs] for mesh, of in kinds.items()}
+    finished = {m: [run for run in of if isinstance(run, Outcome)] for m, of in placed.items()}
+    return finished, [run for of in placed.values() for run in of if isinstance(run, Failure)]
 
 
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")

@@ -16,7 +16,6 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("study", "nope"), "invalid choice"),
         (("study", "sets", "t3-machned"), "Did you mean t3-machined?"),
         (("study", "gamma", "t4"), "is nothing to study gamma"),
-        (("study", "gamma", "--fidelity", "solid"), "is nothing to study gamma"),
         (("study", "report", "--quick"), "reads what others have computed"),
         (("cost", "paper", "--target", "5 %"), "are about one scene"),
         (("cost", "t5b", "--target", "2"), "--target"),

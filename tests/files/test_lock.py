@@ -81,7 +81,7 @@ def wait_until(true, seconds=60.0):
 LINES = [
     ("run", "t5b", "--fidelity", "rigid"),
     ("run", "t5b", "--resume"),
-    ("study", "scatter", "--fidelity", "modal", "--quick"),
+    ("study", "gamma", "--quick"),
     ("study", "sets", "--estimate"),
     ("study", "report"),
     ("cost", "t5b"),

@@ -72,7 +72,7 @@ def test_a_failing_job_is_a_row(tmp_path):
 def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(tmp_path):
     (row,) = study(tmp_path, "t5b", broken=("t5b-coarse",)).document["rows"]
     assert row["mesh_limit"] is row["mesh_band"] is None
-    assert "coarser mesh failed" in row["reasons"]["mesh_band"]
+    assert "run t5b-coarse failed" in row["reasons"]["mesh_band"]
 
 
 def test_a_first_look_is_one_set_a_rod(tmp_path):

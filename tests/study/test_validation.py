@@ -1,0 +1,153 @@
+"""The validation study: seeded samples in stated ranges, surfaces of known functions, errors, calibration."""
+
+import json
+from dataclasses import replace
+from math import hypot, sqrt
+
+import numpy as np
+import pytest
+from study_fakes import outcome
+
+from fem_impact.errors import RunError
+from fem_impact.jobs.job import Failure
+from fem_impact.physics.contact import projectile
+from fem_impact.plan.plan import plan as plan_of
+from fem_impact.progress import NullMeter
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.study import validation as study
+from fem_impact.study.calibration import calibrate, constants_of
+from fem_impact.study.document import Request
+from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, sample_values
+from fem_impact.study.response import fit
+from fem_impact.study.validation import NAMES, Comparison, conclude, plan, unit_sample
+from rigid.experiments import measured_set
+
+SCENE, SET = load("t5b"), measured_set("t5b")
+
+
+def fake(job):
+    """A model whose Omega is 20 f plus the speed, whose vibration is .01 of the speed."""
+    scene = job.scene
+    speed = hypot(scene.impact.v_n, scene.impact.v_t)
+    motion = {"v_n_m_per_s": -1.5, "v_t_m_per_s": -1.5, "V_n_m_per_s": 0.4}
+    motion |= {"V_t_m_per_s": -1.0 + scene.surface.friction, "k_squared_m2": 5.5e-4}
+    spin = {"Omega_rad_per_s": 20 * scene.surface.friction + speed, "E_vib_over_E_0": 0.01 * speed}
+    return outcome(tip_size_m=plan_of(scene).zones.tip_size, **motion, **spin)
+
+
+def results_of(request, broken=()):
+    return {j.name: Failure(j.name, "folded") if j.name in broken else fake(j) for j in plan(request, {})}
+
+
+def test_samples_are_seeded_and_stay_within_their_ranges():
+    assert (unit_sample(16) == unit_sample(16)).all()
+    values = sample_values(SCENE, SET, unit_sample(16), tests=False)
+    low, high = np.array([i.span(SCENE, SET) for i in UNCERTAIN_INPUTS]).T
+    assert ((values >= low) & (values <= high)).all()
+    assert (values.std(axis=0) > 0.1 * (high - low)).all()
+    tests = sample_values(SCENE, SET, unit_sample(16), tests=True)
+    same = (tests == values).all(axis=0)
+    assert [i.varies for i in UNCERTAIN_INPUTS] == same.tolist()
+    assert (tests[:, ~same] == 1.0).all()
+    at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
+    assert len(np.unique(values[:, at])) == LEVELS
+
+
+def test_the_contact_point_moves_by_what_is_stated():
+    at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
+    rods = [replace(SCENE.projectile, tip_radius=r) for r in UNCERTAIN_INPUTS[at].span(SCENE, SET)]
+    points = [projectile(replace(SCENE, projectile=rod)).contact_point(np.pi / 4) for rod in rods]
+    assert np.hypot(*np.subtract(*points)) == pytest.approx(2 * CONTACT, rel=1e-6)
+
+
+def test_a_scene_with_nominal_inputs_is_the_set():
+    centre = sample_values(SCENE, SET, np.full((1, len(UNCERTAIN_INPUTS)), 0.5), tests=True)[0]
+    changed = replace_all(SCENE, changes(SCENE, centre))
+    assert changed.impact.v_n == pytest.approx(SCENE.impact.v_n, rel=1e-8)
+    assert changed.projectile.tip_radius == pytest.approx(SCENE.projectile.tip_radius)
+
+
+def test_a_surface_of_second_order_is_exact_for_a_quadratic_and_knows_its_error_elsewhere():
+    rng = np.random.default_rng(1)
+    unit = rng.random((40, 3))
+    quadratic = 1 + unit[:, 0] - 2 * unit[:, 1] * unit[:, 2] + unit[:, 2] ** 2
+    surface = fit(unit, np.column_stack([quadratic, np.exp(4 * unit[:, 0])]))
+    new = rng.random((500, 3))
+    off = surface(new) - np.column_stack(
+        [1 + new[:, 0] - 2 * new[:, 1] * new[:, 2] + new[:, 2] ** 2, np.exp(4 * new[:, 0])]
+    )
+    assert surface.order == 2
+    assert np.abs(off[:, 0]).max() < 1e-12
+    assert surface.error[1] == pytest.approx(np.sqrt(np.mean(off[:, 1] ** 2)), rel=0.35)
+    assert fit(unit[:11], quadratic[:11, None]).order == 1
+    with pytest.raises(RunError, match="too few for 3 uncertain inputs"):
+        fit(unit[:4], quadratic[:4, None])
+
+
+def test_the_error_of_the_model_and_its_interval():
+    shown = Comparison("t5b", "e", 0.40, 0.30, 0.01, 0.02, 0.02)
+    assert shown.u_val == pytest.approx(0.03)
+    assert shown.interval == pytest.approx((0.04, 0.16))
+    assert shown.verdict == "model too high by at least 0.04"
+    assert replace(shown, S=0.25).verdict == "no error shown"
+    assert replace(shown, S=0.20).verdict == "model too low by at least 0.04"
+
+
+def test_uncertainties_of_a_known_model(tmp_path):
+    request = Request(tmp_path, ("t5b",))
+    (found,) = [study._validated("t5b", request, results_of(request))]
+    omega = found.comparisons[NAMES.index("Omega")]
+    spans = {i.name: np.ptp(i.span(SCENE, SET)) for i in UNCERTAIN_INPUTS}
+    speed = hypot(SCENE.impact.v_n, SCENE.impact.v_t)
+    sd = hypot(20 * spans["friction"], speed * spans["speed"]) / sqrt(12)
+    assert omega.u_input == pytest.approx(sd, rel=0.02)
+    assert found.surface.error[NAMES.index("Omega")] < 1e-7
+    statistics = SET.statistics()["Omega"]
+    tracking = 0.02 / sqrt(3) * abs(statistics.mean)
+    assert omega.u_D == pytest.approx(hypot(statistics.sd / sqrt(statistics.n), tracking))
+    assert omega.u_num == pytest.approx(0.0, abs=1e-12)
+
+
+def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_path):
+    request = Request(tmp_path, ("t5b",))
+    found = study._validated("t5b", request, results_of(request))
+    speed, f = hypot(SCENE.impact.v_n, SCENE.impact.v_t), 0.63
+    known = [
+        replace(c, D=20 * f + speed, u_D=0.05, u_num=0.0)
+        if c.quantity == "Omega"
+        else replace(c, D=c.S, u_D=1e3)
+        for c in found.comparisons
+    ]
+    calibration = calibrate([replace(found, comparisons=tuple(known))])
+    at = constants_of([found]).index("friction, machined")
+    low, high = UNCERTAIN_INPUTS[0].span(SCENE, SET)
+    width = hypot(0.05, speed * np.ptp(UNCERTAIN_INPUTS[4].span(SCENE, SET)) / sqrt(12)) / 20
+    assert low + (high - low) * calibration.mean[at] == pytest.approx(f, abs=0.1 * width + 1e-3)
+    assert (high - low) * calibration.sd[at] == pytest.approx(width, rel=0.1)
+    assert all(r.met for r in calibration.residuals)
+
+
+def test_the_study_tells_errors_causes_and_failures(tmp_path):
+    request = Request(tmp_path, ("t5b",), quick=True)
+    found = conclude(request, results_of(request, broken=("t5b-3",)), NullMeter())
+    written = json.loads((tmp_path / "study.json").read_text())
+    assert written["failures"] == [{"scene_id": "t5b-3", "error": "folded"}]
+    sheets = {sheet["name"]: sheet for sheet in written["sheets"]}
+    causes = {
+        row[1]: dict(zip(sheets["causes"]["columns"], row, strict=True)) for row in sheets["causes"]["rows"]
+    }
+    assert causes["E_vib/E_0"]["speed"] == pytest.approx(1.0, abs=0.03)
+    assert causes["Omega"]["friction"] > 0.9 and causes["Omega"]["yield"] < 0.01
+    spread = {row[1]: row for row in sheets["spread"]["rows"]}
+    assert spread["e"][-2] == pytest.approx(SET.statistics()["e"].sd)
+    assert "E +- 2 u_val contains zero" in found.text and "never a default" in found.text
+    for name in ("errors.svg", "distribution-e-narrow.svg", "distribution-Omega.csv"):
+        assert (tmp_path / "figures" / name).stat().st_size > 500
+    assert written["command"] == "fem-impact study validation t5b --quick"
+
+
+def test_a_set_whose_mesh_failed_is_left_out_and_said(tmp_path):
+    request = Request(tmp_path, ("t5b",), quick=True)
+    found = conclude(request, results_of(request, broken=("t5b-coarse",)), NullMeter())
+    assert "No set could be compared" in found.text
+    assert "failed: t5b-coarse: folded" in found.text
