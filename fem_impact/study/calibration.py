@@ -15,7 +15,7 @@ from scipy.stats import qmc
 
 from fem_impact.arrays import Array
 from fem_impact.study.inputs import UNCERTAIN_INPUTS
-from fem_impact.study.validation import COVERAGE, DRAWN, NAMES, SEED, ValidatedSet, scaled, unit_sample
+from fem_impact.study.validated import COVERAGE, DRAWN, NAMES, SEED, ValidatedSet, scaled, unit_sample
 
 JUDGED = ("e", "mu", "Omega")  # the other quantities are functions of these and of the approach
 FRICTION = "friction"

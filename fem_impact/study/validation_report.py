@@ -14,7 +14,7 @@ from fem_impact.study.calibration import Calibration, calibrate, constants_of
 from fem_impact.study.compare import MEASURED
 from fem_impact.study.document import Picture, Sheet, StudyReport
 from fem_impact.study.inputs import UNCERTAIN_INPUTS
-from fem_impact.study.validation import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
+from fem_impact.study.validated import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations
 

@@ -19,7 +19,8 @@ from fem_impact.study.calibration import calibrate, constants_of
 from fem_impact.study.document import Request
 from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, sample_values
 from fem_impact.study.response import fit
-from fem_impact.study.validation import NAMES, Comparison, conclude, plan, unit_sample
+from fem_impact.study.validated import NAMES, Comparison, unit_sample
+from fem_impact.study.validation import conclude, plan
 from rigid.experiments import measured_set
 
 SCENE, SET = load("t5b"), measured_set("t5b")
