@@ -226,15 +226,15 @@ MUTANTS = (
     Mutant(
         "rates that soften: sign of the rate term in the radial return",
         "fem_impact/solid/plastic_return.py",
-        "slow * np.exp(u), 1.0 + rate[0] * u",
-        "slow * np.exp(u), 1.0 - rate[0] * u",
+        "(1.0 + rate.C * u, rate.C, 0.0)",
+        "(1.0 - rate.C * u, rate.C, 0.0)",
         f"{YIELDING}::test_the_increment_obeys_its_law_however_far_the_trial_is_out",
     ),
     Mutant(
         "rate hardening by the strain of a step, not by its rate, eight lanes together",
         "fem_impact/solid/plastic_return.py",
-        "n, C, slow, count = law[2], rate[0], rate[1] * dt, 0",
-        "n, C, slow, count = law[2], rate[0], rate[1] * 1e-6, 0",
+        "n, slow, count = law[2], _reference(rate) * dt, 0",
+        "n, slow, count = law[2], _reference(rate) * 1e-6, 0",
         f"{YIELDING}::test_lanes_together_return_like_one_alone",
     ),
     Mutant(

@@ -28,8 +28,9 @@ from fem_impact.plan.choose import active
 from fem_impact.plan.measured import summary, yardsticks
 from fem_impact.plan.plan import plan
 from fem_impact.run import simulate as run
+from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.types import Material, Scene
+from fem_impact.scene.types import Scene
 
 SUMMARY = "fem-impact/cost-summary/3"
 

@@ -12,7 +12,8 @@ from fem_impact.physics.contact import LIMIT_PRESSURE, contact_estimate
 
 if TYPE_CHECKING:
     from fem_impact.physics.hardening import Hardening
-    from fem_impact.scene.types import Material, Scene
+    from fem_impact.scene.material import Material
+    from fem_impact.scene.types import Scene
 
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
@@ -36,22 +37,25 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
 
 def hardening_of(material: Material) -> Hardening:
-    """Return the hardening law of a material: linear by its modulus, or through its ultimate stress.
+    """Return the hardening law of a material: linear by its modulus, or through ultimate stress or hardness.
 
     Raises
     ------
     SceneError
-        If no power law reaches the ultimate stress.
+        If no power law reaches the ultimate stress, or the hardness stands for less than the yield stress.
     """
-    from fem_impact.physics.hardening import linear_hardening, power_hardening
+    from fem_impact.physics.hardening import hardness_hardening, linear_hardening, power_hardening
 
     if material.hardening is not None:
         return linear_hardening(material.yield_stress, material.hardening)
+    key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"
     try:
+        if material.law == "hardness" and material.hardness is not None:
+            key, value = "hardness", f"{material.hardness:g}"
+            return hardness_hardening(material.E, material.yield_stress, material.hardness)
         return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
     except ValueError as error:
-        value = f"{material.ultimate_stress / 1e6:g} MPa"
-        raise SceneError(str(error), key=f"ultimate_stress of {material.name}", value=value) from None
+        raise SceneError(str(error), key=f"{key} of {material.name}", value=value) from None
 
 
 def number(scene: Scene) -> float:

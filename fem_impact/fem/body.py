@@ -24,7 +24,7 @@ from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import Plan
-from fem_impact.scene.types import Material
+from fem_impact.scene.material import Material
 from meshes import OUTER, HexMesh, RodMesh
 
 HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed

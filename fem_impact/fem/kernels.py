@@ -106,6 +106,25 @@ def inlined(function: F) -> F:
     return _compiled(function, forceinline=True, **COUNTLESS)
 
 
+def by_type(argument: str, others: dict[type, Callable[..., Any]]) -> Callable[[F], F]:
+    """Compile a helper whose body follows from the named tuple that is its ``argument``.
+
+    The choice is made when the caller is compiled: its loop has one body and no branch. ``others`` are the
+    bodies of some types of named tuple; the decorated function is that of all the rest.
+    """
+
+    def decorate(function: F) -> F:
+        def choose(*arguments: Any) -> Callable[..., Any]:
+            named = dict(zip(function.__code__.co_varnames, arguments, strict=False))
+            return others.get(named[argument].instance_class, function)
+
+        options: Any = {"fastmath": FAST, "error_model": "numpy", "forceinline": True}
+        extending.overload(function, jit_options=options, strict=False)(choose)
+        return function
+
+    return decorate
+
+
 def _compiled(function: F, **options: Any) -> F:
     return cast(F, numba.njit(fastmath=FAST, error_model="numpy", **options)(function))
 

@@ -16,7 +16,7 @@ from fem_impact.arrays import Array, Bools
 from fem_impact.fem.hexmodes import CORNERS, reference_gradients
 from fem_impact.physics.contact import pressure_speed
 from fem_impact.plan.zones import Zones
-from fem_impact.scene.types import Material
+from fem_impact.scene.material import Material
 from meshes import HexMesh
 
 # height, over the size asked for, of a cell that gets no mass at a scaling of 1: rows of cells drawn together

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cache
-from math import cos, inf, pi, sin, sqrt
+from math import cos, pi, sin, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +33,7 @@ from fem_impact.physics.contact import (
     start_energy,
 )
 from fem_impact.physics.contact_law import ContactLaw, contact_law
-from fem_impact.physics.hardening import rate_gain
+from fem_impact.physics.hardening import rate_gain, strain_rate
 from rigid import GRAVITY
 
 STEPS = 150  # time steps over the estimated contact time
@@ -153,10 +153,10 @@ def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> B
 def _law(bodies: ContactBodies, rate: bool) -> ContactLaw:
     """Return the contact law whose limit pressure is that of the flow stress, on the area 2 pi R d."""
     law = contact_law(bodies)
-    flow = min((material.ultimate_stress for material in bodies.yielding), default=inf)
-    if flow == inf:
+    soft = min(bodies.yielding, key=lambda metal: metal.ultimate_stress, default=None)
+    if soft is None:
         return law
-    limit = LIMIT_PRESSURE * flow * (1 + rate_gain(bodies) * rate)
+    limit = LIMIT_PRESSURE * soft.ultimate_stress * (1 + rate_gain(soft, strain_rate(bodies)) * rate)
     depth = (pi * limit / (2 * law.E_star)) ** 2 * law.R
     force = law.stiffness * depth**1.5
     return law._replace(limit=limit, yield_depth=depth, yield_force=force, slope=2 * pi * limit * law.R)

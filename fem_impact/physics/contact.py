@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
-    from fem_impact.scene.types import Material, Scene
+    from fem_impact.scene.material import Material
+    from fem_impact.scene.types import Scene
     from rigid import Projectile
 
 
@@ -45,9 +46,9 @@ class ContactBodies:
 
     @property
     def yielding(self) -> list[Material]:
-        """Return the materials that may yield."""
+        """Return the materials that may yield and have a yield stress."""
         rod, barrier = self.scene.projectile.material, self.scene.barrier.material
-        return [rod] * self.rod_yields + [barrier] * self.barrier_yields
+        return [m for m in [rod] * self.rod_yields + [barrier] * self.barrier_yields if m.yields]
 
     @property
     def elastic(self) -> list[Material]:

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from fem_impact.physics.contact import LIMIT_PRESSURE, ContactBodies, contact_modulus, principal_radii
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Material
+    from fem_impact.scene.material import Material
 
 
 # s: contacts with a shorter gap count as one; a few passages of a wave across the tip

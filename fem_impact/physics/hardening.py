@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import log, sqrt
+from math import log, log1p, sqrt
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from fem_impact.physics.contact import ContactBodies, contact_estimate, principal_radii
+from fem_impact.scene.material import JohnsonCookRate
 
-C, SLOWEST = 0.022, 1.0  # -, 1/s: Johnson and Cook's rate factor of mild steel, see `fem_impact.effects.rate`
+if TYPE_CHECKING:
+    from fem_impact.scene.material import Material
 
 
-@dataclass(frozen=True, slots=True)
-class RateFactor:
+TABOR, TABOR_STRAIN = 3.0, 0.08  # hardness over the flow stress at this plastic strain
+KGF_PER_MM2 = 9.80665e6  # Pa
+
+
+class JohnsonCook(NamedTuple):
     """Factor 1 + C ln(rate / slowest) of the flow stress for plastic strain rates above ``slowest``, 1/s.
 
     Johnson & Cook 1985, doi:10.1016/0013-7944(85)90052-9, eq 1, without its thermal softening.
@@ -22,6 +28,36 @@ class RateFactor:
 
     C: float
     slowest: float = 1.0
+
+    def factor(self, rate: float) -> float:
+        """Return the factor at a plastic strain rate, 1/s."""
+        return 1 + self.C * log(max(rate / self.slowest, 1.0))
+
+
+class CowperSymonds(NamedTuple):
+    """Factor 1 + (rate / D)^(1/q) of the flow stress; D in 1/s."""
+
+    D: float
+    q: float
+
+    def factor(self, rate: float) -> float:
+        """Return the factor at a plastic strain rate, 1/s."""
+        return float(1 + (rate / self.D) ** (1 / self.q))
+
+
+RateLaw = JohnsonCook | CowperSymonds
+
+
+def rate_law(metal: Material) -> RateLaw | None:
+    """Return the law of a metal's factor over the strengths that it states, None without data.
+
+    The factor of Johnson and Cook is taken at the rate of the tests that gave the strengths: both are values
+    of one line in ln(rate), so that it starts from 1 there and its slope is C over the line's value there.
+    """
+    rate = metal.rate
+    if isinstance(rate, JohnsonCookRate):
+        return JohnsonCook(rate.C / (1 + rate.C * log(rate.tested / rate.reference)), rate.tested)
+    return CowperSymonds(rate.D, rate.q) if rate else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +71,7 @@ class Hardening:
     yield_stress: float
     slope: float
     exponent: float
-    rate: RateFactor | None = None
+    rate: RateLaw | None = None
 
     def __post_init__(self) -> None:
         if not self.yield_stress > 0:
@@ -90,6 +126,38 @@ def power_hardening(E: float, yield_stress: float, ultimate_stress: float) -> Ha
     return Hardening(yield_stress, stiffness if n else 0.0, n)
 
 
+def hardness_hardening(E: float, yield_stress: float, hardness: float) -> Hardening:
+    """Return the power law through yield point, elastic slope and the flow stress of Vickers' number HV.
+
+    Raises
+    ------
+    ValueError
+        If that flow stress is not above the yield stress.
+
+    Examples
+    --------
+    >>> print(round(float(hardness_hardening(206e9, 320e6, 163).flow_stress(0.08)) / 1e6))
+    533
+    """
+    flow = tabor_stress(hardness)
+    if flow <= yield_stress:
+        raise ValueError(
+            f"HV {hardness:g} stands for a flow stress of {flow / 1e6:.0f} MPa at {TABOR_STRAIN:.0%} plastic "
+            f"strain, not above the yield stress, {yield_stress / 1e6:g} MPa."
+        )
+    slope = E / yield_stress
+    return Hardening(yield_stress, slope, log(flow / yield_stress) / log1p(slope * TABOR_STRAIN))
+
+
+def tabor_stress(hardness: float) -> float:
+    """Return the flow stress, Pa, at `TABOR_STRAIN` that Vickers' number HV stands for.
+
+    H = `TABOR` sigma with H the force over the area of the pyramid's faces, HV kgf/mm2 (Pavlina & Van Tyne
+    2008, doi:10.1007/s11665-008-9225-5, after Tabor).
+    """
+    return hardness * KGF_PER_MM2 / TABOR
+
+
 def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
     """Return the n below ``high`` that gives a strength ratio, by Newton's method on its logarithm.
 
@@ -108,6 +176,7 @@ def strain_rate(bodies: ContactBodies) -> float:
     return 0.2 * sqrt(size.a_t * size.a_b / (R1 * R2)) / (0.5 * size.duration)
 
 
-def rate_gain(bodies: ContactBodies) -> float:
-    """Return the relative gain of the flow stress at the strain rate of the indentation."""
-    return C * log(max(strain_rate(bodies) / SLOWEST, 1.0))
+def rate_gain(metal: Material, rate: float) -> float:
+    """Return the relative gain of a metal's flow stress at a strain rate, 1/s; 0 without data."""
+    law = rate_law(metal)
+    return law.factor(rate) - 1 if law else 0.0

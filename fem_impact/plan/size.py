@@ -22,7 +22,8 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
-from fem_impact.scene.types import Material, Scene
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from meshes import thin_skin_rise
 from meshes.refine import reach

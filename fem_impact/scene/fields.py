@@ -128,17 +128,46 @@ MATERIAL = (
     Parameter("E", "Young's modulus", "stress", 1e6, 1e13, unit="GPa"),
     Parameter("nu", "Poisson's ratio", "", 0.0, 0.5, high_open=True),
     Parameter("rho", "density", "density", 10.0, 3e4),
-    Parameter("yield_stress", "yield stress in tension", "stress", 1e3, 1e11),
-    Parameter("ultimate_stress", "ultimate stress (engineering)", "stress", 1e3, 1e11),
+    Parameter(
+        *("yield_stress", "yield stress in tension", "stress", 1e3, 1e11),
+        derived="infinite: the body never yields",
+    ),
+    Parameter(
+        *("ultimate_stress", "ultimate stress (engineering)", "stress", 1e3, 1e11),
+        derived="infinite, of a body that never yields",
+    ),
     Parameter(
         "hardening",
         "plastic modulus of linear hardening",
         "stress",
         0.0,
         1e12,
-        derived="none: hardening is a power law through yield and ultimate stress",
+        derived="none: hardening is a power law through yield stress and what the key law names",
     ),
+    Parameter("hardness", "Vickers hardness number HV", "", 1.0, 1e4, derived="none"),
 )
+FlowLaw = Literal["tensile", "hardness"]  # what the power law of hardening passes through beside yield
+_RATE = "strain rate", 1e-6, 1e6
+RATES = {
+    "johnson-cook": (
+        Parameter("C", "factor of the logarithm of the strain rate", "", 0.0, 1.0),
+        Parameter(
+            *("reference", "strain rate of the curve that the law multiplies", *_RATE),
+            default=1.0,
+            source="Johnson and Cook divide by 1 per second",
+        ),
+        Parameter(
+            *("tested", "strain rate of the tests that gave the strengths", *_RATE),
+            default=2e-3,
+            source="a standard tensile test: the lowest rate of the tests of A572-50 and A992 steel at "
+            "cavs.msstate.edu, Intermediate strain-rate testing, beside ASTM E8 tests",
+        ),
+    ),
+    "cowper-symonds": (
+        Parameter("D", "strain rate at which the flow stress doubles", "strain rate", 1e-6, 1e12),
+        Parameter("q", "exponent: the gain is the q-th root of the rate", "", 1.0, 100.0),
+    ),
+}
 SURFACE = (
     Parameter("friction", "Coulomb coefficient f", "", 0.0, 10.0),
     Parameter("friction_low", "lower end of the interval of f", "", 0.0, 10.0),

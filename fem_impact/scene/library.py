@@ -9,7 +9,9 @@ from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.types import MEASURED_SETS, Material, Surface
+from fem_impact.scene.fields import Parameter
+from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.types import MEASURED_SETS, Surface
 from fem_impact.scene.units import parse_quantity
 
 _DATA = files("fem_impact.scene").joinpath("data")
@@ -67,12 +69,21 @@ def nearest_scene(name: str) -> str:
 
 
 def _material(name: str, table: dict[str, Any]) -> Material:
-    values = {
+    law = {"law": table["law"]} if "law" in table else {}
+    return Material(name, **_values(table, fields.MATERIAL), **law, rate=_rate(table.get("rate")))
+
+
+def _rate(table: dict[str, Any] | None) -> Rate | None:
+    return RATES[table["law"]](**_values(table, fields.RATES[table["law"]])) if table else None
+
+
+def _values(table: dict[str, Any], wanted: tuple[Parameter, ...]) -> dict[str, Any]:
+    """Return the numbers of a shipped table in SI, with their defaults."""
+    return {
         f.key: parse_quantity(table[f.key], f.dimension, f.key) if f.dimension else table[f.key]
-        for f in fields.MATERIAL
+        for f in wanted
         if f.key in table
-    }
-    return Material(name=name, **values)
+    } | {f.key: f.default for f in wanted if f.key not in table and f.default is not None}
 
 
 @cache

@@ -10,14 +10,14 @@ from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
-from fem_impact.scene.checks import check_names
+from fem_impact.scene.checks import check_choice, check_names
 from fem_impact.scene.fields import Parameter
+from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.types import (
     Accuracy,
     Barrier,
     Heating,
     Impact,
-    Material,
     ProjectileSpec,
     Save,
     Scene,
@@ -172,8 +172,11 @@ def _accuracy(table: Table | str) -> Accuracy:
 def _material(table: Table | str) -> Material:
     if isinstance(table, str):
         return library.material(table)
-    numbers = _numbers(table, fields.MATERIAL, ("name",))
-    made = Material(name=_needed(table, "name"), **numbers)
+    numbers = _numbers(table, fields.MATERIAL, ("name", "law", "rate"))
+    stated = {key: value for key, value in numbers.items() if value is not None}
+    law = {"law": table["law"]} if "law" in table else {}
+    rate = _within(table, "rate", _rate) if "rate" in table else None
+    made = Material(name=_needed(table, "name"), **stated, **law, rate=rate)
     known = library.materials().get(made.name)
     if known is not None and known != made:
         raise SceneError(
@@ -183,6 +186,11 @@ def _material(table: Table | str) -> Material:
             remedy="Give a changed material a name of its own.",
         )
     return made
+
+
+def _rate(table: Table) -> Rate:
+    law = check_choice(_needed(table, "law"), tuple(RATES), "law")
+    return RATES[law](**_numbers(table, fields.RATES[law], ("law",)))
 
 
 def _surface(table: Table) -> Surface:

@@ -67,12 +67,17 @@ def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
+    if path[-2:] == ["material", "rate"]:
+        _open_rate(_section(data, path[:-1], key), last)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
     bare = (last.removesuffix(suffix) for suffix in _SUFFIXES)
     table.pop(next((name for name in bare if name in table), last), None)
     table[last] = value
     _rename(table, path, last)
+    if "material" in path and last != "name":
+        metal = _section(data, path[: path.index("material") + 1], key)
+        metal["name"] = f"{metal['name'].removesuffix(' (changed)')} (changed)"
     if path == ["accuracy"]:
         _keep_one(table, last)
     other = (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
@@ -95,6 +100,12 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
     return table
 
 
+def _open_rate(material: dict[str, Any], last: str) -> None:
+    """Make the table of a rate law; another law leaves none of the old one's numbers."""
+    if last == "law" or "rate" not in material:
+        material["rate"] = {}
+
+
 def _keep_one(table: dict[str, Any], last: str) -> None:
     """Let a mesh replace a target, and a target a mesh."""
     mesh = [key for key in table if key.removesuffix("_m") in fields.MESH]
@@ -103,7 +114,7 @@ def _keep_one(table: dict[str, Any], last: str) -> None:
 
 
 def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
-    """Let no name stand for other values: of a surface state, of a material."""
+    """Let the name of a surface state not stand for other values."""
     if path == ["surface"] and last.startswith("friction"):
         table |= {"state": "custom", "source": "set by the user"}
         if last == "friction":
@@ -111,5 +122,3 @@ def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
     elif path == ["surface"] and last == "state":
         for key in ("friction", "friction_low", "friction_high", "source"):
             table.pop(key, None)
-    elif path[-1:] == ["material"] and last != "name":
-        table["name"] = f"{table['name'].removesuffix(' (changed)')} (changed)"

@@ -12,39 +12,12 @@ from typing import Literal, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
+from fem_impact.scene.material import Material
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
     *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Material:
-    """A metal: E, yield_stress and ultimate_stress in Pa, nu dimensionless, rho in kg/m3.
-
-    ``hardening`` is the plastic modulus d sigma / d eps_p, Pa, of linear hardening; without it flow stress is
-    a power law through yield and ultimate stress.
-    """
-
-    name: str
-    E: float
-    nu: float
-    rho: float
-    yield_stress: float
-    ultimate_stress: float
-    hardening: float | None = None
-
-    def __post_init__(self) -> None:
-        check_text(self.name, "name", 60)
-        check_numbers(self, fields.MATERIAL)
-        if self.ultimate_stress < self.yield_stress:
-            raise SceneError(
-                "is below the yield stress.",
-                key="ultimate_stress",
-                value=f"{self.ultimate_stress / 1e6:.3g} MPa",
-                remedy=f"Give at least {self.yield_stress / 1e6:g} MPa.",
-            )
 
 
 @dataclass(frozen=True, slots=True)

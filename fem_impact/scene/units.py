@@ -73,6 +73,7 @@ DIMENSIONS: dict[str, Dimension] = {
         Dimension(
             *("heat capacity", "J_per_kg_K", "J/(kg K)", "440 J/(kg K)"), (Unit("J/(kg K)"), Unit("J/kgK"))
         ),
+        Dimension("strain rate", "per_s", "/s", "1 /s", (Unit("/s"), Unit("1/s"))),
         Dimension("time", "s", "ms", "2.5 ms", (Unit("s"), Unit("ms", -3), Unit("us", -6), Unit("ns", -9))),
     )
 }

@@ -5,11 +5,13 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Mapping
+from math import inf
 from typing import Any
 
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
-from fem_impact.scene.types import Accuracy, Barrier, Material, Scene
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Accuracy, Barrier, Scene
 
 
 def to_dict(scene: Scene) -> dict[str, Any]:
@@ -64,12 +66,15 @@ def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
 
 
 def _material(material: Material) -> dict[str, Any]:
-    return {"name": material.name, **_written(material, fields.MATERIAL)}
+    law = {"law": material.law} if material.law != "tensile" else {}
+    rate = material.rate
+    rates = {"rate": {"law": rate.law, **_written(rate, fields.RATES[rate.law])}} if rate else {}
+    return {"name": material.name, **_written(material, fields.MATERIAL), **law, **rates}
 
 
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
     values = {parameter: getattr(part, parameter.key) for parameter in wanted}
-    return {p.key: p.write(value) for p, value in values.items() if value is not None}
+    return {p.key: p.write(value) for p, value in values.items() if value not in (None, inf)}
 
 
 def _lines(table: Mapping[str, Any], path: str) -> list[str]:

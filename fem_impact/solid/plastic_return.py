@@ -11,7 +11,8 @@ from math import sqrt
 import numpy as np
 
 from fem_impact.fem.hexmodes import LANES
-from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.fem.kernels import by_type, inlined, kernel
+from fem_impact.physics.hardening import JohnsonCook
 
 SMALL = 0.01  # growth of the flow stress' base in one step up to which a few terms of its power are exact
 # scratch rows: 1 for lanes that go together, trial stress, growth, unknown and its last change, increment,
@@ -68,81 +69,124 @@ def _plastic_increment(q, flow, strain, G3, law):  # type: ignore[no-untyped-def
     return dp, new
 
 
+@by_type("rate", {JohnsonCook: lambda u, rate: (1.0 + rate.C * u, rate.C, 0.0)})
+def _factor(u, rate):  # type: ignore[no-untyped-def]
+    """Return the rate factor at u = ln(rate over that of `_reference`), and its two derivatives by u."""
+    part = _exp(u / rate.q)
+    return 1.0 + part, part / rate.q, part / (rate.q * rate.q)
+
+
+@by_type("rate", {JohnsonCook: lambda rate: rate.slowest})
+def _reference(rate):  # type: ignore[no-untyped-def]
+    """Return the rate, 1/s, at which u of `_factor` is 0."""
+    return rate.D
+
+
+@by_type("rate", {JohnsonCook: lambda rate: rate.slowest})
+def _slowest(rate):  # type: ignore[no-untyped-def]
+    """Return the rate, 1/s, up to which there is no rate factor."""
+    return 0.0
+
+
+@by_type("rate", {JohnsonCook: lambda excess, rate: excess / rate.C})
+def _most(excess, rate):  # type: ignore[no-untyped-def]
+    """Return u where the rate alone bears the ``excess`` over the flow stress, in units of it."""
+    return rate.q * np.log(excess)
+
+
 @inlined
-def _correction(q, dp, new, factor, growth, G3, n, C):  # type: ignore[no-untyped-def]
-    """Return Halley's change of u = ln(dp / (rate_0 dt)) where q - 3 G dp = new * factor is missed."""
+def _correction(q, dp, new, factor, first, second, growth, G3, n):  # type: ignore[no-untyped-def]
+    """Return Halley's change of u = ln(dp / (reference rate dt)) for q - 3 G dp = new * factor."""
     bent = (G3 + n * growth * new / (1.0 + growth * dp) * factor) * dp
-    steep = bent + new * C
+    steep = bent + new * first
     change = (q - G3 * dp - new * factor) / steep
-    return change / (1.0 + 0.5 * change * bent / steep)
+    return change / (1.0 + 0.5 * change * (bent + new * second) / steep)
 
 
 @inlined
 def _hardened_increment(q, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
-    """Solve q - 3 G dp = sigma(strain + dp) (1 + C u), u = ln(dp / (rate_0 dt)); C and rate_0 in ``rate``.
+    """Solve q - 3 G dp = sigma(strain + dp) factor(u), u = ln(dp / (reference rate dt)).
 
-    Returns the increment, the stress and the flow stress at vanishing rate. Below rate_0 dt there is no rate
-    factor. Halley's method in u, in which the miss is a line less an exponential, from the lower of two
-    bounds: all of q - sigma borne by C u, or all by 3 G dp.
+    Returns the increment, the stress and the flow stress at vanishing rate. Up to the slowest rate there is
+    no rate factor. Halley's method in u, from the lower of two bounds: all of q - sigma borne by the rate
+    factor, or all by 3 G dp.
     """
-    slow, growth = rate[1] * dt, law[1] / (1.0 + law[1] * strain)
-    over = q - flow * _power(growth * slow, law[2])
-    if over <= G3 * slow:
+    slow, growth, least = _reference(rate) * dt, law[1] / (1.0 + law[1] * strain), _slowest(rate) * dt
+    over = q - flow * _power(growth * least, law[2])
+    if over <= G3 * least:
         dp, new = _plastic_increment(q, flow, strain, G3, law)
         return dp, new, new
-    u, dp = min(over / (rate[0] * flow), np.log(over / (G3 * slow))), slow
+    u, dp = min(_most(over / flow, rate), np.log(over / (G3 * slow))), slow
+    factor = 1.0
     for _ in range(MOST):
-        dp, factor = slow * np.exp(u), 1.0 + rate[0] * u
+        dp, (factor, first, second) = slow * np.exp(u), _factor(u, rate)
         new = flow * _power(growth * dp, law[2])
-        change = _correction(q, dp, new, factor, growth, G3, law[2], rate[0])
+        change = _correction(q, dp, new, factor, first, second, growth, G3, law[2])
         u += change
         if abs(change) <= CLOSE:
             dp *= 1.0 + change + 0.5 * change * change
             break
-    return dp, q - G3 * dp, (q - G3 * dp) / (1.0 + rate[0] * u)
+    return dp, q - G3 * dp, (q - G3 * dp) / _factor(u, rate)[0]
+
+
+@inlined
+def _log_of(bits):  # type: ignore[no-untyped-def]
+    """Return the logarithm of a double from its bits, to .03: straight between powers of two."""
+    return LN2 * (bits * 2.0**-52 - 1022.96)
 
 
 @inlined
 def _start(w, trial2, flow, strain, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Mark the lanes solved together, set their start values and return their number.
 
-    Start of u = ln(dp/(rate_0 dt)): dp = over/(3 G), log from the double's bits (to .03); a Halley step from
-    residual -C sigma u.
+    Start of u = ln(dp/(reference rate dt)): dp = over/(3 G), log from the double's bits (to .03); then one
+    step of the method from there, in which no exponential is needed for Johnson and Cook's law.
 
-    These are beyond their flow stress and faster than rate_0. The numbers of the others are harmless.
+    These are beyond their flow stress and faster than the slowest rate. The numbers of the others are
+    harmless.
     """
-    slope, n, C, slow, count = law[1], law[2], rate[0], rate[1] * dt, 0
+    slope, n, slow, least, count = law[1], law[2], _reference(rate) * dt, _slowest(rate) * dt, 0
     for l in range(LANES):
         growth, q = slope / (1.0 + slope * strain[l]), sqrt(trial2[l])
-        over = q - flow[l] * _series(growth * slow, n)
-        together = over > G3 * slow
+        over = q - flow[l] * _series(growth * least, n)
+        together = over > G3 * least
         w[TOGETHER * LANES + l] = 1.0 if together else 0.0
         w[SIZE * LANES + l] = q if together else 1.5 * flow[l]
         w[GROWTH * LANES + l] = growth
         w[GAIN * LANES + l] = over / (G3 * slow) if together else 1.0
+        w[SHARE * LANES + l] = over / flow[l] if together else 1.0
         count += together
     bits = w[GAIN * LANES : (GAIN + 1) * LANES].view(np.int64)
+    shares = w[SHARE * LANES : (SHARE + 1) * LANES].view(np.int64)
     for l in range(LANES):
-        # the logarithm to .03, straight between powers of two as the number's bits are; then, from where
-        # 3 G dp would bear all, one step of the method, in which no exponential is needed
-        u, dragged = LN2 * (bits[l] * 2.0**-52 - 1022.96), C * flow[l]
         over = w[SIZE * LANES + l] - flow[l]
-        steep = over + dragged
-        change = -dragged * u / steep
-        u += change / (1.0 + 0.5 * change * over / steep)
-        w[UNKNOWN * LANES + l] = max(0.0, min(u, over / dragged))
+        w[UNKNOWN * LANES + l] = _begin(_log_of(bits[l]), _log_of(shares[l]), over, flow[l], rate)
     return count
+
+
+def _begin_on_a_line(u, ratio, over, flow, rate):  # type: ignore[no-untyped-def]
+    dragged = rate.C * flow
+    steep = over + dragged
+    change = -dragged * u / steep
+    u += change / (1.0 + 0.5 * change * over / steep)
+    return max(0.0, min(u, over / dragged))
+
+
+@by_type("rate", {JohnsonCook: _begin_on_a_line})
+def _begin(u, ratio, over, flow, rate):  # type: ignore[no-untyped-def]
+    """Return a start for the unknown, from ``u``, where 3 G dp would bear all; ``ratio`` is ln(over/flow)."""
+    return min(u, ratio * rate.q)
 
 
 @inlined
 def _improve(w, flow, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Make one step of `_hardened_increment` in all lanes; return how many have still to go on."""
-    n, C, slow, count = law[2], rate[0], rate[1] * dt, 0
+    n, slow, count = law[2], _reference(rate) * dt, 0
     for l in range(LANES):
         u, q, growth = w[UNKNOWN * LANES + l], w[SIZE * LANES + l], w[GROWTH * LANES + l]
-        dp, factor = slow * _exp(u), 1.0 + C * u
+        dp, (factor, first, second) = slow * _exp(u), _factor(u, rate)
         new = flow[l] * _series(growth * dp, n)
-        change = _correction(q, dp, new, factor, growth, G3, n, C)
+        change = _correction(q, dp, new, factor, first, second, growth, G3, n)
         w[UNKNOWN * LANES + l] = u + change
         w[GAIN * LANES + l] = dp * (1.0 + change + 0.5 * change * change)
         w[CHANGE * LANES + l] = abs(change)
@@ -158,14 +202,13 @@ def _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3,
     for _ in range(FEW):
         if not _improve(w, flow, G3, law, rate, dt):
             break
-    C = rate[0]
     # loops over few arrays each: the compiler checks every pair of them for overlap, or gives up
     for l in range(LANES):
         exact = (w[CHANGE * LANES + l] <= CLOSE) & (w[GROWTH * LANES + l] * w[GAIN * LANES + l] <= SMALL)
         together = (w[TOGETHER * LANES + l] > 0.0) & exact
         w[GAIN * LANES + l] = w[GAIN * LANES + l] if together else 0.0
         new = w[SIZE * LANES + l] - G3 * w[GAIN * LANES + l]
-        flow[l] = new / (1.0 + C * w[UNKNOWN * LANES + l]) if together else flow[l]
+        flow[l] = new / _factor(w[UNKNOWN * LANES + l], rate)[0] if together else flow[l]
         w[SHARE * LANES + l] = new / w[SIZE * LANES + l]
     for l in range(LANES):
         trial2[l] = 0.0 if w[GAIN * LANES + l] > 0.0 else trial2[l]
@@ -189,8 +232,9 @@ def _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3,
 def return_map(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt):  # type: ignore[no-untyped-def]
     """Bring the lanes of one Gauss point beyond their flow stress back to it; add to the plastic ``work``, J.
 
-    The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate``
-    is None for a material without rate hardening: the compiler then drops that branch.
+    The work uses the mean of the old and new stress, as the energy balance of the step does. ``rate`` is
+    `JohnsonCook` or `CowperSymonds`, for which the loop is compiled apart, or None for a material without
+    rate hardening: the compiler then drops that branch.
     """
     if rate is not None:
         _return_together(w, trial2, rotated, stress, weight, flow, strain, work, G3, law, rate, dt)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.hexmodes import CORNERS, DUMMY_EDGE, LANES, reference_gradients
-from fem_impact.physics.hardening import Hardening
+from fem_impact.physics.hardening import Hardening, RateLaw
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding_kernel import ROWS, Blocks, elastic_energy, subtract_nodal, update
 
@@ -31,7 +31,7 @@ class YieldingZone:
     room : (ROWS * LANES,) work space of the kernels
     G, K : shear and bulk modulus, Pa
     law : yield stress (Pa), slope and exponent of the hardening law
-    rate : C and rate_0 (1/s) of the rate factor, or None without rate hardening
+    rate : law of the rate factor, or None without rate hardening
     full : plain full integration in place of the mean dilatation
     """
 
@@ -44,7 +44,7 @@ class YieldingZone:
     G: float
     K: float
     law: Array
-    rate: Array | None
+    rate: RateLaw | None
     full: bool = False
 
     @classmethod
@@ -77,9 +77,8 @@ class YieldingZone:
             nodal=np.zeros((blocks, 3, 8, LANES)),
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
-        rate = np.array([law.rate.C, law.rate.slowest]) if law.rate else None
         room = np.zeros(ROWS * LANES)
-        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, rate, full)
+        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, law.rate, full)
 
     def add(self, state: State) -> None:
         """Advance the blocks and subtract their nodal forces."""

@@ -8,7 +8,7 @@ import solid_shapes as shapes
 
 from fem_impact.fem.elements import element_stiffness, lame_constants
 from fem_impact.fem.hexmodes import LANES, dummy_element
-from fem_impact.physics.hardening import RateFactor, linear_hardening, power_hardening
+from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, linear_hardening, power_hardening
 from fem_impact.solid.plastic_return import RETURN_ROWS, _hardened_increment, return_map
 from fem_impact.solid.yielding import YieldingZone
 
@@ -157,19 +157,20 @@ def test_confined_compression_before_yield():
     assert rig.flat("strain").max() == 0.0
 
 
-RATE = RateFactor(C=0.05, slowest=2.0)
+RATE = JohnsonCook(C=0.05, slowest=2.0)
+FACTORS = {
+    RATE: lambda rate: 1 + 0.05 * np.log(rate / 2.0),
+    CowperSymonds(3200.0, 5.0): lambda rate: 1 + (rate / 3200.0) ** 0.2,
+}
 
 
-def factor_at(rate):
-    return 1 + 0.05 * np.log(rate / 2.0)
-
-
+@pytest.mark.parametrize("rate", FACTORS)
 @pytest.mark.parametrize("modulus", [0.0, 5e9])
-def test_confined_compression_at_a_constant_rate(modulus):
+def test_confined_compression_at_a_constant_rate(modulus, rate):
     """Once the flow is steady, p' = 2 G e' / (3 G + H factor), so the factor is known in closed form."""
     h, e, steps = 1e-3, 0.05, 400
-    rig = Rig(*shapes.grid((1, 1, 1), h), replace(linear_hardening(300e6, modulus), rate=RATE))
-    force = _compress(rig, e, steps)
+    rig = Rig(*shapes.grid((1, 1, 1), h), replace(linear_hardening(300e6, modulus), rate=rate))
+    force, factor_at = _compress(rig, e, steps), FACTORS[rate]
     factor = factor_at(2 / 3 * e / (steps * DT))
     factor = factor_at(2 * G * e / (steps * DT) / (3 * G + modulus * factor))
     plastic = rig.flat("strain")
@@ -183,7 +184,7 @@ def test_strip_pulled_at_a_constant_rate():
     """Uniaxial stress: sigma = sigma_y (1 + C ln(e' / slowest)), the sides free of force."""
     h, e, steps = 1e-3, 0.02, 400
     rate = e / (steps * DT)
-    sigma = 300e6 * factor_at(rate)
+    sigma = 300e6 * FACTORS[RATE](rate)
     rig = Rig(*shapes.grid((1, 1, 1), h), replace(linear_hardening(300e6, 0.0), rate=RATE))
     start = rig.points.copy()
     for k in range(1, steps + 1):
@@ -196,22 +197,29 @@ def test_strip_pulled_at_a_constant_rate():
     assert abs(force[side, 0].sum()) < 1e-3 * sigma * h**2
 
 
+LAWS = pytest.mark.parametrize(
+    "rate", [JohnsonCook(0.022), CowperSymonds(40.4, 5.0), CowperSymonds(6844.0, 3.91)]
+)
+
+
+@LAWS
 @pytest.mark.parametrize("over", np.logspace(-9, -1, 17))
-def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over):
+def test_the_increment_obeys_its_law_however_far_the_trial_is_out(over, rate):
     """The stress returned is that of the trial less 3 G dp, and that of the law at the rate dp/dt."""
     law, flow, dt = np.array([320e6, 640.0, 0.1]), 400e6, 2.5e-8
     strain = ((flow / law[0]) ** (1 / law[2]) - 1) / law[1]
-    q, rate = flow * (1 + over), np.array([0.022, 1.0])
+    q = flow * (1 + over)
     dp, new, slow = _hardened_increment(q, flow, strain, 3 * G, law, rate, dt)
     assert new == pytest.approx(q - 3 * G * dp, rel=1e-10)
     assert slow == pytest.approx(law[0] * (1 + law[1] * (strain + dp)) ** law[2], rel=1e-10)
-    assert new == pytest.approx(slow * (1 + 0.022 * max(np.log(dp / dt), 0.0)), rel=1e-10)
+    assert new == pytest.approx(slow * rate.factor(dp / dt), rel=1e-10)
 
 
+@LAWS
 @pytest.mark.parametrize("strain", [0.0, 0.02, 1.0])
-def test_lanes_together_return_like_one_alone(strain):
+def test_lanes_together_return_like_one_alone(strain, rate):
     """Elastic, slow, usual and far trials side by side; the mean stress does the work of the increment."""
-    law, rate, dt = np.array([320e6, 640.0, 0.1]), np.array([0.022, 1.0]), 2.5e-8
+    law, dt = np.array([320e6, 640.0, 0.1]), 2.5e-8
     yield_stress = law[0] * (1 + law[1] * strain) ** law[2]
     q = yield_stress * (1 + np.array([-0.5, -1e-12, *np.logspace(-12, 0, LANES - 2)]))
     stress, rotated = np.zeros((6, LANES)), np.zeros((6, LANES))
@@ -231,7 +239,7 @@ def test_lanes_together_return_like_one_alone(strain):
 
 
 def test_below_the_slowest_rate_the_factor_is_one():
-    law, slow = power_hardening(E, 300e6, 450e6), RateFactor(C=0.05, slowest=1e9)
+    law, slow = power_hardening(E, 300e6, 450e6), JohnsonCook(C=0.05, slowest=1e9)
     assert np.array_equal(_wander(law, 0.004).force, _wander(replace(law, rate=slow), 0.004).force)
 
 
