@@ -27,6 +27,11 @@ def stated(name: str) -> dict[str, Any]:
     return _table(f"scenes/{name}.toml")
 
 
+def other_tip(measured: str) -> dict[str, Any]:
+    """Return tip and tip_radius with which the rows of a measured set may also be read, empty if none."""
+    return dict(_table("scenes.toml")["other_tips"].get(measured, {}))
+
+
 def materials() -> dict[str, Material]:
     """Return the shipped materials by name, SI units."""
     return {name: _material(name, table) for name, table in _table("materials.toml").items()}

@@ -123,7 +123,9 @@ def _check_measured(scene: Scene) -> None:
     if scene.measured is None:
         return
     stated, rod = library.stated(scene.measured), scene.projectile
-    measured_rod = _projectile(stated["projectile"])
+    other_tip = library.other_tip(scene.measured)
+    as_other = other_tip and rod.tip == other_tip["tip"]
+    measured_rod = _projectile(stated["projectile"] | (other_tip if as_other else {}))
     pairs = {f"projectile.{key}": (getattr(rod, key), getattr(measured_rod, key)) for key in ROD}
     angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
     pairs["impact.angle"] = (scene.impact.angle, angle)

@@ -5,27 +5,49 @@ import math
 import numpy as np
 import pytest
 
-from fem_impact.errors import UsageError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import materials, shipped, source_of, surfaces
-from fem_impact.scene.read import read_toml
+from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save
 from fem_impact.scene.write import to_dict
 from rigid.experiments import measured_set, set_ids
 
+SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "t3-cleaned")}
 
-def test_the_thirteen_sets_and_two_more_are_shipped():
-    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick")
+
+def test_the_thirteen_sets_and_others_are_shipped():
+    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick", *SECOND)
     assert tuple(set_ids()) == MEASURED_SETS
+    assert len(MEASURED_SETS) == 13
 
 
 @pytest.mark.parametrize("name", shipped())
 def test_a_shipped_scene_carries_its_own_name(name):
     scene = load(name)
     assert scene.id == name
-    assert scene.measured == {"quick": "t5b"}.get(name, name if name in MEASURED_SETS else None)
+    assert scene.measured == {"quick": "t5b", **SECOND}.get(name, name if name in MEASURED_SETS else None)
+
+
+@pytest.mark.parametrize("name", SECOND)
+def test_table_3_with_tip_a_differs_by_its_tip_alone(name):
+    first, second = to_dict(load(SECOND[name])), to_dict(load(name))
+    tip = second["projectile"].pop("tip"), second["projectile"].pop("tip_radius")
+    assert tip == ("A", "7 mm")
+    for key in ("tip", "tip_radius"):
+        del first["projectile"][key]
+    for key in ("id", "title"):
+        assert first.pop(key) != second.pop(key)
+    assert first == second
+
+
+def test_a_set_is_read_with_another_tip_only_where_that_is_shipped():
+    data = to_dict(load("t5b"))
+    data["projectile"] |= {"tip": "A", "tip_radius": "7 mm"}
+    with pytest.raises(SceneError, match=r"measured with another projectile.tip_radius and projectile.tip"):
+        read_dict(data)
 
 
 @pytest.mark.parametrize("name", MEASURED_SETS)
