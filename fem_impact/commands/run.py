@@ -22,7 +22,7 @@ from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
-from fem_impact.scene.library import shipped, source_of
+from fem_impact.scene.library import intervals_of, shipped, source_of, stated_keys
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict, to_toml
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
+    from fem_impact.scene.material import Material
 
 
 LONG = 600.0
@@ -184,6 +185,8 @@ def _statement(planned: Plan) -> dict[str, Any]:
         "scene": to_dict(scene),
         "digest": digest(scene),
         "sources": _sources(scene),
+        "intervals": _intervals(scene),
+        "flow_stress_Pa": _flow_stresses(planned),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
         "effects": [_flat(choice.told(choice.share)) for choice in planned.choices],
         "validity": list(planned.validity),
@@ -214,17 +217,54 @@ def _flat(choice: EffectChoice) -> dict[str, Any]:
 
 def _sources(scene: Scene) -> dict[str, str]:
     """Return where each material value and the friction come from, by dotted key."""
-    bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
-    keys = ("E", "nu", "rho", "yield_stress", "ultimate_stress")
     sources = {
-        f"{body}.material.{key}": source_of(steel.name, key) for body, steel in bodies.items() for key in keys
+        f"{body}.material.{key}": source_of(metal.name, key)
+        for body, metal in _bodies(scene).items()
+        for key in stated_keys(metal)
     }
     return sources | {"surface.friction": scene.surface.source}
+
+
+def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return the intervals that a shipped material states for its values, by dotted key."""
+    return {
+        f"{body}.material.{key}": interval
+        for body, metal in _bodies(scene).items()
+        for key, interval in intervals_of(metal.name).items()
+    }
+
+
+def _bodies(scene: Scene) -> dict[str, Material]:
+    return {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
+
+
+def _flow_stresses(planned: Plan) -> dict[str, dict[str, float]]:
+    """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
+    from fem_impact.plan.metals import RATES, flow_stresses
+
+    told = flow_stresses(planned.scene, planned.active)
+    rates = ["0", *(f"{rate:g}" for rate in RATES)]
+    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in told.items()}
+
+
+def _flow_lines(statement: dict[str, Any]) -> list[str]:
+    told = statement["flow_stress_Pa"]
+    if not told:
+        return []
+    heading = "Flow stress at 8 % plastic strain, MPa, at rest and at strain rates, 1/s"
+    rates = list(next(iter(told.values())))
+    rows = [[body, *(f"{stress / 1e6:.0f}" for stress in told[body].values())] for body in told]
+    table = Table.of(("body", "at rest", *rates[1:]), rows, left=range(1)).terminal()
+    return ["", heading, *(f"  {line}" for line in table.splitlines())]
 
 
 def _readable(planned: Plan, statement: dict[str, Any]) -> str:
     lines = [to_toml(planned.scene).rstrip(), "", "Sources"]
     lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
+    lines += _wrapped(
+        f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
+    )
+    lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
     lines += ["", "Effects"]

@@ -109,7 +109,8 @@ def _features(scene: Scene) -> dict[str, float]:
 
 def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
     """Return the features of a body's material; strengths do not count where it stays elastic."""
-    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if yields else (1.0, 1.0)
+    strong = yields and steel.yields
+    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if strong else (1.0, 1.0)
     values = (steel.E, steel.rho, *strength)
     return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
 

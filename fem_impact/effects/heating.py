@@ -5,14 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.slots import Effect, Harm, ModelSpec, bodies_of
-from fem_impact.physics.flash import expected_rise
+from fem_impact.physics.flash import expected_rise, halves, thermal
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:
-    """Return the expected flash temperature rise over the rise to the ignition temperature."""
+    """Return the expected flash temperature rise over the rise to ignition, 0 where it is not known."""
+    if None in thermal(scene).values():
+        return 0.0
     return expected_rise(bodies_of(scene)) / (scene.heating.ignition - scene.heating.ambient)
 
 
@@ -22,7 +24,8 @@ def harm(scene: Scene) -> Harm:
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Turn on the record of the contact's heat."""
+    """Turn on the record of the contact's heat; refuse a scene without conductivity and heat capacity."""
+    halves(scene)
     spec.heat = True
 
 

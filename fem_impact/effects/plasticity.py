@@ -42,10 +42,14 @@ def hardening_of(material: Material) -> Hardening:
     Raises
     ------
     SceneError
-        If no power law reaches the ultimate stress, or the hardness stands for less than the yield stress.
+        If the material never yields, no power law reaches the ultimate stress, or the hardness stands for
+        less than the yield stress.
     """
     from fem_impact.physics.hardening import hardness_hardening, linear_hardening, power_hardening
 
+    if not material.yields:
+        remedy = "Give it, or leave the effect by which the body yields out of effects."
+        raise SceneError("is not stated.", key=f"yield_stress of {material.name}", remedy=remedy)
     if material.hardening is not None:
         return linear_hardening(material.yield_stress, material.hardening)
     key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"

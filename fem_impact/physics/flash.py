@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
+from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, approach, contact_estimate, sliding
 
 if TYPE_CHECKING:
@@ -108,12 +109,34 @@ def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
     return np.asarray(np.minimum(short_rise(t, q, body), np.concatenate([[0.0], steady])))
 
 
+def thermal(scene: Scene) -> dict[str, float | None]:
+    """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
+    bodies = {"rod": scene.projectile.material, "barrier": scene.barrier.material}
+    own = {
+        f"{body}_{key}": getattr(metal, key)
+        for body, metal in bodies.items()
+        for key in ("conductivity", "heat_capacity")
+    }
+    stated = {key: getattr(scene.heating, key) for key in own}
+    return {key: own[key] if value is None else value for key, value in stated.items()}
+
+
 def halves(scene: Scene) -> tuple[Half, Half]:
-    """Return the thermal half-spaces of rod and barrier."""
-    h = scene.heating
+    """Return the thermal half-spaces of rod and barrier.
+
+    Raises
+    ------
+    SceneError
+        If neither the material nor [heating] states a property.
+    """
+    known = {key: value for key, value in thermal(scene).items() if value is not None}
+    for key in thermal(scene):
+        if key not in known:
+            remedy = "State it, or leave contact-heating out of effects."
+            raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
     return (
-        Half(h.rod_conductivity, scene.projectile.material.rho * h.rod_heat_capacity),
-        Half(h.barrier_conductivity, scene.barrier.material.rho * h.barrier_heat_capacity),
+        Half(known["rod_conductivity"], scene.projectile.material.rho * known["rod_heat_capacity"]),
+        Half(known["barrier_conductivity"], scene.barrier.material.rho * known["barrier_heat_capacity"]),
     )
 
 
@@ -148,7 +171,10 @@ def closed_form(bodies: ContactBodies, friction_work: float) -> tuple[Flash, flo
 
 
 def flash_bound(bodies: ContactBodies) -> float:
-    """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``."""
+    """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``.
+
+    It is infinite between two bodies that never yield: no hardness limits the pressure of a spot.
+    """
     scene, size = bodies.scene, contact_estimate(bodies)
     f = scene.surface.friction
     softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.material))

@@ -13,6 +13,7 @@ from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.cells import coarse_tip
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.limits import require_approach, require_shallow, validity
+from fem_impact.plan.metals import unknowns
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
 from fem_impact.scene.types import Scene
@@ -56,7 +57,8 @@ class Plan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return sentences on what the reader should distrust."""
-        return (*neglected(self.scene), *coarse_tip(self.bodies))
+        unknown = unknowns(self.scene, self.active)
+        return (*neglected(self.scene), *coarse_tip(self.bodies), *unknown)
 
     @property
     def size(self) -> RunSize:

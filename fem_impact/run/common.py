@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import cos, sin
+from math import cos, inf, sin
 from typing import TYPE_CHECKING
 
 import rigid
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 HARDER = Unknown("the contact law lets the softer body alone flow: what the harder one takes is in its share")
+HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
@@ -200,6 +201,7 @@ def heat(
 ) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
     ambient, ignition = bodies.scene.heating.ambient, bodies.scene.heating.ignition
+    bound = flash_bound(bodies)
     return Heat(
         patch=patch,
         power=power,
@@ -208,6 +210,6 @@ def heat(
         temperature=ambient + flash.peak,
         ignition=ignition,
         time_above_ignition=flash.time_above(ignition - ambient),
-        bound=ambient + flash_bound(bodies),
+        bound=ambient + bound if bound < inf else Unknown(HARD),
         less_vibration=less_vibration,
     )

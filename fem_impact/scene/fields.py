@@ -145,6 +145,8 @@ MATERIAL = (
         derived="none: hardening is a power law through yield stress and what the key law names",
     ),
     Parameter("hardness", "Vickers hardness number HV", "", 1.0, 1e4, derived="none"),
+    Parameter("conductivity", "conductivity of heat", "conductivity", 1e-3, 1e5, derived="unknown"),
+    Parameter("heat_capacity", "heat capacity of a mass", "heat capacity", 1e-3, 1e5, derived="unknown"),
 )
 FlowLaw = Literal["tensile", "hardness"]  # what the power law of hardening passes through beside yield
 _RATE = "strain rate", 1e-6, 1e6
@@ -302,7 +304,6 @@ SAVE = (
     ),
 )
 
-_STEEL = "carbon steel at 20 degC, EN 1993-1-2:2005, 3.4.1"
 HEATING = (
     Parameter(
         "ignition",
@@ -324,13 +325,12 @@ HEATING = (
     ),
     *(
         Parameter(
-            f"{body}_{key}", f"{quantity} of the {body}", quantity, 1e-3, 1e5, default=value, source=_STEEL
+            *(f"{body}_{key}", f"{quantity} of the {body}", quantity, 1e-3, 1e5),
+            derived=f"that of the {body}'s material",
+            source="the material's; where it states none, the heat of the contact is not known",
         )
         for body in ("rod", "barrier")
-        for key, quantity, value in (
-            ("conductivity", "conductivity", 53.0),
-            ("heat_capacity", "heat capacity", 440.0),
-        )
+        for key, quantity in (("conductivity", "conductivity"), ("heat_capacity", "heat capacity"))
     ),
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from functools import cache
 from importlib.resources import files
+from math import inf
 from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
@@ -40,6 +41,9 @@ def materials() -> dict[str, Material]:
 def material(name: str) -> Material:
     """Return one shipped material, or refuse the name with a suggestion."""
     known = materials()
+    for group in _table("not_modelled.toml").values():
+        if name in group["names"]:
+            raise SceneError(group["reason"], value=name, remedy=group["remedy"])
     if name not in known:
         remedy = did_you_mean(name, known, f"Known: {', '.join(known)}; or give a table of values.")
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
@@ -66,6 +70,18 @@ def source_of(name: str, key: str = "") -> str:
     if not key:
         return str(_table("surfaces.toml").get(name, {}).get("source", "stated in the scene"))
     return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
+
+
+def stated_keys(metal: Material) -> list[str]:
+    """Return the keys of the values that a material states."""
+    keys = [field.key for field in fields.MATERIAL]
+    return [key for key in (*keys, "rate") if getattr(metal, key) not in (None, inf)]
+
+
+def intervals_of(name: str) -> dict[str, tuple[float, float]]:
+    """Return the intervals of a shipped material; ``rate_factor`` is the rate factor at 1000 per second."""
+    table = _table("materials.toml").get(name, {}).get("intervals", {})
+    return {key: (float(low), float(high)) for key, (low, high) in table.items()}
 
 
 def nearest_scene(name: str) -> str:

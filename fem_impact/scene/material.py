@@ -55,6 +55,7 @@ class Material:
         law through the yield stress and what ``law`` names
     hardness : Vickers' number HV, kgf/mm2 of the pyramid's faces
     law : ``tensile``, through the ultimate stress, or ``hardness``, through the flow stress of the hardness
+    conductivity, heat_capacity : W/(m K), J/(kg K); None: not known
     rate : how flow stress grows with the strain rate; None: no data, no effect
     """
 
@@ -66,6 +67,8 @@ class Material:
     ultimate_stress: float = inf
     hardening: float | None = None
     hardness: float | None = None
+    conductivity: float | None = None
+    heat_capacity: float | None = None
     law: fields.FlowLaw = "tensile"
     rate: Rate | None = None
 
@@ -73,13 +76,6 @@ class Material:
         check_text(self.name, "name", 60)
         check_choice(self.law, get_args(fields.FlowLaw), "law")
         check_numbers(self, _stated(self))
-        if self.ultimate_stress < self.yield_stress:
-            raise SceneError(
-                "is below the yield stress.",
-                key="ultimate_stress",
-                value=f"{self.ultimate_stress / 1e6:.3g} MPa",
-                remedy=f"Give at least {self.yield_stress / 1e6:g} MPa.",
-            )
         _check_strengths(self)
         _check_law(self)
 
@@ -100,9 +96,16 @@ def _check_strengths(metal: Material) -> None:
     if metal.yields and metal.ultimate_stress == inf:
         remedy = "Give it, or leave out yield_stress too: the body then never yields."
         raise SceneError("is missing beside yield_stress.", key="ultimate_stress", remedy=remedy)
-    for key in ("hardening", "rate"):
-        if getattr(metal, key) is not None and not metal.yields:
+    for key in ("ultimate_stress", "hardening", "rate"):
+        if getattr(metal, key) not in (None, inf) and not metal.yields:
             raise SceneError("means nothing without yield_stress.", key=key, remedy="Leave it out.")
+    if metal.ultimate_stress < metal.yield_stress:
+        raise SceneError(
+            "is below the yield stress.",
+            key="ultimate_stress",
+            value=f"{metal.ultimate_stress / 1e6:.3g} MPa",
+            remedy=f"Give at least {metal.yield_stress / 1e6:g} MPa.",
+        )
 
 
 def _check_law(metal: Material) -> None:

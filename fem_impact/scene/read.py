@@ -175,7 +175,9 @@ def _material(table: Table | str) -> Material:
     if isinstance(table, str):
         return library.material(table)
     numbers = _numbers(table, fields.MATERIAL, ("name", "law", "rate"))
-    stated = {key: value for key, value in numbers.items() if value is not None}
+    stated: dict[str, Any] = {
+        f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
+    }
     law = {"law": table["law"]} if "law" in table else {}
     rate = _within(table, "rate", _rate) if "rate" in table else None
     made = Material(name=_needed(table, "name"), **stated, **law, rate=rate)

@@ -133,14 +133,14 @@ class Accuracy:
 
 @dataclass(frozen=True, slots=True)
 class Heating:
-    """What contact heating is judged by: K, W/(m K), J/(kg K)."""
+    """What contact heating is judged by: K, W/(m K), J/(kg K); None: as the body's material states it."""
 
     ignition: float = 703.15
     ambient: float = 293.15
-    rod_conductivity: float = 53.0
-    rod_heat_capacity: float = 440.0
-    barrier_conductivity: float = 53.0
-    barrier_heat_capacity: float = 440.0
+    rod_conductivity: float | None = None
+    rod_heat_capacity: float | None = None
+    barrier_conductivity: float | None = None
+    barrier_heat_capacity: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.HEATING)

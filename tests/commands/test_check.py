@@ -25,6 +25,10 @@ def test_check_prints_values_units_sources_and_effects(cli):
     for words in (
         'length = "80 mm"',
         "footnote 2",
+        "barrier.material.rate: C of steel 1006",
+        "rate_factor: interval 1.1 to 1.6",
+        "Flow stress at 8 % plastic strain",
+        "barrier  482      615  643   671",
         "accuracy.tip_size = 5 elements over the estimated radius",
         "on  friction",
         "inside the measured",

@@ -8,7 +8,7 @@ import pytest
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
-from fem_impact.scene.library import materials, shipped, source_of, surfaces
+from fem_impact.scene.library import materials, shipped, source_of, stated_keys, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save
@@ -82,7 +82,8 @@ def test_one_friction_interval_serves_every_rod_speed_and_angle():
 
 def test_every_surface_and_material_value_carries_a_source():
     stated = [surface.source for surface in surfaces().values()]
-    stated += [source_of(name, key) for name in materials() for key in ("E", "nu", "rho", "yield_stress")]
+    stated += [source_of(name, key) for name, metal in materials().items() for key in stated_keys(metal)]
+    assert len(stated) > 100
     assert all(len(source) > 20 and source != "stated in the scene" for source in stated)
 
 
@@ -96,6 +97,11 @@ DERIVED = {
     "accuracy.tip_size": "5 elements over the estimated radius of a yielding contact, "
     "4 over that of an elastic one",
     "accuracy.barrier_size": "accuracy.tip_size",
+    **{
+        f"heating.{body}_{key}": f"that of the {body}'s material"
+        for body in ("rod", "barrier")
+        for key in ("conductivity", "heat_capacity")
+    },
     "accuracy.max_time": "2.5 ms, or 2.8 times the bending period and the contact time where that is longer",
 }
 
