@@ -8,32 +8,36 @@ made one at a time by the study of the sets; `sensitivity_rows` lists their chan
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
-from math import degrees, hypot, radians
+from dataclasses import dataclass, replace
+from math import degrees, hypot, log, radians
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact.effects.plasticity import hardening_of
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.outcome.keys import Num, known
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, tabor_stress
+from fem_impact.scene.library import intervals_of
+from fem_impact.scene.material import JohnsonCookRate
 from fem_impact.scene.shipped import replace_all
 from fem_impact.study.compare import COMPARED, MEASURED, UNSEEN, Row
 from rigid import Errors
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
+    from fem_impact.scene.material import Material
     from fem_impact.scene.types import Scene
 
 
 ANGLE = radians(0.5)  # half the range of the inclination (assumed)
 CONTACT = Errors().contact  # m, half the range of the contact point's position
 TRACKING = Errors().tracking  # relative error of a tracked speed (paper)
-YIELD = (1.0, 1.5)  # times the scene's yield and ultimate stress
 BACKING = (0.5, 1.0)  # times the plate's modulus
 LEVELS = 5  # tip radii of the sample: few, as each needs its own modes
-STRONGER = 1.5  # hardness and tensile test of the two steels bound the yield stress within this factor
+FAST = 1e3  # 1/s, where the intervals of the rate factor hold
 WIDER = 1.5  # times the margin of the barrier's block around the fine zone
 SHOWN = {
     quantity.name: quantity.key
@@ -51,16 +55,22 @@ class UncertainInput:
     ----------
     name, description : str
         Short name, and the range with its source.
-    varies : bool
-        Whether it can differ from test to test of a set; else it is one unknown value for all of them.
+    nominal : float or None
+        Its value in the scene where it is one unknown value for all tests of a set; None where it can differ
+        from test to test.
     span : callable
         Function of scene and measured set to the ends of the range, in SI units or as a factor.
     """
 
     name: str
     description: str
-    varies: bool
+    nominal: float | None
     span: Callable[[Scene, MeasuredSet], tuple[float, float]]
+
+    @property
+    def varies(self) -> bool:
+        """Whether it can differ from test to test of a set."""
+        return self.nominal is None
 
 
 def _radius(scene: Scene, _: MeasuredSet) -> tuple[float, float]:
@@ -82,40 +92,46 @@ UNCERTAIN_INPUTS = (
     UncertainInput(
         "friction",
         "f over the interval of the surface state, with that interval's sources",
-        True,
+        None,
         lambda scene, _: (scene.surface.friction_low, scene.surface.friction_high),
     ),
     UncertainInput(
         "angle",
         f"angle of the rod +- {degrees(ANGLE):g} degrees (assumed: nothing is stated)",
-        True,
+        None,
         lambda scene, _: (scene.impact.angle - ANGLE, scene.impact.angle + ANGLE),
     ),
     UncertainInput(
-        "yield",
-        f"yield and ultimate stress of both steels times {YIELD[0]:g} to {YIELD[1]:g} (tensile tests "
-        "against hardness)",
-        False,
-        lambda *_: YIELD,
+        "flow stress",
+        "flow stress of both steels from their tensile tests (0) to the upper end of what their hardness "
+        "stands for (1)",
+        0.0,
+        lambda *_: (0.0, 1.0),
+    ),
+    UncertainInput(
+        "rate",
+        "rate factor of both steels over its interval: lower end (0), nominal value (1/2), upper end (1)",
+        0.5,
+        lambda *_: (0.0, 1.0),
     ),
     UncertainInput(
         "contact point",
         f"tip radius, in {LEVELS} steps, such that the contact point moves by {CONTACT * 1e3:g} mm "
         "(the arms are known to about that)",
-        True,
+        None,
         _radius,
     ),
     UncertainInput(
         "speed",
         f"speed over the range of the set's tests, at least the {TRACKING:.0%} tracking error of the paper",
-        True,
+        None,
         _speed,
     ),
     UncertainInput(
         "plate clamping",
         f"modulus of the plate times {BACKING[0]:g} to {BACKING[1]:g} (assumed: a bolted plate that is "
         "not fully backed gives at most twice as much; the paper saw no movement)",
-        False,
+        1.0,
         lambda *_: BACKING,
     ),
 )
@@ -124,24 +140,27 @@ UNCERTAIN_INPUTS = (
 def sample_values(scene: Scene, measured: MeasuredSet, unit: np.ndarray, tests: bool) -> np.ndarray:
     """Return values (n, d) of `UNCERTAIN_INPUTS` for a sample (n, d) of the unit cube.
 
-    With ``tests``, inputs that do not vary from test to test keep the value of the scene (factor 1).
+    With ``tests``, inputs that do not vary from test to test keep their nominal value.
     """
     low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
     steps = unit.copy()
     at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
     steps[:, at] = (np.floor(unit[:, at] * LEVELS) + 0.5) / LEVELS
     values: np.ndarray = low + (high - low) * steps
-    fixed = np.array([tests and not i.varies for i in UNCERTAIN_INPUTS])
-    values[:, fixed] = 1.0  # the inputs that do not vary are factors of the scene's value
+    for i, of in enumerate(UNCERTAIN_INPUTS):
+        if tests and of.nominal is not None:
+            values[:, i] = of.nominal
     return values
 
 
 def changes(scene: Scene, values: np.ndarray) -> dict[str, Any]:
     """Return the changed keys of a scene for values (d,) of `UNCERTAIN_INPUTS`."""
-    f, angle, strength, radius, speed, backing = map(float, values)
+    f, angle, harder, rate, radius, speed, backing = map(float, values)
     v = hypot(scene.impact.v_n, scene.impact.v_t) * speed
     turned = np.arctan2(scene.impact.v_t, scene.impact.v_n) + (angle - scene.impact.angle)
-    return strengths(scene, strength) | {
+    return {
+        **hardened(scene, harder),
+        **rates(scene, rate),
         "surface.friction": f,
         "impact.angle_rad": angle,
         "impact.v_n": f"{v * np.cos(turned):.9g} m/s",
@@ -160,14 +179,38 @@ class InputChange:
     changes: Callable[[Scene], dict[str, Any]]
 
 
-def strengths(scene: Scene, factor: float) -> dict[str, Any]:
-    """Return the changed keys of a scene with yield and ultimate stress of both steels times a factor."""
-    bodies = {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
-    return {
-        f"{body}.material.{key}": f"{factor * getattr(steel, key) / 1e6:.9g} MPa"
-        for body, steel in bodies.items()
-        for key in ("yield_stress", "ultimate_stress")
-    }
+def _metals(scene: Scene) -> dict[str, Material]:
+    return {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
+
+
+def hardened(scene: Scene, share: float) -> dict[str, Any]:
+    """Return changed keys: flow stresses ``share`` of the way from tensile test to hardness.
+
+    The way ends at the upper end of the hardness number's interval. Both readings are power laws through the
+    yield stress, so that a hardness number stands for each law between them.
+    """
+    changed: dict[str, Any] = {}
+    for body, metal in _metals(scene).items():
+        tensile = hardening_of(replace(metal, law="tensile"))
+        low = float(tensile.flow_stress(TABOR_STRAIN)) / tabor_stress(1.0)
+        high = intervals_of(metal.name)["hardness"][1]
+        keys = {"law": "hardness", "hardness": low + share * (high - low)}
+        changed |= {f"{body}.material.{key}": value for key, value in keys.items()}
+    return changed
+
+
+def rates(scene: Scene, place: float) -> dict[str, Any]:
+    """Return changed keys: C of both steels at a place in the interval of the rate factor, 1/2: nominal."""
+    changed = {}
+    for body, metal in _metals(scene).items():
+        if not isinstance(metal.rate, JohnsonCookRate):
+            continue
+        low, high = intervals_of(metal.name)["rate_factor"]
+        gain = float(np.interp(place, (0.0, 0.5, 1.0), (low - 1, rate_gain(metal, FAST), high - 1)))
+        slope = gain / log(FAST / metal.rate.tested)  # of the factor over ln(rate), from 1 at ``tested``
+        C = slope / (1 - slope * log(metal.rate.tested / metal.rate.reference))
+        changed[f"{body}.material.rate.C"] = C
+    return changed
 
 
 INPUT_CHANGES = (
@@ -182,13 +225,12 @@ INPUT_CHANGES = (
         lambda s: {"surface.friction": s.surface.friction_high},
     ),
     InputChange(
-        "yield",
-        f"yield and ultimate stress of both steels times {STRONGER:g}",
-        lambda s: strengths(s, STRONGER),
+        "hardness",
+        "flow stress of both steels from their hardness instead of their tensile tests",
+        lambda s: {f"{body}.material.law": "hardness" for body in _metals(s)},
     ),
-    InputChange(
-        "rate", "no hardening with the strain rate", lambda s: {"effects": [*s.effects, "-rate-hardening"]}
-    ),
+    InputChange("rate-low", "lower end of the rate factors", lambda s: rates(s, 0.0)),
+    InputChange("rate-high", "upper end of the rate factors", lambda s: rates(s, 1.0)),
     InputChange(
         "block",
         f"barrier block with {WIDER:g} times the margin around the fine zone",

@@ -62,8 +62,8 @@ def test_a_study_alone_has_a_page_too(results):
 
 def test_the_papers_conclusions_are_judged(results):
     row = Outcome.from_dict(values(scene_id="t5b", E_vib_over_E_0=0.03, mu=0.7, mu_c=0.5))
-    changed = {"set": "t5b", "quantity": "e", "input": "yield", "base": 0.3, "changed": 0.42}
-    coarse = {"t5b": row, "t5b-coarse-yield": altered(row, e_edge=0.123)}
+    changed = {"set": "t5b", "quantity": "e", "input": "hardness", "base": 0.3, "changed": 0.42}
+    coarse = {"t5b": row, "t5b-coarse-hardness": altered(row, e_edge=0.123)}
     publish(sets_report([row], compare(row), [changed]), Request(results / "sets"), coarse)
     page = write_all(results, results / "report").read_text()
     for words in ("while vibration took 3 to 3 %", "measured or computed, in t5b", "Does not stand: E_lt"):
@@ -71,12 +71,12 @@ def test_the_papers_conclusions_are_judged(results):
     for name in ("closure", "moment", "critical", "heat"):
         assert (results / "report" / "figures" / f"{name}.csv").stat().st_size > 100
     ledger = (results / "report" / "ledger.csv").read_text().splitlines()
-    assert [line.split(",")[1] for line in ledger[1:]] == ["t5b", "t5b-coarse-yield", "run-1"]
+    assert [line.split(",")[1] for line in ledger[1:]] == ["t5b", "t5b-coarse-hardness", "run-1"]
     assert ",0.123," in ledger[2]
     assert "<code>fem-impact study sets</code>" in page
     assert {"partition.csv", "closure.csv"} <= set(re.findall(r'download="([\w.-]+)"', page))
-    assert "could explain: yield 1. None of them explains 0." in page
-    assert "yield (" in page
+    assert "could explain: hardness 1. None of them explains 0." in page
+    assert "hardness (" in page
     assert set(re.findall(r'href="#([\w-]+)"', page)) <= set(re.findall(r'id="([\w-]+)"', page))
     assert "within 0.003 m/s along n, 0.003 m/s along t and 0.1 rad/s" in page
 

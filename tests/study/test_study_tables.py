@@ -7,7 +7,7 @@ from study_fakes import outcome
 from fem_impact.errors import MissingLibraryError
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.shares import shares
-from fem_impact.plan.choose import active
+from fem_impact.physics.hardening import rate_gain
 from fem_impact.progress import NullMeter
 from fem_impact.report.present import pictures, present
 from fem_impact.study.inputs import explanations, sensitivity_rows
@@ -82,17 +82,18 @@ def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
 
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
     jobs = jobs_of("t3-contaminated", False, tmp_path)
-    changed = ["friction-low", "friction-high", "yield", "rate", "block"]
-    assert list(jobs) == ["fine", "coarse", *changed]
-    assert "rate-hardening" not in active(jobs["rate"].scene)
+    changed = ["friction-low", "friction-high", "hardness", "rate-low", "rate-high", "block"]
+    assert list(jobs) == ["fine", "coarse", "fine-half-cell", "coarse-half-cell", *changed]
+    assert {jobs[f"{mesh}-half-cell"].scene.accuracy.grid_shift for mesh in ("fine", "coarse")} == {0.5}
+    gains = [rate_gain(jobs[name].scene.barrier.material, 1e3) for name in ("rate-low", "rate-high")]
+    assert gains == pytest.approx([0.1, 0.6])
     base = jobs["coarse"].scene
     assert jobs["friction-low"].scene.surface.friction == base.surface.friction_low
     assert jobs["friction-high"].scene.surface.friction == base.surface.friction_high
-    stronger = jobs["yield"].scene
-    assert stronger.projectile.material.yield_stress == pytest.approx(1.5 * 546e6)
-    assert stronger.barrier.material.ultimate_stress == pytest.approx(1.5 * 446e6)
+    harder = jobs["hardness"].scene
+    assert harder.projectile.material.law == harder.barrier.material.law == "hardness"
     assert jobs["block"].scene.accuracy.block_margin == pytest.approx(9e-3)
-    assert len({job.out for job in jobs.values()}) == 7
+    assert len({job.out for job in jobs.values() if job.out}) == 8
     assert list(jobs_of("t3-contaminated", True, tmp_path)) == ["fine", "coarse"]
 
 
@@ -102,21 +103,22 @@ def changed(name, quantity, value):
 
 def test_rows_hold_runs_and_other_arms():
     base = outcome(e_paper=0.3, e_edge=0.35, e_impulse=0.4)
-    rows = sensitivity_rows(base, {"yield": outcome(e_paper=0.42), "block": Failure("t5b", "folded")})
+    rows = sensitivity_rows(base, {"hardness": outcome(e_paper=0.42), "block": Failure("t5b", "folded")})
     e = {row["input"]: (row["base"], row["changed"]) for row in rows if row["quantity"] == "e"}
-    assert e == {"yield": (0.3, 0.42), "arms-edge": (0.3, 0.35), "arms-impulse": (0.3, 0.4)}
+    assert e == {"hardness": (0.3, 0.42), "arms-edge": (0.3, 0.35), "arms-impulse": (0.3, 0.4)}
     assert sensitivity_rows(Failure("t5b", "folded"), {}) == []
 
 
 def test_an_input_explains_a_miss_only_if_it_reaches_the_interval():
     miss = row("e", "miss by +3.0 SD", model=0.5) | {"measured_low": 0.30, "measured_high": 0.35}
-    changes = [changed("yield", "e", 0.12), changed("block", "e", 0.20), changed("friction-low", "e", 0.40)]
+    values = {"hardness": 0.12, "block": 0.20, "friction-low": 0.40}
+    changes = [changed(name, "e", value) for name, value in values.items()]
     (found,) = explanations([miss, row("mu", "inside")], changes)
-    assert found["could"] == ["yield"]
+    assert found["could"] == ["hardness"]
     assert found["shares"]["block"] == pytest.approx(0.10 / 0.173)
     assert found["shares"]["friction-low"] < 0
     told = tables([OUTCOME], [miss], changes)
-    explained = ("t5b", "e", "0.5", "0.327", "yield (+104%)", "block (+58%), friction-low (-58%)")
+    explained = ("t5b", "e", "0.5", "0.327", "hardness (+104%)", "block (+58%), friction-low (-58%)")
     assert told["explanations"].rows == (explained,)
     assert told["changes"].rows[0][:4] == ("t5b", "e", "0.3", "+0.1")
 

@@ -8,22 +8,28 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
+from fem_impact.effects.plasticity import hardening_of
 from fem_impact.errors import RunError
 from fem_impact.jobs.job import Failure
 from fem_impact.physics.contact import projectile
+from fem_impact.physics.hardening import rate_gain
 from fem_impact.plan.plan import plan as plan_of
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.study import validation as study
 from fem_impact.study.calibration import calibrate, constants_of
 from fem_impact.study.document import Request
-from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, sample_values
+from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, hardened, rates, sample_values
 from fem_impact.study.response import fit
 from fem_impact.study.validated import NAMES, Comparison, unit_sample
 from fem_impact.study.validation import conclude, plan
 from rigid.experiments import measured_set
 
 SCENE, SET = load("t5b"), measured_set("t5b")
+
+
+def _input(name):
+    return next(i for i in UNCERTAIN_INPUTS if i.name == name)
 
 
 def fake(job):
@@ -49,14 +55,13 @@ def test_samples_are_seeded_and_stay_within_their_ranges():
     tests = sample_values(SCENE, SET, unit_sample(16), tests=True)
     same = (tests == values).all(axis=0)
     assert [i.varies for i in UNCERTAIN_INPUTS] == same.tolist()
-    assert (tests[:, ~same] == 1.0).all()
+    assert (tests[:, ~same] == [i.nominal for i in UNCERTAIN_INPUTS if not i.varies]).all()
     at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
     assert len(np.unique(values[:, at])) == LEVELS
 
 
 def test_the_contact_point_moves_by_what_is_stated():
-    at = [i.name for i in UNCERTAIN_INPUTS].index("contact point")
-    rods = [replace(SCENE.projectile, tip_radius=r) for r in UNCERTAIN_INPUTS[at].span(SCENE, SET)]
+    rods = [replace(SCENE.projectile, tip_radius=r) for r in _input("contact point").span(SCENE, SET)]
     points = [projectile(replace(SCENE, projectile=rod)).contact_point(np.pi / 4) for rod in rods]
     assert np.hypot(*np.subtract(*points)) == pytest.approx(2 * CONTACT, rel=1e-6)
 
@@ -66,6 +71,19 @@ def test_a_scene_with_nominal_inputs_is_the_set():
     changed = replace_all(SCENE, changes(SCENE, centre))
     assert changed.impact.v_n == pytest.approx(SCENE.impact.v_n, rel=1e-8)
     assert changed.projectile.tip_radius == pytest.approx(SCENE.projectile.tip_radius)
+    for body in ("projectile", "barrier"):
+        metal, stated = getattr(changed, body).material, getattr(SCENE, body).material
+        assert rate_gain(metal, 1e3) == pytest.approx(rate_gain(stated, 1e3), rel=1e-9)
+        by_test = hardening_of(stated)
+        assert hardening_of(metal).exponent == pytest.approx(by_test.exponent, rel=1e-9)
+
+
+def test_the_ends_of_flow_stress_and_rate_are_those_of_the_stated_intervals():
+    ends = replace_all(SCENE, hardened(SCENE, 1.0) | rates(SCENE, 1.0))
+    assert rate_gain(ends.barrier.material, 1e3) == pytest.approx(0.6)
+    assert rate_gain(ends.projectile.material, 1e3) == pytest.approx(0.8)
+    assert hardening_of(ends.barrier.material).flow_stress(0.08) == pytest.approx(575e6, rel=1e-3)
+    assert rate_gain(replace_all(SCENE, rates(SCENE, 0.0)).barrier.material, 1e3) == pytest.approx(0.1)
 
 
 def test_a_surface_of_second_order_is_exact_for_a_quadratic_and_knows_its_error_elsewhere():
@@ -121,8 +139,8 @@ def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_p
     ]
     calibration = calibrate([replace(found, comparisons=tuple(known))])
     at = constants_of([found]).index("friction, machined")
-    low, high = UNCERTAIN_INPUTS[0].span(SCENE, SET)
-    width = hypot(0.05, speed * np.ptp(UNCERTAIN_INPUTS[4].span(SCENE, SET)) / sqrt(12)) / 20
+    low, high = _input("friction").span(SCENE, SET)
+    width = hypot(0.05, speed * np.ptp(_input("speed").span(SCENE, SET)) / sqrt(12)) / 20
     assert low + (high - low) * calibration.mean[at] == pytest.approx(f, abs=0.1 * width + 1e-3)
     assert (high - low) * calibration.sd[at] == pytest.approx(width, rel=0.1)
     assert all(r.met for r in calibration.residuals)
@@ -138,7 +156,7 @@ def test_the_study_tells_errors_causes_and_failures(tmp_path):
         row[1]: dict(zip(sheets["causes"]["columns"], row, strict=True)) for row in sheets["causes"]["rows"]
     }
     assert causes["E_vib/E_0"]["speed"] == pytest.approx(1.0, abs=0.03)
-    assert causes["Omega"]["friction"] > 0.9 and causes["Omega"]["yield"] < 0.01
+    assert causes["Omega"]["friction"] > 0.9 and causes["Omega"]["flow stress"] < 0.01
     spread = {row[1]: row for row in sheets["spread"]["rows"]}
     assert spread["e"][-2] == pytest.approx(SET.statistics()["e"].sd)
     assert "E +- 2 u_val contains zero" in found.text and "never a default" in found.text
