@@ -14,6 +14,7 @@ from fem_impact.effects import (
     radiation,
     rate,
     rotation,
+    skin,
     vibration,
 )
 from fem_impact.effects.slots import Effect
@@ -29,6 +30,7 @@ EFFECTS: dict[str, Effect] = {
         barrier.ELASTIC,
         barrier.ELASTOPLASTIC,
         rate.EFFECT,
+        skin.EFFECT,
         radiation.EFFECT,
         gravity.EFFECT,
         rotation.EFFECT,

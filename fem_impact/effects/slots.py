@@ -10,7 +10,7 @@ from fem_impact.physics.beam_impact import BeamImpact, strike
 from fem_impact.physics.contact import ContactBodies
 
 if TYPE_CHECKING:
-    from fem_impact.physics.hardening import Hardening
+    from fem_impact.physics.hardening import Hardening, Skin
     from fem_impact.scene.types import Scene
 
 
@@ -23,6 +23,7 @@ class ModelSpec:
     vibrating : the body behind the nose is elastic
     friction : Coulomb coefficient f, or None for a frictionless contact
     rod_law, barrier_law : hardening law of a body that may yield, or None
+    skin : hardened layer of the surfaces, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
     gravity : acceleration, m/s2, or None
@@ -35,6 +36,7 @@ class ModelSpec:
     friction: float | None = None
     rod_law: Hardening | None = None
     barrier_law: Hardening | None = None
+    skin: Skin | None = None
     meshed_barrier: bool = False
     radiating: bool = False
     gravity: float | None = None

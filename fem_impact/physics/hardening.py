@@ -61,6 +61,14 @@ def rate_law(metal: Material) -> RateLaw | None:
 
 
 @dataclass(frozen=True, slots=True)
+class Skin:
+    """A hardened layer: depth, m, under the surface, and factor of the flow stress in it."""
+
+    depth: float
+    factor: float
+
+
+@dataclass(frozen=True, slots=True)
 class Hardening:
     """Flow stress sigma(eps_p) = yield_stress (1 + slope eps_p)^exponent, times a rate factor if any.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection
+from dataclasses import replace
 
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
@@ -77,7 +78,8 @@ def _steels(scene: Scene) -> str:
 
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
-    if "friction" not in active or scene.surface in known:
+    bare = replace(scene.surface, skin_depth=None, skin_factor=None)
+    if "friction" not in active or bare in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
     return f"friction f = {f:g} is not the committed value of a surface state ({source})"

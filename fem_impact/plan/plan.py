@@ -15,7 +15,7 @@ from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.limits import require_approach, require_shallow, validity
 from fem_impact.plan.metals import unknowns
 from fem_impact.plan.size import RunSize, require_memory, run_size
-from fem_impact.plan.zones import Zones, require_fine_zone, zones_of
+from fem_impact.plan.zones import Zones, require_fine_zone, require_layer, zones_of
 from fem_impact.scene.types import Scene
 
 
@@ -90,6 +90,8 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)
+        if slots.skin and slots.barrier_law:
+            require_layer(slots.skin, zones)
         if scene.accuracy.target is None:  # a target chooses its own mesh
             require_memory(slots, bodies, zones)
     return Plan(scene, fidelity, in_model.effects, slots, bodies, zones)

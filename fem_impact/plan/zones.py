@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import cos, floor, log2, sin, sqrt
+from math import ceil, cos, floor, log2, sin, sqrt
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from fem_impact.physics.contact import (
     projectile,
     sliding,
 )
+from fem_impact.physics.hardening import Skin
 from fem_impact.plan.cells import contact_radius, levels_of
 from fem_impact.scene.types import Scene
 from meshes import thin_skin_rise
@@ -149,9 +150,14 @@ def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0
 
 
 def skin_rows(bodies: ContactBodies, h: float) -> int:
-    """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick."""
+    """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick.
+
+    A hardened layer in force may ask for more of them, until the first row is no higher than it.
+    """
     halvings = floor(log2(h / (LOW * contact_estimate(bodies).depth)))
-    return min(max(halvings, 0), SKIN_ROWS)
+    layer = bodies.scene.surface.skin_depth if "machined-skin" in bodies.scene.effects else None
+    most = SKIN_ROWS if layer is None else max(SKIN_ROWS, ceil(log2(h / layer)))
+    return min(max(halvings, 0), most)
 
 
 def face_reach(bodies: ContactBodies, rho: float) -> float:
@@ -171,6 +177,20 @@ def slide(bodies: ContactBodies, t: float) -> float:
         return 0.0
     way = SLIDE * contact_estimate(bodies).depth * down / max(approach(bodies.scene), 1e-6)
     return max(way, DRAG * t)
+
+
+def require_layer(skin: Skin, zones: Zones) -> None:
+    """Refuse a hardened layer that fills no Gauss point of the barrier's first row (SceneError)."""
+    row = zones.barrier_size * 0.5**zones.skin_rows
+    enough = 1.4 * skin.depth * 2**zones.skin_rows
+    if skin.depth < row / 2:
+        raise SceneError(
+            f"is thinner than half the first row of the barrier's cells, {row * 1e3:.2g} mm: the mesh does "
+            "not resolve it.",
+            key="surface.skin_depth",
+            value=f"{skin.depth * 1e3:.3g} mm",
+            remedy=f"Give accuracy.barrier_size at most {enough * 1e3:.2g} mm, or leave machined-skin out.",
+        )
 
 
 def require_fine_zone(bodies: ContactBodies) -> None:

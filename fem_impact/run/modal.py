@@ -26,7 +26,7 @@ from fem_impact.run.common import (
 from fem_impact.run.doubts import doubts
 from fem_impact.scene.types import Scene
 
-WITHOUT = ("rate-hardening", "radiation", "material-damping", "contact-heating")
+WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")
 NO_STRESS = Unknown("a local contact law knows no residual stress")

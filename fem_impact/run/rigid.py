@@ -24,7 +24,10 @@ if TYPE_CHECKING:
 
 
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
-WITHOUT = ("vibration", "rate-hardening", "radiation", "gravity", "large-rotation", "material-damping")
+WITHOUT = (
+    *("vibration", "rate-hardening", "machined-skin", "radiation", "gravity", "large-rotation"),
+    "material-damping",
+)
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
     "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no tangential give.",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from math import isclose
 from pathlib import Path
 from typing import Any, TypeVar
@@ -201,9 +202,12 @@ def _surface(table: Table) -> Surface:
     state = _needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
-    _check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE)))
+    skin = [f.key for f in fields.SKIN] + [f.si_key for f in fields.SKIN if f.si_key]
+    _check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
     known = library.surface(state)
     for key, value in table.items():
+        if key in skin:
+            continue
         if value != getattr(known, key):
             raise SceneError(
                 f"is not the value of a {state} surface ({getattr(known, key)}).",
@@ -211,12 +215,14 @@ def _surface(table: Table) -> Surface:
                 value=value,
                 remedy='Leave it out, or write state = "custom" with your own friction and its source.',
             )
-    return known
+    layer = _numbers({key: value for key, value in table.items() if key in skin}, fields.SKIN)
+    return replace(known, **layer)
 
 
 def _custom_surface(table: Table) -> Surface:
     f = _needed(table, "friction")
-    numbers = _numbers(table, fields.SURFACE, ("state", "source"), {"friction_low": f, "friction_high": f})
+    wanted = (*fields.SURFACE, *fields.SKIN)
+    numbers = _numbers(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
     return Surface(state="custom", source=_needed(table, "source"), **numbers)
 
 

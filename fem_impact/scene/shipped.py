@@ -120,5 +120,5 @@ def _rename(table: dict[str, Any], path: list[str], last: str) -> None:
         if last == "friction":
             table |= {"friction_low": table["friction"], "friction_high": table["friction"]}
     elif path == ["surface"] and last == "state":
-        for key in ("friction", "friction_low", "friction_high", "source"):
+        for key in ("friction", "friction_low", "friction_high", "source", "skin_depth", "skin_factor"):
             table.pop(key, None)

@@ -30,7 +30,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
             "material": _material(rod.material),
         },
         "barrier": _barrier(scene.barrier),
-        "surface": surface | _written(scene.surface, fields.SURFACE),
+        "surface": surface | _written(scene.surface, (*fields.SURFACE, *fields.SKIN)),
         "impact": _written(scene.impact, fields.IMPACT),
         "accuracy": _accuracy(scene.accuracy),
         "save": _written(scene.save, fields.SAVE),

@@ -24,7 +24,7 @@ from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sparse import Hanging, NodeProduct, tie_operator
 from fem_impact.fem.stable import stable_step
-from fem_impact.physics.contact import approach, sliding
+from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.physics.hardening import Hardening
 from fem_impact.plan.plan import Plan
 from fem_impact.solid.contact.patch import STEEP, make_patch
@@ -96,13 +96,15 @@ def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: El
     return Dashpots(places, damping[places - place.start], inverse_mass[places])
 
 
-def yielding_zone(body: MeshedBody, law: Hardening, layout: DofLayout) -> YieldingZone:
-    """Return the item of a body's cells that may yield."""
+def yielding_zone(
+    body: MeshedBody, law: Hardening, layout: DofLayout, strength: Array | None = None
+) -> YieldingZone:
+    """Return the item of a body's cells that may yield, their flow stress times ``strength`` (m, 8)."""
     from fem_impact.solid.yielding import YieldingZone
 
     cells, m, full = body.mesh.cells[body.yields], body.material, body.yielding == "full"
     dof, points = body.places[cells], body.points[cells]
-    return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full)
+    return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full, strength)
 
 
 def facing_skin(body: MeshedBody) -> Ints:
@@ -206,7 +208,22 @@ class Builder:
         """Return the zone of each body that yields."""
         laws = (self.spec.rod_law, self.spec.barrier_law)
         pairs = zip(self.meshed.bodies, laws, strict=False)
-        return [yielding_zone(body, law, self.meshed.layout) for body, law in pairs if law]
+        return [
+            yielding_zone(body, law, self.meshed.layout, self.strength(body)) for body, law in pairs if law
+        ]
+
+    def strength(self, body: MeshedBody) -> Array | None:
+        """Return the factor of the flow stress (m, 8) of a body's yielding cells, None without a layer."""
+        if self.spec.skin is None:
+            return None
+        from fem_impact.solid.skin import below_outline, strengths
+
+        under = -body.points[:, 2]
+        if body.name == "rod":
+            rod = projectile(self.scene)
+            outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
+            under = below_outline(self.meshed.geometry.rod.mesh.points, outline)
+        return strengths(body.mesh.cells[body.yields], under, self.spec.skin)
 
     @cached_property
     def contact(self) -> PlaneContact | SurfaceContact:

@@ -58,8 +58,12 @@ class YieldingZone:
         law: Hardening,
         dummy: Ints,
         full: bool = False,
+        strength: Array | None = None,
     ) -> YieldingZone:
-        """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes."""
+        """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
+
+        ``strength`` (m, 8) is a factor of the flow stress at each Gauss point, 1 unless given.
+        """
         blocks = -(-len(dof) // LANES)
         filled = np.concatenate([dof, np.broadcast_to(dummy, (blocks * LANES - len(dof), 8, 3))])
         weight = np.full((blocks * LANES, 8), DUMMY_EDGE**3 / 8)
@@ -69,7 +73,7 @@ class YieldingZone:
             dof=np.ascontiguousarray(filled.reshape(blocks, LANES, 8, 3).transpose(0, 3, 2, 1), np.uint32),
             stress=np.zeros((blocks, 8, 6 * LANES)),
             strain=np.zeros((blocks, 8, LANES)),
-            flow=np.full((blocks, 8, LANES), law.yield_stress),
+            flow=_in_blocks(blocks, 1.0 if strength is None else strength) * law.yield_stress,
             weight=np.ascontiguousarray(weight.reshape(blocks, LANES, 8).transpose(0, 2, 1)),
             pressure=np.zeros((blocks, LANES)),
             volume=weight.sum(axis=1).reshape(blocks, LANES),
@@ -119,6 +123,13 @@ class YieldingZone:
         s = self.blocks.stress.reshape(-1, 8, 6, LANES)
         square = 1.5 * (s[:, :, :3] ** 2).sum(axis=2) + 3.0 * (s[:, :, 3:] ** 2).sum(axis=2)
         return np.asarray(np.sqrt(square).mean(axis=1).ravel()[: self.count])
+
+
+def _in_blocks(blocks: int, values: Array | float) -> Array:
+    """Return values (m, 8) at Gauss points, or one for all, as (blocks, 8, LANES); the dummies have 1."""
+    filled = np.ones((blocks * LANES, 8))
+    filled[: np.size(values) // 8 or None] = values
+    return np.ascontiguousarray(filled.reshape(blocks, LANES, 8).transpose(0, 2, 1))
 
 
 def _around(dof: Ints) -> tuple[Counts, Ints, Counts]:

@@ -194,6 +194,7 @@ def test_thresholds_are_those_that_the_page_names():
         "barrier-elastic": 0.02,
         "barrier-elastoplastic": 1.0,
         "rate-hardening": 0.03,
+        "machined-skin": 0.03,
         "radiation": 0.01,
         "gravity": 0.005,
         "large-rotation": 0.01,
