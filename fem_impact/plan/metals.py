@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 
 RATES = (1e2, 1e3, 1e4)  # 1/s, at which flow stresses are told
+STEELS = ("rod-steel", "plate-steel", "steel-4340")  # of the pair that the shipped frictions were read for
 YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 
@@ -36,7 +37,7 @@ def flow_stresses(scene: Scene, active: Collection[str]) -> dict[str, list[float
 def unknowns(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return a sentence for each thing that a material does not say and the model would use."""
     told = [_body(body, metal, active, _rate_wanted(scene)) for body, metal in bodies(scene).items()]
-    return tuple(sentence for sentence in (*told, _heat(scene, active)) if sentence)
+    return tuple(sentence for sentence in (*told, _heat(scene, active), _friction(scene, active)) if sentence)
 
 
 def _rate_wanted(scene: Scene) -> bool:
@@ -57,6 +58,17 @@ def _body(body: str, metal: Material, active: Collection[str], rate_wanted: bool
             "rate, and no other metal's law takes its place. e may be too low."
         )
     return ""
+
+
+def _friction(scene: Scene, active: Collection[str]) -> str:
+    """Return that a shipped friction is that of steel on steel, where a body is of another material."""
+    others = [metal.name for metal in bodies(scene).values() if metal.name.split(" (")[0] not in STEELS]
+    if not others or "friction" not in active or scene.surface.state == "custom":
+        return ""
+    return (
+        f"Friction f = {scene.surface.friction:g} is that of steel on steel; it is not known for "
+        f"{' and '.join(dict.fromkeys(others))}. State surface.friction with its source."
+    )
 
 
 def _heat(scene: Scene, active: Collection[str]) -> str:

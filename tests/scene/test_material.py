@@ -7,9 +7,10 @@ import pytest
 
 from fem_impact.effects.plasticity import hardening_of
 from fem_impact.errors import SceneError
+from fem_impact.physics.flash import Half, halves, thermal
 from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, rate_gain, rate_law, tabor_stress
 from fem_impact.plan.choose import active
-from fem_impact.plan.metals import flow_stresses
+from fem_impact.plan.metals import flow_stresses, unknowns
 from fem_impact.plan.plan import plan
 from fem_impact.scene.library import intervals_of, materials
 from fem_impact.scene.material import CowperSymondsRate, JohnsonCookRate, Material
@@ -148,11 +149,39 @@ def test_every_shipped_material_makes_a_plan(name):
     assert read_dict(to_dict(scene)) == scene
     metal = scene.projectile.material
     assert ("rod-plasticity" in planned.active) <= metal.yields
-    told = " ".join(planned.warnings)
+    told = " ".join(unknowns(scene, planned.active))
     silent = metal.rate is None and "rod-plasticity" in planned.active
     assert (f"({name}) has no rate data" in told) == silent
     assert (f"({name}) has no yield stress" in told) == (not metal.yields)
-    assert ("is not known" in told) == (metal.conductivity is None or metal.heat_capacity is None)
+    assert ("heat of the contact is not known" in told) == (None in (metal.conductivity, metal.heat_capacity))
+    assert (f"not known for {name}" in told) == ("steel" not in name)
+    if name == "plate-steel":
+        assert told == ""
+
+
+def test_the_model_of_the_earlier_constants_is_the_earlier_model():
+    """Tensile law, C = .022 over the tensile curve, and heat of carbon steel."""
+    earlier = {"C": 0.022, "tested": "1 /s"}
+    scene = replace_all(T5B, {f"{body}.rate.{key}": earlier[key] for body in BODIES for key in earlier})
+    slots = plan(scene).slots
+    for law, E, strength, exponent in (
+        (slots.rod_law, 219e9, 546e6, 0.042629108901212936),
+        (slots.barrier_law, 206e9, 320e6, 0.10334158957939037),
+    ):
+        assert (law.yield_stress, law.slope, law.rate) == (strength, E / strength, JohnsonCook(0.022, 1.0))
+        assert law.exponent == pytest.approx(exponent, rel=1e-13)
+    assert slots.skin is None
+    assert halves(scene) == (Half(53.0, 7850 * 440.0),) * 2
+    assert thermal(T5B) == thermal(scene)
+
+
+def test_what_a_scene_states_of_heat_overrides_the_material():
+    assert halves(replace(T5B, "heating.rod_conductivity", "20 W/(m K)"))[0].conductivity == 20.0
+    known = {"heating.rod_conductivity": "44 W/(m K)", "effects": ["auto", "contact-heating"]}
+    scene = of("steel-4340")
+    assert plan(replace_all(scene, known)).slots.heat
+    with pytest.raises(SceneError, match=r"heating.rod_conductivity.*is not known"):
+        plan(replace_all(scene, {"effects": known["effects"]}))
 
 
 def test_no_metal_has_the_law_of_another():
