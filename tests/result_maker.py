@@ -9,6 +9,8 @@ import outcome_maker
 from fem_impact.files.atomic import write_text
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.files.signed_json import signed
+from fem_impact.files.waves import Ringing, Waves
+from fem_impact.files.waves import write_waves as write_waves_file
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.csv import COMPARISON, CONTACTS, HISTORY
 from fem_impact.tables.table import Table
@@ -123,6 +125,26 @@ def write_fields(path, frames=12, across=6, along=36):
     return writer
 
 
+def write_waves(path, across=6, along=36, rows=200):
+    """Write strains of a pulse that runs up and down the rod, and one ringing mode after `T_END`."""
+    points, _, _, count = mesh(across, along)
+    axis = np.array([np.sin(ALPHA), 0.0, np.cos(ALPHA)])
+    origin = to_barrier(np.array([[-RADIUS, 0.0, 0.0]]))[0]
+    times, position = np.linspace(0.0, T_END, rows), np.linspace(0.2, 0.98, 24) * LENGTH
+    travelled = (5282.0 * times) % (2 * LENGTH)
+    front = np.minimum(travelled, 2 * LENGTH - travelled)
+    stretch = -3e-4 * np.exp(-(((position - front[:, None]) / 0.012) ** 2))
+    centre = points[:count].mean(axis=0) * [1.0, 0.0, 1.0]
+    wave = np.cos(2 * np.pi * (points[:count] - origin) @ axis / LENGTH)
+    shape = (wave[:, None] * [np.cos(ALPHA), 0.0, -np.sin(ALPHA)])[None]
+    one, rest = np.ones(1), points[:count] - centre
+    bent = np.cos(2 * np.pi * position / LENGTH)[None]
+    flight = (centre, np.array([0.4, 0.0, 0.4]), 0.0, -30.0, 2 * np.pi * 12340 * one, 1e-5 * one, 0 * one)
+    ringing = Ringing(T_END, *flight, shape, rest, 0 * bent, 10.0 * bent)
+    strain = (stretch, -0.2 * stretch, LENGTH, RADIUS, 5282.0, 3325.0)
+    write_waves_file(path, Waves(times, position, *strain, origin, axis, ringing))
+
+
 def history(rows=600):
     """Columns of history.csv: accounts that close on E_0 by construction."""
     time = np.linspace(0.0, T_END, rows)
@@ -200,7 +222,7 @@ def contacts():
 
 
 def write_result(folder, frames=0, across=6, along=36, **changes):
-    """Write outcome.json, history.csv, contacts.csv and, with frames, fields.vtkhdf; return the folder."""
+    """Write the files of a run, fields.vtkhdf and waves.h5 only with frames; return the folder."""
     folder = Path(folder)
     table = history()
     write_text(
@@ -210,6 +232,7 @@ def write_result(folder, frames=0, across=6, along=36, **changes):
     Outcome.from_dict(values(**changes)).write(folder / "outcome.json")
     if frames:
         write_fields(folder / "fields.vtkhdf", frames, across, along)
+        write_waves(folder / "waves.h5", across, along)
     return folder
 
 

@@ -24,6 +24,7 @@ STUDIES = {
     "validation": "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
 }
 REPORT = {"report": "one page over all studies beside it"}
+FILMED = ("strain", "stress", "velocity", "plastic")  # what a film can show, the default first
 _RESULT = "directory that a run or a study wrote"
 
 
@@ -55,6 +56,12 @@ class Options(argparse.Namespace):
     estimate: bool = False
     resume: bool = False
     checkpoint: float = CHECKPOINT_INTERVAL
+    field: str = "strain"
+    frames: int | None = None
+    first: str = ""
+    last: str = ""
+    speed: str = ""
+    size: tuple[int, int] = (1280, 720)
     result: Path
     results: list[Path]
     set_id: str | None = None
@@ -173,6 +180,25 @@ def _add_render(commands: Commands) -> None:
     film = "film to write: .mp4, .webp, .gif, or .png for a folder of frames (default: beside the fields)"
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
     parser.add_argument("--out", type=Path, metavar="FILE", help=film)
+    parser.add_argument(
+        "--field",
+        choices=FILMED,
+        default=FILMED[0],
+        help="colours of the film (default: strain along the axis)",
+    )
+    parser.add_argument("--frames", type=int, metavar="N", help="number of frames (default: 144)")
+    parser.add_argument(
+        "--from", dest="first", default="", metavar="TIME", help="first time, such as '20 us'"
+    )
+    parser.add_argument(
+        "--until", dest="last", default="", metavar="TIME", help="last time, such as '0.3 ms'"
+    )
+    parser.add_argument(
+        "--speed", default="", metavar="TIME", help="motion in one second of the film, such as '25 us'"
+    )
+    size = "size of the film in pixels, multiples of 16 (default: 1280x720)"
+    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help=size)
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_report(commands: Commands) -> None:
@@ -257,6 +283,13 @@ def _seconds(text: str) -> float:
     if not 0 <= value < 1e6:
         raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
     return value
+
+
+def _size(text: str) -> tuple[int, int]:
+    width, by, height = text.partition("x")
+    if not (by and width.isdecimal() and height.isdecimal()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1280x720")
+    return int(width), int(height)
 
 
 def _at_least_one(text: str) -> int:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fem_impact.commands.common import checked_file, checked_result, print_json
-from fem_impact.commands.parser import Options
-from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.commands.parser import FILMED, Options
+from fem_impact.errors import MissingLibraryError, ResultError, UsageError
+
+if TYPE_CHECKING:
+    from fem_impact.render.timeline import Span
 
 
 def render(options: Options) -> int:
@@ -19,14 +23,33 @@ def render(options: Options) -> int:
     from fem_impact.render import film as films
     from fem_impact.render.side_by_side import render_side_by_side
 
-    sys.stderr.write("drawing the film ...\n")
-    film = films.render(results[0], out) if len(results) == 1 else render_side_by_side(results, out)
+    span = _span(options)
+    if len(results) > 1 and options.field != FILMED[0]:
+        raise UsageError("shows the strain only, side by side.", key="--field", value=options.field)
+    if not options.quiet:
+        sys.stderr.write("drawing the film ...\n")
+    if len(results) > 1:
+        film = render_side_by_side(results, out, span, options.size)
+    else:
+        film = films.render(results[0], out, span, options.field, options.size)
     if options.json:
         print_json({"path": str(film.path) if film.path else None, "notes": list(film.notes)})
     else:
         sys.stderr.writelines(f"note: {note}\n" for note in film.notes)
         sys.stdout.write(f"film: {film.path}\n" if film.path else "")
     return 0 if film.path else MissingLibraryError.exit_code
+
+
+def _span(options: Options) -> Span:
+    """Return what the film shall show."""
+    from fem_impact.assess.drop import quantity
+    from fem_impact.render.timeline import Span
+
+    first, last, speed = (
+        quantity(text, "time", key) if text else None
+        for text, key in ((options.first, "--from"), (options.last, "--until"), (options.speed, "--speed"))
+    )
+    return Span(first, last, options.frames, speed)
 
 
 def _check_fields(result: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from fem_impact.files.atomic import make_directory
 
 CHECKPOINT = "run.checkpoint"
-COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf")
+COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf", "waves.h5")
 """Files that a run computes."""
 DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""

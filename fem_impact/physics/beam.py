@@ -47,14 +47,28 @@ class Beam(NamedTuple):
 def bending_frequencies(scene: Scene) -> Array:
     """Return circular frequencies of free-free bending, rad/s, ascending.
 
-    The lower root of Timoshenko's dispersion at the wave numbers b of the Euler-Bernoulli modes, r = d/4:
-    w^4 r^2/s - w^2 c0^2 (1 + b^2 r^2 (1 + 1/s)) + b^4 r^2 c0^4 = 0, s = kappa G/E.
+    Timoshenko's dispersion at the wave numbers of the Euler-Bernoulli modes.
+    """
+    return bending_dispersion(scene, ROOTS / scene.projectile.length)
+
+
+def bending_dispersion(scene: Scene, wave: Array) -> Array:
+    """Return circular frequencies, rad/s, of bending waves of wave numbers b = ``wave``, 1/m.
+
+    The lower root of Timoshenko's dispersion, r = d/4 and s = kappa G/E:
+    w^4 r^2/s - w^2 c0^2 (1 + b^2 r^2 (1 + 1/s)) + b^4 r^2 c0^4 = 0.
     """
     rod, s = scene.projectile, SHEAR / (2 * (1 + scene.projectile.material.nu))
-    b2, r2 = (ROOTS / rod.length) ** 2, (rod.diameter / 4) ** 2
+    b2, r2 = wave**2, (rod.diameter / 4) ** 2
     middle = 1 + b2 * r2 * (1 + 1 / s)
     root = 2 * b2**2 * r2 / (middle + np.sqrt(middle**2 - 4 * b2**2 * r2**2 / s))
-    return np.asarray(_bar_speed(scene) * np.sqrt(root))
+    return np.asarray(bar_speed(scene) * np.sqrt(root))
+
+
+def bending_group_speed(scene: Scene) -> float:
+    """Return the largest group speed dw/db of bending waves, m/s: no packet of them runs ahead of it."""
+    wave = np.linspace(0.0, 8.0, 801)[1:] / scene.projectile.diameter
+    return float(np.gradient(bending_dispersion(scene, wave), wave).max())
 
 
 def bending_period(scene: Scene) -> float:
@@ -64,7 +78,7 @@ def bending_period(scene: Scene) -> float:
 
 def stretching_period(scene: Scene) -> float:
     """Return the first longitudinal period, s: 2 l / c0."""
-    return 2 * scene.projectile.length / _bar_speed(scene)
+    return 2 * scene.projectile.length / bar_speed(scene)
 
 
 def beam(scene: Scene) -> Beam:
@@ -88,7 +102,8 @@ def beam(scene: Scene) -> Beam:
     return Beam(omega[below], along_t[below], along_n[below])
 
 
-def _bar_speed(scene: Scene) -> float:
+def bar_speed(scene: Scene) -> float:
+    """Return the speed c0 = sqrt(E/rho) of stretching waves in a thin rod, m/s."""
     steel = scene.projectile.material
     return float((steel.E / steel.rho) ** 0.5)
 

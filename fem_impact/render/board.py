@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
+from collections.abc import Callable
 from dataclasses import dataclass
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any
@@ -13,6 +14,7 @@ import numpy as np
 from fem_impact.figures.style import INK, PALETTE, QUIET
 from fem_impact.render.layout import Frame, FrameLayout, Rectangle
 from fem_impact.render.motion import FIELDS, FilmData
+from fem_impact.render.profile import Profile
 from fem_impact.render.views import CLOSE_WIDTH
 
 if TYPE_CHECKING:
@@ -23,6 +25,9 @@ if TYPE_CHECKING:
 
 CLOCK, LETTER = 220, 11
 """Widths of clock and margins, and of a letter of the title, px."""
+
+CLOSE_UP = "section at the contact (n up, t right), true scale, {:.1f} mm wide"
+ALONG = "strain along the axis"
 
 Curve = tuple[np.ndarray, np.ndarray]
 """Times in s and normal contact forces in N."""
@@ -41,33 +46,63 @@ class FilmBackground:
     base : Image
         The still picture that the views are pasted into.
     strip : Strip
+    profile : Profile, optional
+        The strain along the axis, in the place of the close-up.
     """
 
     layout: FrameLayout
     base: Image
     strip: Strip
+    profile: Profile | None
 
     @classmethod
-    def make(cls, layout: FrameLayout, motion: FilmData, title: str, curve: Curve) -> FilmBackground:
+    def make(
+        cls, layout: FrameLayout, motion: FilmData, title: str, curve: Curve, times: np.ndarray
+    ) -> FilmBackground:
         """Draw the still parts once."""
-        drawn = blank(layout)
-        _captions(drawn, layout, motion, title)
-        for view, span in ((layout.rod, motion.far), (layout.close, motion.near)):
-            colour_bar(drawn, layout, view, motion.field, span)
-        limits = limits_of([curve], motion.fields.times)
-        strip = Strip.draw(drawn, layout, layout.strip, curve, limits)
-        return cls(layout, picture(drawn), strip)
+        drawn, waves = blank(layout), motion.movement.waves if motion.field == "strain" else None
+        heading(drawn, layout, title)
+        fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
+        _caption(drawn, layout, layout.rod, f"whole rod, deformation × {motion.peak:g}{fade}")
+        _caption(
+            drawn,
+            layout,
+            layout.close,
+            CLOSE_UP.format(CLOSE_WIDTH * motion.span * 1e3) if waves is None else ALONG,
+        )
+        colour_bar(drawn, layout, layout.rod, motion.field, motion.far)
+        if waves is None:
+            colour_bar(drawn, layout, layout.close, motion.field, motion.near)
+        profile = None if waves is None else Profile.draw(drawn, layout, layout.beside, waves, times)
+        strip = Strip.draw(drawn, layout, layout.strip, curve, limits_of([curve], times))
+        return cls(layout, picture(drawn), strip, profile)
 
-    def compose(self, rod: np.ndarray, close: np.ndarray, time: float) -> np.ndarray:
-        """Return one frame ``(height, width, 3) uint8`` from the two views at ``time`` in s."""
+    def compose(
+        self,
+        rod: np.ndarray,
+        close: np.ndarray | None,
+        time: float,
+        overlay: Callable[[Any], None],
+        slow: float,
+    ) -> np.ndarray:
+        """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s.
+
+        ``overlay`` draws over the rod with a pen; a second of the film shows ``slow`` s of motion.
+        """
         from PIL import Image, ImageDraw
 
         frame = self.base.copy()
         frame.paste(Image.fromarray(rod), self.layout.rod.corner)
-        frame.paste(Image.fromarray(close), self.layout.close.corner)
+        if close is not None:
+            frame.paste(Image.fromarray(close), self.layout.close.corner)
         pen = ImageDraw.Draw(frame)
         clock(pen, self.layout, time)
+        if slow:
+            write(pen, (self.layout.width - 24, 42), f"1 s of the film shows {slow * 1e6:.3g} µs", 12)
         self.strip.mark(pen, time)
+        if self.profile is not None:
+            self.profile.mark(pen, time)
+        overlay(pen)
         return np.asarray(frame)
 
 
@@ -85,18 +120,9 @@ def heading(drawn: Figure, frame: Frame, title: str) -> None:
     drawn.text(*place, shown, fontsize=14, weight="bold", color=INK, va="center", parse_math=False)
 
 
-def _captions(drawn: Figure, layout: FrameLayout, motion: FilmData, title: str) -> None:
-    across, down = layout.width, layout.height
-    heading(drawn, layout, title)
-    fade = ", fading to × 1 at the contact" if motion.peak > 1.0 else ""
-    whole = f"whole rod, deformation × {motion.peak:g}{fade}"
-    near = (
-        f"section at the contact (n up, t right), true scale, {CLOSE_WIDTH * motion.span * 1e3:.1f} mm wide"
-    )
-    for view, text in ((layout.rod, whole), (layout.close, near)):
-        drawn.text(
-            view.left / across, 1 - (view.top - 10) / down, text, fontsize=9.5, color=QUIET, va="center"
-        )
+def _caption(drawn: Figure, layout: FrameLayout, view: Rectangle, text: str) -> None:
+    place = (view.left / layout.width, 1 - (view.top - 10) / layout.height)
+    drawn.text(*place, text, fontsize=9.5, color=QUIET, va="center")
 
 
 def colour_bar(drawn: Figure, frame: Frame, view: Rectangle, field: str, span: tuple[float, float]) -> None:
@@ -130,11 +156,12 @@ def picture(drawn: Figure) -> Image:
 
 def write(pen: Any, place: tuple[int, int], text: str, size: int = 22) -> None:
     """Write a text into a frame; ``place`` is its upper right corner, px."""
-    pen.text(place, text, font=_font(size), fill=INK, anchor="ra")
+    pen.text(place, text, font=font(size), fill=INK, anchor="ra")
 
 
 @functools.cache
-def _font(size: int) -> Any:
+def font(size: int) -> Any:
+    """Return the font of the words that change from frame to frame; ``size`` in px."""
     from matplotlib.font_manager import findfont
     from PIL import ImageFont
 

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
 from fem_impact.errors import MissingLibraryError, ResultError
-from fem_impact.files.fields_read import FieldFile, read_fields
 from fem_impact.outcome.record import Outcome
 from fem_impact.render.encode import best_suffix, encode, require_gl
 from fem_impact.render.layout import FrameLayout
 from fem_impact.render.motion import FilmData, prepare
+from fem_impact.render.movement import read_movement
+from fem_impact.render.timeline import FPS, WHOLE, Span, film_times, slow_motion
 from fem_impact.tables.history import read_history
 
 
@@ -39,51 +41,45 @@ class RenderResult:
 def render(
     result_dir: str | Path,
     out: str | Path | None = None,
-    frames: int | None = None,
-    field: str = "mises",
+    span: Span = WHOLE,
+    field: str = "strain",
     size: tuple[int, int] = (1280, 720),
-    fps: int = 20,
 ) -> RenderResult:
     """Draw a film of the fields of a run.
 
     Parameters
     ----------
     result_dir : path
-        Folder with fields.vtkhdf, and history.csv and outcome.json where they exist.
+        Folder with fields.vtkhdf, and waves.h5, history.csv and outcome.json where they exist.
     out : path, optional
         The film, .mp4, .webp, .gif, or .png for a folder; default ``film`` in the best format available.
-    frames : int, optional
-        Number of frames, evenly chosen; all when None.
-    field : "mises", "velocity" or "strain"
-        The colours: von Mises stress, speed, or strain along the rod's axis.
+    span : Span
+        Times and number of frames; by default slow while the first waves run, faster later, and the free
+        ringing after the contact.
+    field : "strain", "stress", "velocity" or "plastic"
+        The colours: strain along the rod's axis, von Mises stress, speed, or plastic strain. Only the film of
+        the strain goes on after the last stored frame.
     size : tuple of int, px
         Width and height, multiples of 16.
-    fps : int, 1/s
 
     Raises
     ------
     ResultError
         The folder holds no readable fields.
+    UsageError
+        Field, span or size cannot be drawn.
     MissingLibraryError, OutputPathError
         Off-screen drawing or the encoder is missing; the film cannot be written.
     """
-    folder = Path(result_dir)
-    fields = read_fields(folder / "fields.vtkhdf")
-    chosen = _choose(len(fields.times), frames)
-    motion = prepare(fields, field, chosen)
+    folder, layout = Path(result_dir), FrameLayout(*size)
+    movement, left_out = read_movement(folder)
+    times = film_times(movement, field, span)
+    motion = prepare(movement, field, times)
     require_libraries()
     path, notes = target(folder, out)
-    title, curve, missing = context(folder, fields)
-    made = encode(_frames(motion, FrameLayout(*size), chosen, title, curve), path, fps)
-    return RenderResult(made, (*notes, *missing), len(chosen))
-
-
-def _choose(stored: int, wanted: int | None) -> Sequence[int]:
-    """Return the indices of ``wanted`` frames evenly over the ``stored`` ones; all when None."""
-    if wanted is not None and wanted < 1:
-        raise ResultError(f"frames = {wanted}: a film needs one frame at least.")
-    count = stored if wanted is None else min(wanted, stored)
-    return [int(number) for number in np.unique(np.linspace(0, max(stored - 1, 0), count).round())]
+    title, curve, missing = context(folder)
+    made = encode(_frames(motion, layout, times, title, curve), path, FPS)
+    return RenderResult(made, (*notes, *left_out, *missing), len(times))
 
 
 def require_libraries() -> None:
@@ -105,7 +101,7 @@ def target(folder: Path, out: str | Path | None, stem: str = "film") -> tuple[Pa
     return folder / f"{stem}{suffix}", [] if suffix == ".mp4" else [other]
 
 
-def context(folder: Path, fields: FieldFile) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
+def context(folder: Path) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]]:
     """Return title, force curve, and a note on each of them that is missing."""
     title, curve, missing = folder.resolve().name, (np.zeros(0), np.zeros(0)), []
     try:
@@ -123,23 +119,27 @@ def context(folder: Path, fields: FieldFile) -> tuple[str, tuple[np.ndarray, np.
 def _frames(
     motion: FilmData,
     layout: FrameLayout,
-    chosen: Sequence[int],
+    times: np.ndarray,
     title: str,
     curve: tuple[np.ndarray, np.ndarray],
 ) -> Iterator[np.ndarray]:
     from fem_impact.render.board import FilmBackground
+    from fem_impact.render.overlay import Overlay
     from fem_impact.render.views import CloseView, RodPicture, needed_height
 
-    board = FilmBackground.make(layout, motion, title, curve)
+    board = FilmBackground.make(layout, motion, title, curve, times)
     size = layout.rod.size
     whole = RodPicture(motion, size, needed_height(motion, size))
-    near = CloseView(motion, layout.close.size)
+    near = None if board.profile else CloseView(motion, layout.close.size)
+    marks = Overlay.of(layout.rod, whole, motion)
     try:
-        for frame in chosen:
-            true, shown = motion.positions(frame)
-            colours = motion.colours(frame)
-            pictures = whole.draw(shown, colours), near.draw(true, colours)
-            yield board.compose(*pictures, float(motion.fields.times[frame]))
+        for at, time in enumerate(times.tolist()):
+            true, shown = motion.positions(time)
+            colours = motion.colours(time)
+            close = near.draw(true, colours) if near else None
+            over = partial(marks.draw, true=true, time=time)
+            yield board.compose(whole.draw(shown, colours), close, time, over, slow_motion(times, at))
     finally:
-        whole.close()
-        near.close()
+        for view in (whole, near):
+            if view is not None:
+                view.close()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from fem_impact.errors import UsageError
+
 
 @dataclass(frozen=True, slots=True)
 class Rectangle:
@@ -40,9 +42,11 @@ class Frame:
 
     def __post_init__(self) -> None:
         if self.width % 16 or self.height % 16 or self.width < 640 or self.height < 480:
-            raise ValueError(
-                f"a frame of {self.width} x {self.height} px cannot be made: "
-                "use multiples of 16, 640 x 480 at least."
+            raise UsageError(
+                "is no size of a film.",
+                key="--size",
+                value=f"{self.width}x{self.height}",
+                remedy="Use multiples of 16, 640x480 at least.",
             )
 
     def share(self, left: int, top: int, width: int, height: int) -> tuple[float, float, float, float]:
@@ -64,6 +68,12 @@ class FrameLayout(Frame):
     def close(self) -> Rectangle:
         """The view of the contact."""
         return Rectangle(self.width // 2 + 12, 74, self.width // 2 - 36, self.height - 310)
+
+    @property
+    def beside(self) -> Rectangle:
+        """The place of curves instead of the view of the contact: its colour bar is not needed."""
+        close = self.close
+        return Rectangle(close.left, close.top, close.width, close.height + 36)
 
     @property
     def strip(self) -> Rectangle:

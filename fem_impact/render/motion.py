@@ -10,6 +10,7 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import FieldFile
+from fem_impact.files.waves import Waves
 from fem_impact.render.kinematics import (
     axis_of,
     hex_volumes,
@@ -19,24 +20,30 @@ from fem_impact.render.kinematics import (
     rigid_motion,
     stretch,
 )
+from fem_impact.render.movement import Movement
 
 
 class FieldStyle(NamedTuple):
-    """How a field is shown: label, unit, factor from SI, colour map, whether it has a sign."""
+    """How a field is shown: label, unit, factor from SI, name in the file, colours, whether it has a sign."""
 
     name: str
     unit: str
     scale: float
+    stored: str = ""
     colours: str = "YlGnBu"
     signed: bool = False
 
 
 FIELDS = {
-    "mises": FieldStyle("von Mises stress", "MPa", 1e-6),
+    "strain": FieldStyle("axial strain", "µm/m", 1e6, colours="coolwarm", signed=True),
+    "stress": FieldStyle("von Mises stress", "MPa", 1e-6, "mises"),
     "velocity": FieldStyle("speed", "m/s", 1.0),
-    "strain": FieldStyle("axial strain", "µm/m", 1e6, "coolwarm", True),
+    "plastic": FieldStyle("plastic strain", "%", 100.0, "plastic_strain", "YlOrRd"),
 }
-"""The fields that can be shown."""
+"""The fields that can be shown, the default first."""
+
+LOOKED = 48
+"""Frames at most, evenly over the film, that fix magnification and colour ranges."""
 
 _VISIBLE = 0.35
 """Magnified size of the largest deformation away from the tip, share of the rod's diameter."""
@@ -48,11 +55,11 @@ _FURTHEST = 1000.0
 
 @dataclass(frozen=True, slots=True)
 class FilmData:
-    """A field file made ready to be drawn.
+    """The motion of a run made ready to be drawn.
 
     Parameters
     ----------
-    fields : FieldFile
+    movement : Movement
     field : str
         One of ``FIELDS``.
     rod_nodes : (n,) bool
@@ -71,7 +78,7 @@ class FilmData:
         Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
     """
 
-    fields: FieldFile
+    movement: Movement
     field: str
     rod_nodes: np.ndarray
     weights: np.ndarray
@@ -83,46 +90,51 @@ class FilmData:
     far: tuple[float, float]
 
     @property
+    def fields(self) -> FieldFile:
+        """Return the field file, for its mesh."""
+        return self.movement.fields
+
+    @property
     def factor(self) -> np.ndarray:
         """Magnification of the deformation ``(n,)``."""
         magnification: np.ndarray = 1.0 + (self.peak - 1.0) * self.fade
         return magnification
 
-    def positions(self, frame: int) -> tuple[np.ndarray, np.ndarray]:
+    def positions(self, time: float) -> tuple[np.ndarray, np.ndarray]:
         """Return ``(n, 3) m`` positions as they are, and with the rod's deformation magnified."""
-        true = self.fields.points + self.fields.point_data("displacement", frame)
+        true = self.movement.points(time)
         shown, rod = true.copy(), self.rod_nodes
         rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
         shown[rod] = magnified(rigid, true[rod], self.factor[rod])
         return true, shown
 
-    def colours(self, frame: int) -> np.ndarray:
+    def colours(self, time: float) -> np.ndarray:
         """Return the field at the points ``(n,)`` or in the cells ``(m,)``, in the shown unit."""
-        return _colours(self.fields, self.field, frame)
+        return _colours(self.movement, self.field, time)
 
 
-def prepare(fields: FieldFile, field: str, frames: Sequence[int]) -> FilmData:
-    """Look through the frames once and fix magnification and colour ranges.
+def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray) -> FilmData:
+    """Look through the film once and fix magnification and colour ranges.
 
     Raises
     ------
     ResultError
-        The file holds no frames, no such field or no rod.
+        There is no such field or no rod.
     """
+    fields = movement.fields
     if field not in FIELDS:
         raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
-    if not len(frames):
-        raise ResultError(f"{fields.path}: holds no frames yet, so there is nothing to draw.")
     rod_cells = _rod_cells(fields)
     weights = nodal_volumes(fields.points, rod_cells)
     rod = np.isin(np.arange(len(fields.points)), rod_cells)
     lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
     span = 2.0 * float(fields.points[rod, 1].max())
     distance = np.linalg.norm(fields.points - lowest, axis=1) / span
-    peak = _peak(fields, frames, rod, weights, distance, span)
-    near, far = _ranges(fields, field, frames, distance, rod)
+    looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
+    peak = _peak(movement, looked, rod, weights, distance, span)
+    near, far = _ranges(movement, field, looked, distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
-    return FilmData(fields, field, rod, weights, _fade(distance), peak, contact, span, near, far)
+    return FilmData(movement, field, rod, weights, _fade(distance), peak, contact, span, near, far)
 
 
 def _rod_cells(fields: FieldFile) -> np.ndarray:
@@ -145,51 +157,62 @@ def _fade(distance: np.ndarray) -> np.ndarray:
 
 
 def _peak(
-    fields: FieldFile,
-    frames: Sequence[int],
+    movement: Movement,
+    times: np.ndarray,
     rod: np.ndarray,
     weights: np.ndarray,
     distance: np.ndarray,
     span: float,
 ) -> float:
-    away, largest = distance[rod] > 2.0, 0.0
-    for frame in frames:
-        moved = fields.point_data("displacement", frame)
-        if np.abs(moved).max() > _FURTHEST * np.ptp(fields.points):
-            raise ResultError(f"{fields.path}: frame {frame} moves points by {np.abs(moved).max():.3g} m.")
-        true = (fields.points + moved)[rod]
-        bent = true - rigid_motion(fields.points[rod], true, weights[rod])
+    fields, away, largest = movement.fields, distance[rod] > 2.0, 0.0
+    for time in times:
+        moved = movement.points(time)
+        furthest = float(np.abs(moved - fields.points).max())
+        if furthest > _FURTHEST * np.ptp(fields.points):
+            raise ResultError(f"{fields.path}: at {time:.6g} s the motion moves points by {furthest:.3g} m.")
+        bent = moved[rod] - rigid_motion(fields.points[rod], moved[rod], weights[rod])
         largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
     return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
 
 
-def _colours(fields: FieldFile, field: str, frame: int) -> np.ndarray:
-    scale = FIELDS[field].scale
+def _colours(movement: Movement, field: str, time: float) -> np.ndarray:
+    style = FIELDS[field]
     if field == "velocity":
-        speed: np.ndarray = scale * np.linalg.norm(fields.point_data("velocity", frame), axis=1)
+        speed: np.ndarray = style.scale * np.linalg.norm(movement.point_data("velocity", time), axis=1)
         return speed
     if field == "strain":
-        return scale * _strain(fields, frame)
-    return scale * fields.cell_data(field, frame)
+        return style.scale * _strain(movement, time)
+    return style.scale * movement.cell_data(style.stored, time)
 
 
-def _strain(fields: FieldFile, frame: int) -> np.ndarray:
+def _strain(movement: Movement, time: float) -> np.ndarray:
     """Return the strain along the rod's axis ``(m,)``, zero in the barrier."""
+    fields = movement.fields
     rod = fields.static["body"] == 0
     cells, strain = fields.cells[rod], np.zeros(len(rod))
-    moved = fields.points + fields.point_data("displacement", frame)
     axis = axis_of(fields.points[np.unique(cells)])
-    strain[rod] = stretch(fields.points, moved, cells, axis) - 1.0
+    strain[rod] = stretch(fields.points, movement.points(time), cells, axis) - 1.0
+    if movement.waves is not None:
+        _put_waves(strain, fields.points[fields.cells].mean(axis=1), rod, movement.waves, time)
     return strain
 
 
+def _put_waves(strain: np.ndarray, centres: np.ndarray, rod: np.ndarray, waves: Waves, time: float) -> None:
+    """Set the strain of the cylinder's cells, at ``centres``, by stretch and bending along the axis."""
+    arm = centres - waves.origin
+    along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
+    body = rod & (along > waves.position[0])
+    mean, bent = (np.interp(along[body], waves.position, rows[0]) for rows in waves.strain(np.array([time])))
+    strain[body] = mean + bent * across[body] / waves.radius
+
+
 def _ranges(
-    fields: FieldFile, field: str, frames: Sequence[int], distance: np.ndarray, rod: np.ndarray
+    movement: Movement, field: str, times: np.ndarray, distance: np.ndarray, rod: np.ndarray
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    in_cells, signed = field != "velocity", FIELDS[field].signed
-    place = distance[fields.cells].mean(axis=1) if in_cells else distance
-    on_rod = rod[fields.cells].all(axis=1) if in_cells else rod
-    tops = np.array([_tops(np.abs(_colours(fields, field, frame)), place, on_rod) for frame in frames])
+    in_cells, signed, cells = field != "velocity", FIELDS[field].signed, movement.fields.cells
+    place = distance[cells].mean(axis=1) if in_cells else distance
+    on_rod = rod[cells].all(axis=1) if in_cells else rod
+    tops = np.array([_tops(np.abs(_colours(movement, field, time)), place, on_rod) for time in times])
     near, far = (float(top) for top in np.maximum(tops.max(axis=0), 1e-12))
     return (-near if signed else 0.0, near), (-far if signed else 0.0, far)
 

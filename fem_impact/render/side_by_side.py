@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.figures.style import INK, QUIET
-from fem_impact.files.fields_read import read_fields
 from fem_impact.render.board import (
     Curve,
     Strip,
@@ -28,6 +27,8 @@ from fem_impact.render.encode import encode
 from fem_impact.render.film import RenderResult, context, require_libraries, target
 from fem_impact.render.layout import Abreast, Rectangle
 from fem_impact.render.motion import FilmData, prepare
+from fem_impact.render.movement import read_movement
+from fem_impact.render.timeline import FPS, WHOLE, Span, film_times
 from fem_impact.render.views import RodPicture, needed_height
 
 if TYPE_CHECKING:
@@ -35,16 +36,14 @@ if TYPE_CHECKING:
     from PIL.Image import Image
 
 
-FRAMES = 120
 TITLE = "Strain along the axis: of one sign over a section in longitudinal waves, of both in bending"
 
 
 def render_side_by_side(
     results: Sequence[str | Path],
     out: str | Path | None = None,
-    frames: int = FRAMES,
+    span: Span = WHOLE,
     size: tuple[int, int] = (1280, 720),
-    fps: int = 20,
 ) -> RenderResult:
     """Draw one film of several runs: one scale, one magnification, one colour range, one clock.
 
@@ -56,11 +55,10 @@ def render_side_by_side(
         Folders as `fem_impact.render.render` takes them.
     out : path, optional
         The film; without it ``film-side-by-side`` in the first folder.
-    frames : int
-        Evenly over the longest run; each rod shows its nearest stored frame.
+    span : Span
+        Times and number of frames; by default those of the run that goes on longest.
     size : tuple of int, px
         Width and height, multiples of 16.
-    fps : int, 1/s
 
     Raises
     ------
@@ -68,16 +66,18 @@ def render_side_by_side(
         As `fem_impact.render.render`.
     """
     folders = [Path(result) for result in results]
-    files = [read_fields(folder / "fields.vtkhdf") for folder in folders]
-    motions = _alike([prepare(fields, "strain", range(len(fields.times))) for fields in files])
+    read = [read_movement(folder) for folder in folders]
+    movements = [movement for movement, _ in read]
+    motions = _alike([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
     require_libraries()
     path, notes = target(folders[0], out, "film-side-by-side")
-    contexts = [context(folder, fields) for folder, fields in zip(folders, files, strict=True)]
-    times = np.linspace(0.0, max(float(fields.times[-1]) for fields in files), frames)
+    contexts = [context(folder) for folder in folders]
+    times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
     board = PairBackground.make(Abreast(*size, len(folders)), motions, [c[:2] for c in contexts], times)
-    made = encode(_frames(board, motions, times), path, fps)
-    missing = [sentence for *_, sentences in contexts for sentence in sentences]
-    return RenderResult(made, (*notes, *missing), frames)
+    made = encode(_frames(board, motions, times), path, FPS)
+    told = [*(left_out for _, left_out in read), *(missing for *_, missing in contexts)]
+    missing = [sentence for sentences in told for sentence in sentences]
+    return RenderResult(made, (*notes, *missing), len(times))
 
 
 def _alike(motions: Sequence[FilmData]) -> list[FilmData]:
@@ -126,7 +126,7 @@ class PairBackground:
         colour_bar(drawn, layout, middle, "strain", motions[0].far)
         scale = f"one scale; deformation × {motions[0].peak:g},\nfading to × 1 at the contact"
         below(drawn, layout, layout.views[0], scale, QUIET)
-        ends = tuple(float(motion.fields.times[-1]) for motion in motions)
+        ends = tuple(motion.movement.end for motion in motions)
         return cls(layout, picture(drawn), tuple(strips), ends)
 
     def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
@@ -158,10 +158,10 @@ def _frames(board: PairBackground, motions: Sequence[FilmData], times: np.ndarra
     views = [RodPicture(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]
     try:
         for time in times:
-            nearest = [int(np.abs(motion.fields.times - time).argmin()) for motion in motions]
+            shown = [min(float(time), motion.movement.end) for motion in motions]
             drawn = [
-                view.draw(motion.positions(frame)[1], motion.colours(frame))
-                for view, motion, frame in zip(views, motions, nearest, strict=True)
+                view.draw(motion.positions(at)[1], motion.colours(at))
+                for view, motion, at in zip(views, motions, shown, strict=True)
             ]
             yield board.compose(drawn, float(time))
     finally:

@@ -74,7 +74,7 @@ class RodPicture(_View):
             self._put(mesh, motion.fields.points, np.zeros(len(motion.fields.points)))
             self.plotter.add_mesh(mesh, scalars="colour", culling=hidden, **self.look)
         _add_plane(self.plotter, motion)
-        self._aim(height)
+        self._aim(height, size[1])
 
     def draw(self, shown: np.ndarray, colours: np.ndarray) -> np.ndarray:
         """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
@@ -85,12 +85,19 @@ class RodPicture(_View):
         self._put(self.mirrored, shown * _MIRROR, smooth)
         return self._picture()
 
-    def _aim(self, height: float) -> None:
+    def turned(self, vector: np.ndarray) -> np.ndarray:
+        """Return a vector (3,) in the picture (2,): to the right and down, in its own unit."""
+        right = np.cross(-self.towards, [0.0, 0.0, 1.0])
+        right /= np.linalg.norm(right)
+        return np.array([right @ vector, np.cross(self.towards, right) @ vector * -1.0])
+
+    def _aim(self, height: float, pixels: int) -> None:
         low, high = _corners(self.motion)
-        middle = np.array([(low[0] + high[0]) / 2, 0.0, low[2] - MARGIN * self.motion.span + height / 2])
+        self.middle = np.array([(low[0] + high[0]) / 2, 0.0, low[2] - MARGIN * self.motion.span + height / 2])
         side, up = np.radians(-20.0), np.radians(14.0)
-        towards = [np.sin(side) * np.cos(up), -np.cos(side) * np.cos(up), np.sin(up)]
-        _look_at(self.plotter, middle, np.array(towards), height)
+        self.towards = np.array([np.sin(side) * np.cos(up), -np.cos(side) * np.cos(up), np.sin(up)])
+        self.pixels = pixels / height  # a metre across the line of sight
+        _look_at(self.plotter, self.middle, self.towards, height)
 
 
 class CloseView(_View):
@@ -99,7 +106,7 @@ class CloseView(_View):
     def __init__(self, motion: FilmData, size: tuple[int, int]) -> None:
         look = {"show_edges": True, "edge_color": "#30343a", "line_width": 0.5, "edge_opacity": 0.35}
         super().__init__(motion, size, motion.near, lighting=False, **look)
-        self._put(self.surface, motion.fields.points, motion.colours(0))
+        self._put(self.surface, motion.fields.points, motion.colours(0.0))
         self.plotter.add_mesh(self.surface, scalars="colour", culling="back", **self.look)
         _add_plane(self.plotter, motion)
         height = CLOSE_WIDTH * motion.span * size[1] / size[0]

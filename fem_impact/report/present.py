@@ -47,10 +47,11 @@ def _notes(run: Path, drawn: Future[list[str]]) -> list[str]:
 def pictures(run: Path) -> list[str]:
     """Write film and page of a run; return what could not be made."""
     from fem_impact.render.film import render
+    from fem_impact.render.timeline import Span
     from fem_impact.report.write import write_report
 
     filmed = (run / "fields.vtkhdf").is_file()
-    notes = _attempt(run, lambda place: render(place, frames=FILM_FRAMES).notes) if filmed else []
+    notes = _attempt(run, lambda place: render(place, span=Span(frames=FILM_FRAMES)).notes) if filmed else []
     return notes + _attempt(run, write_report)
 
 

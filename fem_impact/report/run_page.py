@@ -27,6 +27,7 @@ from fem_impact.report.sections import (
     notices,
     strangers,
     unknown,
+    waves_section,
 )
 from fem_impact.tables.table import Cell, Table
 
@@ -67,6 +68,7 @@ def run_page(folder: Path) -> str:
         effects_section(outcome),
         history_figures(outcome, folder),
         section("Contacts", contacts_table(outcome)),
+        waves_section(folder),
         film_section(folder),
         section("Heat of the contact", _heat(outcome)),
         section("Motion", key_table(outcome, MOTION)),

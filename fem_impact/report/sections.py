@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import partial
 from html import escape
 from pathlib import Path
 
@@ -10,7 +11,9 @@ from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.history import force_figure, ledger_figure
 from fem_impact.figures.style import percent
+from fem_impact.figures.waves import waves_figure
 from fem_impact.files.atomic import make_directory
+from fem_impact.files.waves import read_waves
 from fem_impact.outcome.groups import ContactInterval, EffectChoice
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEYS, Outcome
@@ -99,6 +102,25 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
     except ResultError as error:
         return section("Over time", paragraph(f"No curves over time: {error}"))
     return join([section("Ledger over time", ledger), section("Contact force", force)])
+
+
+def waves_section(folder: Path, again: bool = True) -> Markup:
+    """Return the strain along the axis over time, nothing where the run did not store it."""
+    stored = folder / "waves.h5"
+    if not stored.is_file():
+        return Markup("")
+    try:
+        drawn = picture(
+            partial(waves_figure, read_waves(stored)),
+            make_directory(folder / "figures") / "waves",
+            "Strain along the axis of the rod over time, stretch and bending apart",
+            "Position along the axis against time: the mean strain of each section, and the part by which "
+            "the side facing the barrier differs from it. Dashed: where a front from the contact would be.",
+            None if again else stored,
+        )
+    except ResultError as error:
+        drawn = paragraph(f"No diagram of the waves: {error}")
+    return section("Waves along the rod", drawn)
 
 
 def film_section(folder: Path) -> Markup:

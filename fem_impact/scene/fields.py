@@ -308,6 +308,16 @@ SAVE = (
         default=20,
         source="20 steps of about 20 ns, against 40 us of the 0.08 m rod's first bending half-period",
     ),
+    Parameter(
+        "strain_samples",
+        "samples of the strain along the axis while a stretching wave crosses one slice of the mesh, 0: none",
+        "",
+        0,
+        100,
+        whole=True,
+        default=1,
+        source="chosen for this package: the mesh carries no wave shorter than some slices",
+    ),
 )
 
 HEATING = (

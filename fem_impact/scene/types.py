@@ -156,10 +156,11 @@ class Heating:
 
 @dataclass(frozen=True, slots=True)
 class Save:
-    """What is kept of a run: frames of the fields, steps between rows of the histories."""
+    """What is kept of a run: frames of the fields, rows of the histories, samples of the axial strain."""
 
     frames: int = 120
     history_every: int = 20
+    strain_samples: int = 1
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.SAVE)

@@ -104,12 +104,14 @@ class History:
 
 @dataclass(slots=True)
 class Frames:
-    """Observer that writes a frame of the fields every ``interval``, s."""
+    """Observer that writes a frame every ``early``, s, until the time ``parted``, then every ``later``, s."""
 
     moving: ClassVar[tuple[str, ...]] = ("due", "writer.frames")
     fields: FieldSampler
     writer: FieldWriter
-    interval: float
+    early: float
+    later: float
+    parted: float
     every: int = 10
     due: float = 0.0
 
@@ -117,7 +119,7 @@ class Frames:
         """Append when a frame is due."""
         if state.time >= self.due:
             self.writer.append(state.time, *self.fields.sample(state))
-            self.due += self.interval
+            self.due += self.early if self.due < self.parted else self.later
         return False
 
 

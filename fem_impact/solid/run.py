@@ -127,6 +127,8 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
     cost = LoopCost(*loop, wall, cpu, _peak_memory(), watchers.guard.smallest)
     result = _result(plan, model, view, state, watchers, check, cost)
+    for strain in watchers.strain if free else []:
+        strain.write(strain.ringing(view, state, result.flight))
     return replace(result, shares=run_time_shares(model, state, cost.cpu / max(state.step, 1), watchers.heat))
 
 

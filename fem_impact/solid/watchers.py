@@ -13,7 +13,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
-from fem_impact.physics.beam import horizon
+from fem_impact.physics.beam import horizon, stretching_period
 from fem_impact.physics.contact import contact_estimate
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.doubts import SkinWatch
@@ -24,6 +24,7 @@ from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
+from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.growing import HistoryWriter
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
 
 FRAMES_SPAN = 3.0  # contact durations (estimated) over which the wanted number of frames is spread
+TRANSITS, EARLY = 2.0, 0.4  # lengths run by a stretching wave, in which this share of the frames is written
 
 
 class Saved(Observer, Moving, Protocol):
@@ -87,6 +89,7 @@ class Watchers:
     watch: Watch
     history: list[History]
     frames: list[Frames]
+    strain: list[StrainWatch]
     skin: SkinWatch
     peak: PeakForce
     added: AddedMass
@@ -98,23 +101,25 @@ class Watchers:
         """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
         scene = plan.scene
         watch = Watch(model.ledger(), scene.save.history_every)
-        history, frames = [], []
+        history, frames, strain = [], [], []
         if out is not None:
             own = [c for c in map(history_column, watch.ledger.names) if c not in HISTORY]
             writer = HistoryWriter(out / "history.csv", (*HISTORY, *own), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(plan, model, view, out, go_on)]
+        if out is not None and scene.save.strain_samples and model.rod_stiffness is not None:
+            strain = [StrainWatch.of(plan, model, out / "waves.h5")]
         stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
         skin, peak, added = SkinWatch(model), PeakForce(model.book), AddedMass(model.added_mass)
         heat = _heat_watch(model) if plan.slots.heat else None
-        return cls(StepGuard(model), watch, history, frames, skin, peak, added, heat, stop)
+        return cls(StepGuard(model), watch, history, frames, strain, skin, peak, added, heat, stop)
 
     @property
     def all(self) -> list[Saved]:
         """Observers in calling order, step guard to stop rule."""
         heat = [self.heat] if self.heat else []
-        first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames]
+        first: list[Saved] = [self.guard, self.watch, *self.history, *self.frames, *self.strain]
         return [*first, self.skin, self.peak, self.added, *heat, self.stop]
 
     @property
@@ -123,9 +128,11 @@ class Watchers:
         return self.guard.reason or self.watch.reason or self.skin.reason or self.stop.reason
 
     def flush(self) -> None:
-        """Write the buffered rows of the history."""
+        """Write the rows of the history and the samples of the strain that wait."""
         for h in self.history:
             h.writer.flush()
+        for s in self.strain:
+            s.write()
 
     def holders(self, model: Model, state: State, clock: Stopwatch) -> dict[str, Moving]:
         """Return all objects with state, by names that depend on the scene only."""
@@ -151,4 +158,17 @@ def _frames(plan: Plan, model: Model, view: RodState, out: Path, go_on: bool) ->
     fields = FieldSampler.of(model, view, [(m.E, m.nu) for m in bodies])
     body = {"body": fields.body}
     writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
-    return Frames(fields, writer, FRAMES_SPAN * contact_estimate(plan.bodies).duration / scene.save.frames)
+    return Frames(fields, writer, *_schedule(plan))
+
+
+def _schedule(plan: Plan) -> tuple[float, float, float]:
+    """Return the intervals, s, between early and later frames, and the time, s, that parts them.
+
+    A stretching wave runs along the rod and back in the first part.
+    """
+    frames, contact = plan.scene.save.frames, float(contact_estimate(plan.bodies).duration)
+    early = TRANSITS / 2 * stretching_period(plan.scene)
+    later = FRAMES_SPAN * contact - early
+    if later * EARLY < early * (1 - EARLY):
+        return (early + max(later, 0.0)) / frames, np.inf, np.inf
+    return early / (EARLY * frames), later / ((1 - EARLY) * frames), early

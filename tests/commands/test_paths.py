@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from fem_impact.render.timeline import Span
+
 
 def refused(cli, stand, *words):
     code, out, err = cli(*words)
@@ -123,8 +125,8 @@ def test_several_results_make_one_film(cli, stand):
     cli("render", "here", "there", "--out", "both.gif")
     cli("render", "here", "--out", "one.gif")
     assert stand.calls == [
-        ("render_side_by_side", ([Path("here"), Path("there")], Path("both.gif"))),
-        ("render", (Path("here"), Path("one.gif"))),
+        ("render_side_by_side", ([Path("here"), Path("there")], Path("both.gif"), Span(), (1280, 720))),
+        ("render", (Path("here"), Path("one.gif"), Span(), "strain", (1280, 720))),
     ]
 
 

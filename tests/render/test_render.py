@@ -12,7 +12,7 @@ from PIL import Image
 
 import fem_impact.render.encode as encoding
 import fem_impact.render.encode as probe
-from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError
+from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError, UsageError
 from fem_impact.files.fields_read import read_fields
 from fem_impact.render.encode import require_gl
 from fem_impact.render.film import render
@@ -28,9 +28,19 @@ from fem_impact.render.kinematics import (
 )
 from fem_impact.render.layout import Abreast, FrameLayout
 from fem_impact.render.motion import prepare
+from fem_impact.render.movement import Movement
 from fem_impact.render.side_by_side import _alike, render_side_by_side
+from fem_impact.render.timeline import Span
 
 POINTS, CELLS = result_maker.grid((3, 2, 4))
+
+
+def filmed(folder, field):
+    """The arguments of `prepare` for all stored frames of a result."""
+    fields = read_fields(folder / "fields.vtkhdf")
+    return Movement(fields), field, fields.times
+
+
 WEIGHTS = nodal_volumes(POINTS, CELLS)
 
 
@@ -86,16 +96,16 @@ def test_the_axis_is_found_from_the_shape():
 
 
 def test_strain_is_shown_with_its_sign_and_not_in_the_barrier(result):
-    motion = prepare(read_fields(result / "fields.vtkhdf"), "strain", range(4))
+    motion = prepare(*filmed(result, "strain"))
     assert motion.far[0] == -motion.far[1] < 0.0
-    colours, body = motion.colours(2), motion.fields.static["body"]
+    colours, body = motion.colours(motion.fields.times[2]), motion.fields.static["body"]
     assert not colours[body == 1].any()
     assert colours[body == 0].min() < 0.0 < colours[body == 0].max()
 
 
 def test_rods_side_by_side_share_scale_and_colours(result):
-    fields = read_fields(result / "fields.vtkhdf")
-    motions = [prepare(fields, "strain", frames) for frames in ([1], [3])]
+    movement, _, times = filmed(result, "strain")
+    motions = [prepare(movement, "strain", times[[frame]]) for frame in (1, 3)]
     assert motions[0].far != motions[1].far
     assert motions[0].peak != motions[1].peak
     one, other = _alike(motions)
@@ -117,35 +127,36 @@ def test_cell_values_at_points_keep_a_constant():
 
 @pytest.mark.parametrize("size", [(1000, 720), (1280, 700), (320, 240)])
 def test_size_an_encoder_cannot_take_is_refused(size):
-    with pytest.raises(ValueError, match="multiples of 16"):
+    with pytest.raises(UsageError, match="multiples of 16"):
         FrameLayout(*size)
 
 
 def test_ranges_are_fixed_over_the_film(result):
     fields = read_fields(result / "fields.vtkhdf")
-    motion = prepare(fields, "mises", range(4))
+    movement, field, times = filmed(result, "stress")
+    motion = prepare(movement, field, times)
     peak = max(fields.cell_data("mises", frame).max() for frame in range(4)) * 1e-6
     assert 0.0 == motion.far[0] < motion.far[1] < motion.near[1] <= peak * (1 + 1e-6)
-    assert motion.far == prepare(fields, "mises", [3, 1, 2, 0]).far
+    assert motion.far == prepare(movement, field, times[[3, 1, 2, 0]]).far
     assert motion.span == pytest.approx(2.0 * result_maker.RADIUS)
 
 
 def test_deformation_is_true_at_the_contact_and_magnified_far_from_it(result):
-    motion = prepare(read_fields(result / "fields.vtkhdf"), "mises", range(4))
+    motion = prepare(*filmed(result, "stress"))
     distance = np.linalg.norm(motion.fields.points - motion.contact, axis=1)
     assert np.allclose(motion.factor[distance < 0.4 * motion.span], 1.0)
     assert np.allclose(motion.factor[distance > 2.1 * motion.span], motion.peak)
     assert motion.peak > 1.0
-    true, shown = motion.positions(2)
+    true, shown = motion.positions(motion.fields.times[2])
     near = distance < 0.4 * motion.span
     assert np.allclose(true[near], shown[near])
     assert np.abs(true - shown).max() > 1e-5
 
 
-@pytest.mark.parametrize(("field", "message"), [("heat", "choose one of mises, velocity")])
+@pytest.mark.parametrize(("field", "message"), [("heat", "choose one of strain, stress, velocity, plastic")])
 def test_unknown_field(result, field, message):
     with pytest.raises(ResultError, match=message):
-        prepare(read_fields(result / "fields.vtkhdf"), field, [0])
+        prepare(*filmed(result, field))
 
 
 def test_nothing_to_draw(tmp_path):
@@ -218,7 +229,7 @@ def test_unknown_format_leaves_nothing(tmp_path):
 @pytest.mark.render
 def test_film_shows_motion_and_carries_the_marker(result, tmp_path):
     require_gl()
-    made = render(result, tmp_path / "film.png", frames=3, size=(640, 480))
+    made = render(result, tmp_path / "film.png", Span(frames=3), "stress", (640, 480))
     assert (made.frames, made.notes) == (3, ())
     pictures = [np.asarray(Image.open(path)).astype(int) for path in sorted(made.path.iterdir())]
     layout = FrameLayout(640, 480)
@@ -245,7 +256,7 @@ def test_velocity_film_without_barrier_history_or_record(tmp_path):
 @pytest.mark.render
 def test_side_by_side_film_moves_in_every_view(result, tmp_path):
     require_gl()
-    made = render_side_by_side([result, result], tmp_path / "film.png", frames=3, size=(640, 480))
+    made = render_side_by_side([result, result], tmp_path / "film.png", Span(frames=3), size=(640, 480))
     assert (made.frames, made.notes) == (3, ())
     first, second = (np.asarray(Image.open(p)).astype(int) for p in sorted(made.path.iterdir())[:2])
     layout = Abreast(640, 480, 2)

@@ -10,6 +10,7 @@ from fem_impact.effects.registry import NAMES
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
+from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
 from fem_impact.plan.plan import plan
 from fem_impact.run.program import stamp
@@ -77,6 +78,11 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
     assert outcome_numbers(found) == outcome_numbers(expected)
     assert (parts / "history.csv").read_bytes() == (whole / "history.csv").read_bytes()
     same_frames(read_fields(parts / "fields.vtkhdf"), read_fields(whole / "fields.vtkhdf"))
+    assert (parts / "waves.h5").is_file() == ("vibration" in effects)
+    if "vibration" in effects:
+        found, expected = (read_waves(place / "waves.h5") for place in (parts, whole))
+        assert (found.times == expected.times).all() and len(found.times) > 50
+        assert (found.stretch == expected.stretch).all() and (found.bending == expected.bending).all()
 
 
 def test_killed_after_its_last_step_a_run_does_not_go_on_past_its_end(tmp_path):

@@ -1,0 +1,189 @@
+"""Strain along the rod's axis over time and the free flight after the last contact: the file waves.h5."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import atomic_path
+from fem_impact.files.fields_check import check_finite, check_times
+
+if TYPE_CHECKING:
+    import h5py
+
+
+@dataclass(frozen=True, slots=True)
+class Ringing:
+    """Free flight of the rod from ``start`` on: rigid motion and free vibration by modes.
+
+    Attributes
+    ----------
+    start : s, time at which the run ended
+    centre : (3,) m, mass centre then; velocity : (3,) m/s in (t, b, n)
+    angle, spin : rad, turn from t towards n then, and its rate, rad/s
+    omega : (k,) circular frequencies, rad/s; a, b : (k,) amplitudes of cosine and sine, sqrt(kg) m
+    shape : (k, n, 3) mode shapes at the rod's points, kg^-1/2, in the rod's frame
+    rest : (n, 3) m, points without vibration, from the mass centre in the rod's frame
+    stretch, bending : (k, m) strain of the modes along the axis, kg^-1/2 m^-1
+    """
+
+    start: float
+    centre: np.ndarray
+    velocity: np.ndarray
+    angle: float
+    spin: float
+    omega: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+    shape: np.ndarray
+    rest: np.ndarray
+    stretch: np.ndarray
+    bending: np.ndarray
+
+    def points(self, time: float) -> np.ndarray:
+        """Return the positions ``(n, 3)``, m, of the rod's points at a time of the run, s."""
+        local = self.rest + np.tensordot(self._amplitudes(np.array([time]))[:, 0], self.shape, 1)
+        turn = self.angle + self.spin * (time - self.start)
+        c, s = np.cos(turn), np.sin(turn)
+        turned = np.stack(
+            [c * local[:, 0] - s * local[:, 2], local[:, 1], s * local[:, 0] + c * local[:, 2]], axis=1
+        )
+        moved: np.ndarray = self.centre + self.velocity * (time - self.start) + turned
+        return moved
+
+    def strain(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stretch and bending ``(times, m)`` along the axis at times of the run, s."""
+        q = self._amplitudes(times).T
+        return q @ self.stretch, q @ self.bending
+
+    def _amplitudes(self, times: np.ndarray) -> np.ndarray:
+        phase = np.outer(self.omega, times - self.start)
+        q: np.ndarray = self.a[:, None] * np.cos(phase) + self.b[:, None] * np.sin(phase)
+        return q
+
+
+@dataclass(frozen=True, slots=True)
+class Waves:
+    """Strain along the axis of the rod's cylinder.
+
+    The strain at a distance x from the axis is ``stretch + bending x / radius``; x is positive on the side
+    that faces the barrier.
+
+    Attributes
+    ----------
+    times : (k,) s
+    position : (m,) m along the axis from the tip
+    stretch, bending : (k, m) mean strain of a section, and its linear part at the surface
+    length, radius : m, of the rod and of its section
+    speed, bending_speed : m/s, sqrt(E/rho) of its material; largest group speed of its bending waves
+    origin, axis : (3,) the tip, m, and the unit vector from it along the axis at the start, in (t, b, n)
+    ringing : the flight after the last contact, None where the run did not come to it
+    """
+
+    times: np.ndarray
+    position: np.ndarray
+    stretch: np.ndarray
+    bending: np.ndarray
+    length: float
+    radius: float
+    speed: float
+    bending_speed: float
+    origin: np.ndarray
+    axis: np.ndarray
+    ringing: Ringing | None = None
+
+    @property
+    def end(self) -> float:
+        """Return the last time that is stored, s."""
+        return float(self.times[-1])
+
+    @property
+    def transit(self) -> float:
+        """Return the time, s, in which a stretching wave runs once along the rod."""
+        return self.length / self.speed
+
+    def strain(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return stretch and bending ``(times, m)``: between the samples linear, after them by the modes."""
+        within = [_rows_at(self.times, rows, times) for rows in (self.stretch, self.bending)]
+        after = times > self.end
+        if self.ringing is not None and after.any():
+            for rows, free in zip(within, self.ringing.strain(times[after]), strict=True):
+                rows[after] = free
+        return within[0], within[1]
+
+
+def _rows_at(times: np.ndarray, rows: np.ndarray, wanted: np.ndarray) -> np.ndarray:
+    """Return rows interpolated at the wanted times, the first and last beyond."""
+    at = np.clip(np.searchsorted(times, wanted) - 1, 0, max(len(times) - 2, 0))
+    following = np.minimum(at + 1, len(times) - 1)
+    span = np.maximum(times[following] - times[at], 1e-30)
+    share = np.clip((wanted - times[at]) / span, 0.0, 1.0)[:, None]
+    between: np.ndarray = (1 - share) * rows[at] + share * rows[following]
+    return between
+
+
+def write_waves(path: Path, waves: Waves) -> None:
+    """Write the file in one step; strains and shapes in single precision. Raises OutputPathError."""
+    import h5py
+
+    with atomic_path(path) as draft, h5py.File(draft, "w") as file:
+        _put(file, waves)
+        if waves.ringing is not None:
+            _put(file.create_group("ringing"), waves.ringing)
+
+
+def _put(group: h5py.Group, record: Waves | Ringing) -> None:
+    for entry in fields(record):
+        value = getattr(record, entry.name)
+        if isinstance(value, float):
+            group.attrs[entry.name] = value
+        elif isinstance(value, np.ndarray):
+            group.create_dataset(entry.name, data=value.astype("f4" if value.ndim > 1 else "f8"))
+
+
+def read_waves(path: Path) -> Waves:
+    """Read the file.
+
+    Raises
+    ------
+    ResultError
+        It is missing or damaged.
+    """
+    import h5py
+
+    if not path.is_file():
+        raise ResultError(f"{path}: there is no such file; run the scene with save.strain_samples = 1.")
+    try:
+        with h5py.File(path, "r") as file:
+            ringing = Ringing(**_taken(file["ringing"])) if "ringing" in file else None
+            waves = Waves(**_taken(file), ringing=ringing)
+            _check(waves)
+    except (OSError, LookupError, ValueError, RuntimeError, AttributeError, TypeError) as error:
+        raise ResultError(f"{path}: not a readable file of waves ({str(error).rstrip('.')}).") from error
+    return waves
+
+
+def _taken(group: h5py.Group) -> dict[str, Any]:
+    import h5py
+
+    arrays = {name: entry[...] for name, entry in group.items() if isinstance(entry, h5py.Dataset)}
+    for name, values in arrays.items():
+        check_finite(name, values)
+    numbers = {name: float(value) for name, value in group.attrs.items()}
+    check_finite("attributes", np.array(list(numbers.values())))
+    return arrays | numbers
+
+
+def _check(waves: Waves) -> None:
+    check_times(waves.times, len(waves.times))
+    wanted = (len(waves.times), len(waves.position))
+    for name in ("stretch", "bending"):
+        if getattr(waves, name).shape != wanted or not wanted[0]:
+            raise ValueError(f"{name} has shape {getattr(waves, name).shape}, not {wanted}")
+    ringing = waves.ringing
+    if ringing is not None and ringing.shape.shape != (len(ringing.omega), len(ringing.rest), 3):
+        raise ValueError(f"the mode shapes have shape {ringing.shape.shape}")

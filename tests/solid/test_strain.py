@@ -1,0 +1,111 @@
+"""The strain along the axis: of known motions, of a wave with a known front, of the flight after it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import solid_scenes as scenes
+
+from fem_impact.fem.flight import FreeVibration
+from fem_impact.files.waves import read_waves
+from fem_impact.options import RunOptions
+from fem_impact.plan.plan import plan
+from fem_impact.solid.rodview import RodState
+from fem_impact.solid.run import solve
+from fem_impact.solid.strain import Sections, StrainWatch, _held
+
+ELASTIC = ("vibration", "barrier-rigid", "large-rotation")
+
+
+def turned(points, angle):
+    """Points turned from t towards n."""
+    c, s = np.cos(angle), np.sin(angle)
+    t, b, n = points
+    return np.stack([c * t - s * n, b, s * t + c * n])
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.8])
+def test_stretch_and_bending_of_a_known_motion_do_not_see_a_rotation(angle):
+    model = scenes.model(*ELASTIC, length=0.06)
+    sections = Sections.of(model)
+    rows = model.layout.slices_of(model.start[0]).reshape(3, *sections.mean.shape)
+    z = np.tensordot(sections.axis, rows, 1)
+    x = sections.axis[2] * rows[0] - sections.axis[0] * rows[2]
+    middle = z.mean(), x[:, 0].mean()
+    strain, curvature = 3e-4, 0.02
+    stretched = (strain + curvature * (x - middle[1])) * (z - middle[0])
+    moved = turned(rows + sections.axis[:, None, None] * stretched, angle)
+    stretch, bending = sections.strain(moved)
+    assert stretch == pytest.approx(strain, rel=1e-3)
+    assert bending == pytest.approx(curvature * sections.radius, rel=1e-3)
+    assert sections.linear(moved - rows)[0] == pytest.approx(stretch, rel=1e-3) or angle
+
+
+@pytest.fixture(scope="module")
+def upright(tmp_path_factory):
+    """A blunt rod that falls upright on a rigid plane, until its wave has come back."""
+    out = tmp_path_factory.mktemp("wave")
+    scene = scenes.scene(
+        "vibration", "barrier-rigid", length=0.12, v_n=-2.0, v_t=0.0, angle=0.0, max_time=7.2e-5
+    )
+    scene = replace(scene, save=replace(scene.save, strain_samples=2))
+    return scene, solve(plan(scene), RunOptions(out)), read_waves(out / "waves.h5")
+
+
+def test_the_wave_behind_a_blunt_end_has_the_strain_v_over_c0_and_its_front_runs_with_c0(upright):
+    """Impact of a bar on a rigid wall: Goldsmith, Impact (1960), 2.5; exact for a bar, not at its front."""
+    scene, _, waves = upright
+    steel = scene.projectile.material
+    c0 = (steel.E / steel.rho) ** 0.5
+    behind = waves.strain(np.array([0.8 * waves.length / c0]))[0][0]
+    plateau = behind[waves.position < 0.5 * waves.length]
+    assert plateau.mean() == pytest.approx(-2.0 / c0, rel=0.03)
+    arrivals = [
+        waves.times[np.argmax(waves.stretch[:, at] < -1.0 / c0)]
+        for at in (np.searchsorted(waves.position, share * waves.length) for share in (0.3, 0.8))
+    ]
+    assert 0.5 * waves.length / np.diff(arrivals)[0] == pytest.approx(c0, rel=0.04)
+    back = waves.strain(np.array([1.5 * waves.length / c0]))[0][0]
+    assert np.abs(back[waves.position > 0.7 * waves.length]).max() < 0.5 * 2.0 / c0
+    assert np.abs(waves.bending).max() < 1e-6 * np.abs(waves.stretch).max()
+
+
+def test_samples_resolve_the_wave_and_both_ends_of_the_run_are_known(upright):
+    _, result, waves = upright
+    assert np.diff(waves.times).max() < 0.75 * np.diff(waves.position)[0] / waves.speed
+    assert waves.times[0] == 0.0 and waves.end == pytest.approx(result.time, abs=3e-7)
+    assert waves.position[-1] == pytest.approx(waves.length - np.diff(waves.position)[0] / 2)
+    assert waves.origin + waves.length * waves.axis == pytest.approx(
+        result.model.geometry.rod_points[result.model.geometry.rod.body_nodes[:, -1]].mean(axis=0)
+        * [1, 0, 1],
+        abs=1e-6,
+    )
+
+
+def test_the_flight_by_modes_goes_on_from_the_last_state(tmp_path):
+    """Start from a free rod in two modes: shape and strain at the start, and half a period later."""
+    model = scenes.model(*ELASTIC, length=0.06)
+    view, state = RodState.of(model), model.initial_state()
+    amplitude = np.zeros(len(view.modes.omega))
+    amplitude[[0, 2]] = 2e-6, 1e-6
+    state.x[: view.size] += view.modes.shape @ amplitude
+    flight = FreeVibration(view.modes, amplitude, 0 * amplitude)
+    watch = StrainWatch.of(plan(scenes.scene(*ELASTIC, length=0.06)), model, tmp_path / "waves.h5")
+    watch.observe(state)
+    watch.write(watch.ringing(view, state, flight))
+    waves = read_waves(tmp_path / "waves.h5")
+    ringing = waves.ringing
+    assert len(ringing.omega) == 2
+    now = model.geometry.rod_points + model.nodes(state.x - model.start[0])[model.layout.rod]
+    assert np.abs(ringing.points(0.0) - now).max() < 1e-9
+    for sampled, free in zip(waves.strain(np.zeros(1)), ringing.strain(np.zeros(1)), strict=True):
+        assert np.abs(sampled - free).max() < 5e-3 * np.abs(waves.bending).max()
+    moved = ringing.points(np.pi / ringing.omega[0]) - (
+        ringing.points(0.0) + ringing.velocity * np.pi / ringing.omega[0]
+    )
+    assert np.abs(moved).max() > 1e-6
+
+
+def test_the_modes_that_are_kept_hold_the_energy():
+    assert _held(np.array([1.0, 0.0, 100.0, 0.05, 50.0])).tolist() == [0, 2, 4]
+    assert _held(np.zeros(0)).size == 0
