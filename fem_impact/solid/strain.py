@@ -110,7 +110,8 @@ class StrainWatch:
     @property
     def samples(self) -> Array:
         """Return one row a sample: time, stretch and bending of all slices."""
-        return np.array(self.rows).reshape(len(self.rows), -1)
+        slices = self.sections.mean.shape[1] - 1
+        return np.array(self.rows).reshape(len(self.rows), 1 + 2 * slices)
 
     @samples.setter
     def samples(self, values: Array) -> None:

@@ -19,7 +19,7 @@ SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "
 
 
 def test_the_thirteen_sets_and_others_are_shipped():
-    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick", *SECOND)
+    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick", "wave", "wave-45", *SECOND)
     assert tuple(set_ids()) == MEASURED_SETS
     assert len(MEASURED_SETS) == 13
 
