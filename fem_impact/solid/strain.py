@@ -19,9 +19,6 @@ from fem_impact.solid.state import State
 if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
 
-IN_PLANE = np.array(
-    [1.0, 0.0, 1.0]
-)  # the axis lies in the symmetry plane, the mean of half a section does not
 HELD = 0.999  # share of the vibration energy in the modes that are stored for the free flight
 
 
@@ -33,15 +30,16 @@ class Sections:
     The stretch is |c'| - 1 and the bending strain at the surface R a' . c' / |c'|, with slopes along the axis
     (a rod with directors). Neither depends on a rigid motion.
 
+    The first layer is left out: its nodes belong to the nose and carry their masses themselves.
+
     Attributes
     ----------
-    mean, tilt : (n, layers) weights of the section's mass points
+    weights : (2, n) of the section's mass points, for c and for a
     pitch, radius : m, of a slice and of the outermost nodes
-    axis : (3,) unit vector from tip to tail at the start
+    axis : (2,) unit vector from tip to tail at the start, along t and n
     """
 
-    mean: Array
-    tilt: Array
+    weights: Array
     pitch: float
     radius: float
     axis: Array
@@ -49,37 +47,38 @@ class Sections:
     @classmethod
     def of(cls, model: Model) -> Self:
         """Return the weights from the start positions of the mass points."""
-        rows = model.layout.slices_of(model.start[0]).reshape(3, -1, model.layout.body_shape[1])
-        # the masses of the tail: those of the first layer contain a part of the nose
-        mass = np.broadcast_to(
-            model.layout.slices_of(model.mass).reshape(rows.shape)[0, :, -1:], rows.shape[1:]
-        )
-        mean = mass / mass.sum(axis=0)
-        centre = (mean * rows).sum(axis=1)
-        along = (centre[:, -1] - centre[:, 0]) * IN_PLANE
+        rows = _in_plane(model, model.start[0])
+        mass = model.layout.slices_of(model.mass).reshape(3, -1, model.layout.body_shape[1])[0, :, -1]
+        mean = mass / mass.sum()
+        centre = mean @ rows
+        along = centre[:, -1] - centre[:, 1]
         axis = along / np.linalg.norm(along)
         # towards the barrier: the axis turned by a quarter from n towards t
-        x = (rows - centre[:, None])[0] * axis[2] - (rows - centre[:, None])[2] * axis[0]
-        radius = float(np.abs(x[:, 0]).max())  # the nodes of the first layer carry their masses themselves
-        tilt = mass * x / (mass * x**2).sum(axis=0)
-        return cls(mean, tilt, model.geometry.rod.slice_length, radius, axis)
+        x = (rows - centre[:, None])[0] * axis[1] - (rows - centre[:, None])[1] * axis[0]
+        weights = np.stack([mean, mass * x[:, -1] / (mass @ x[:, -1] ** 2)])
+        return cls(weights, model.geometry.rod.slice_length, float(np.abs(x[:, 0]).max()), axis)
 
     def strain(self, rows: Array) -> tuple[Array, Array]:
-        """Return stretch and bending strain (slices,) of positions (3, n, layers), m."""
+        """Return stretch and bending strain (slices,) of positions (2, n, layers), m, along t and n."""
         along, tilt = self._slopes(rows)
-        length = np.linalg.norm(along, axis=0)
+        length = np.hypot(*along)
         return length - 1.0, self.radius * (tilt * along).sum(axis=0) / length
 
     def linear(self, rows: Array) -> tuple[Array, Array]:
-        """Return stretch and bending strain (slices,) of small displacements (3, n, layers), rod frame."""
+        """Return stretch and bending strain (slices,) of small displacements (2, n, layers), rod frame."""
         along, tilt = self._slopes(rows)
         return self.axis @ along, self.radius * (self.axis @ tilt)
 
     def _slopes(self, rows: Array) -> tuple[Array, Array]:
-        """Return the changes (3, slices) of mean and tilt along the axis, 1 and 1/m."""
-        mean, tilt = (np.einsum("nl,cnl->cl", weight, rows) for weight in (self.mean, self.tilt))
-        plane = IN_PLANE[:, None] / self.pitch
-        return np.diff(mean, axis=1) * plane, np.diff(tilt, axis=1) * plane
+        """Return the changes (2, slices) along the axis of c and of a, 1 and 1/m."""
+        read = np.matmul(self.weights, rows)[:, :, 1:]
+        slopes = (read[:, :, 1:] - read[:, :, :-1]) / self.pitch
+        return slopes[:, 0], slopes[:, 1]
+
+
+def _in_plane(model: Model, vector: Array) -> Array:
+    """Return the slices' part of a vector along t and n, (2, n, layers)."""
+    return model.layout.slices_of(vector).reshape(3, -1, model.layout.body_shape[1])[::2]
 
 
 @dataclass(slots=True)
@@ -110,8 +109,7 @@ class StrainWatch:
     @property
     def samples(self) -> Array:
         """Return one row a sample: time, stretch and bending of all slices."""
-        slices = self.sections.mean.shape[1] - 1
-        return np.array(self.rows).reshape(len(self.rows), 1 + 2 * slices)
+        return np.array(self.rows).reshape(len(self.rows), 1 + 2 * self._count)
 
     @samples.setter
     def samples(self, values: Array) -> None:
@@ -120,7 +118,9 @@ class StrainWatch:
     def observe(self, state: State) -> bool:
         """Sample when it is due."""
         if state.time >= self.due:
-            self.rows.append(np.concatenate([[state.time], *self.sections.strain(self._rows(state.x))]))
+            self.rows.append(
+                np.concatenate([[state.time], *self.sections.strain(_in_plane(self.model, state.x))])
+            )
             self.due += self.interval
         return False
 
@@ -128,20 +128,27 @@ class StrainWatch:
         """Write the file; nothing before the first sample."""
         if not self.rows:
             return
-        rod, half = self.model.geometry.rod, len(self.sections.mean.T) - 1
-        position = rod.body_start + self.sections.pitch * (np.arange(half) + 0.5)
-        times, stretch, bending = np.split(self.samples, [1, 1 + half], axis=1)
-        tail = self.sections.mean[:, -1] @ self.model.geometry.rod_points[rod.body_nodes[:, -1]]
-        origin = tail * IN_PLANE - self.length * self.sections.axis
-        shown = (self.length, self.sections.radius, *self.speeds, origin, self.sections.axis)
+        rod = self.model.geometry.rod
+        # the first slice is left out, see `Sections`
+        position = rod.body_start + self.sections.pitch * (np.arange(self._count) + 1.5)
+        times, stretch, bending = np.split(self.samples, [1, 1 + self._count], axis=1)
+        t, n = self.sections.axis
+        axis, tail = np.array([t, 0.0, n]), rod.body_nodes[:, -1]
+        end = self.sections.weights[0] @ self.model.geometry.rod_points[tail] * [1.0, 0.0, 1.0]
+        shown = (self.length, self.sections.radius, *self.speeds, end - self.length * axis, axis)
         write_waves(self.path, Waves(times[:, 0], position, stretch, bending, *shown, ringing))
+
+    @property
+    def _count(self) -> int:
+        """Return the number of slices that are read."""
+        return self.model.layout.body_shape[1] - 2
 
     def ringing(self, view: RodState, state: State, flight: FreeVibration) -> Ringing:
         """Return the free flight from the present state on, by the modes that hold the vibration energy."""
         angle, motion, kept = view.angle(state, self.model), view.rigid(state), _held(flight.energies)
         modes, a, b = flight.modes.shape[:, kept].T, flight.a[kept], flight.b[kept]
         shape = np.array([self._points(mode) for mode in modes]).reshape(len(kept), -1, 3)
-        strain = [self.sections.linear(self._rows(mode)) for mode in modes]
+        strain = [self.sections.linear(_in_plane(self.model, mode)) for mode in modes]
         stretch, bending = np.array(strain).reshape(len(kept), 2, -1).transpose(1, 0, 2)
         moved = self.model.nodes(state.x - self.model.start[0])[self.model.layout.rod]
         x = self.model.geometry.rod_points + moved - motion.centre
@@ -152,10 +159,6 @@ class StrainWatch:
         turning = (float(angle), -float(motion.Omega))  # Omega is positive from n to t
         moving = (state.time, np.asarray(motion.centre), speed, *turning)
         return Ringing(*moving, flight.modes.omega[kept], a, b, shape, rest, stretch, bending)
-
-    def _rows(self, vector: Array) -> Array:
-        """Return the slices' part (3, n, layers) of a vector."""
-        return self.model.layout.slices_of(vector).reshape(3, *self.sections.mean.shape)
 
     def _points(self, mode: Array) -> Array:
         """Return the displacement (n, 3) of all rod points from a mode over the free unknowns."""

@@ -108,7 +108,7 @@ class Watchers:
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
             frames = [_frames(plan, model, view, out, go_on)]
-        if out is not None and scene.save.strain_samples and model.rod_stiffness is not None:
+        if out is not None and scene.save.strain_samples and _has_slices(model):
             strain = [StrainWatch.of(plan, model, out / "waves.h5")]
         stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
         skin, peak, added = SkinWatch(model), PeakForce(model.book), AddedMass(model.added_mass)
@@ -144,6 +144,11 @@ def _untouchable(scene: Scene, model: Model) -> Array:
     """Return the corners (k, 3) of the rod's tail, m, where the model lets only its tip touch, else none."""
     whole = model.geometry.barrier is None and model.rod_stiffness is not None
     return np.zeros((0, 3)) if whole else tail_corners(scene)
+
+
+def _has_slices(model: Model) -> bool:
+    """Return whether the rod vibrates and has slices along which its strain can be read."""
+    return model.rod_stiffness is not None and model.layout.body_shape[1] > 2
 
 
 def _heat_watch(model: Model) -> HeatWatch:
