@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+Look = Literal["line", "thin", "dashed", "points", "rings", "joined", "diamonds", "area"]
 COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
 LETTERS = {"wide": 110, "narrow": 52}
 """Letters of a legend that fit across a picture."""
@@ -30,30 +31,39 @@ SAMPLE = 8
 NEAR = 0.05
 """Least distance, share of the axis, of two marks whose labels stand on the same side."""
 
-COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y")
+COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y", "band")
 
 
 LOOKS: dict[str, dict[str, Any]] = {
     "line": {"linestyle": "-", "linewidth": 1.4},
+    "thin": {"linestyle": (0, (4, 2)), "linewidth": 0.7},
     "dashed": {"linestyle": (0, (5, 1.5)), "linewidth": 1.4},
     "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
     "rings": {"linestyle": "none", "marker": "o", "markersize": 5.6, "mfc": "none"},
+    "joined": {"linestyle": "-", "linewidth": 1.0, "marker": "o", "markersize": 3.2},
+    "diamonds": {"linestyle": "none", "marker": "D", "markersize": 4.6, "mfc": "none"},
 }
 """Rings are wider than points, so that both are seen where they agree."""
+
+ERROR = {"capsize": 1.8, "elinewidth": 0.9, "capthick": 0.9}
+"""How the band of a point looks."""
 
 
 @dataclass(frozen=True, slots=True)
 class Series:
-    """A curve or points: ``x`` and ``y`` of equal length, index of the colour (None: the next one).
+    """A curve or points: ``x`` and ``y`` of equal length, and the colour: None is the next one.
 
-    Series of one label look the same in all panels of a figure.
+    The colour is an index of `COLOURS` or a name of the palette. ``band`` holds half-widths about ``y``, NaN
+    where there is none; they are drawn as error bars. A value of NaN is a gap. The series of a panel that
+    look like an ``area`` are stacked. Series of one label look the same in all panels of a figure.
     """
 
     label: str
     x: ArrayLike
     y: ArrayLike
-    look: Literal["line", "dashed", "points", "rings"] = "line"
-    colour: int | None = None
+    look: Look = "line"
+    colour: int | str | None = None
+    band: ArrayLike | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,23 +108,50 @@ def lines_figure(panels: Sequence[Panel], path: str | Path, shape: Shape = "wide
 
 def _rows(panel: Panel) -> list[list[Cell]]:
     return [
-        [panel.title, series.label, panel.x, panel.y, panel.names[round(x)] if panel.names else x, float(y)]
+        [panel.title, series.label, panel.x, panel.y, panel.names[round(x)] if panel.names else x, y, band]
         for series in panel.series
-        for x, y in zip(np.asarray(series.x, float).tolist(), np.asarray(series.y), strict=True)
+        for x, y, band in zip(*(_numbers(values) for values in _data(series)), strict=True)
     ]
+
+
+def _data(series: Series) -> tuple[ArrayLike, ArrayLike, ArrayLike]:
+    """Return x, y and half-widths, NaN where there are none."""
+    return (
+        series.x,
+        series.y,
+        np.full(len(np.asarray(series.y)), np.nan) if series.band is None else series.band,
+    )
+
+
+def _numbers(values: ArrayLike) -> list[float | None]:
+    """Return numbers for a table, None for NaN."""
+    return [None if math.isnan(value) else value for value in np.asarray(values, float).tolist()]
 
 
 def _panel(axes: Axes, panel: Panel) -> None:
     axes.set(title=panel.title, xlabel=panel.x, ylabel=panel.y)
+    below: float | np.ndarray = 0.0
     for at, series in enumerate(panel.series):
-        colour = COLOURS[(at if series.colour is None else series.colour) % len(COLOURS)]
-        axes.plot(series.x, series.y, color=PALETTE[colour], label=series.label, **LOOKS[series.look])
+        colour = _colour(at if series.colour is None else series.colour)
+        if series.look == "area":
+            above = below + np.asarray(series.y, float)
+            axes.fill_between(series.x, below, above, color=colour, linewidth=0, label=series.label)
+            below = above
+        elif series.band is None:
+            axes.plot(series.x, series.y, color=colour, label=series.label, **LOOKS[series.look])
+        else:
+            look = LOOKS[series.look] | ERROR
+            axes.errorbar(series.x, series.y, series.band, color=colour, label=series.label, **look)
     for level in panel.levels:
         axes.axhline(level, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
     if panel.names:
         axes.set_xticks(range(len(panel.names)), panel.names, rotation=35, ha="right", rotation_mode="anchor")
     _marks(axes, sorted(panel.marks, key=lambda mark: mark.x))
     axes.grid()
+
+
+def _colour(wanted: int | str) -> str:
+    return PALETTE[wanted if isinstance(wanted, str) else COLOURS[wanted % len(COLOURS)]]
 
 
 def _marks(axes: Axes, marks: Sequence[Mark]) -> None:

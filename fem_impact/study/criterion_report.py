@@ -24,7 +24,7 @@ from fem_impact.study.criterion_measure import (
     spread_of,
 )
 from fem_impact.study.document import Picture, Sheet, StudyReport
-from fem_impact.study.rods import BODY, MAP_NOTES, PAPER_RODS, Drop
+from fem_impact.study.rods import BODY, DROP_NOTES, PAPER_RODS, Drop
 from fem_impact.study.static_give import give_picture, give_sentences, give_sheet, gives_of
 from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT
@@ -40,7 +40,7 @@ GROUP, WHOLE = attrgetter("group"), attrgetter("whole")  # T1/tau in both meanin
 Families = Mapping[str, Rods]
 """Rods by the name of their family."""
 ASSUMPTIONS = (
-    *MAP_NOTES,
+    *DROP_NOTES,
     "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
     "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
     "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "

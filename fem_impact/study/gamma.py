@@ -1,94 +1,114 @@
-"""Vibration against slenderness: maps by the modal fidelity, some of their points by finite elements too.
-
-The points computed with finite elements are called anchors.
-"""
+"""Vibration against slenderness by finite elements, beside the measured sets and the modal fidelity."""
 
 from __future__ import annotations
 
 from dataclasses import replace
+from math import degrees, hypot
 from typing import TYPE_CHECKING
-
-import numpy as np
 
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
-from fem_impact.outcome.keys import known
-from fem_impact.outcome.record import Outcome
+from fem_impact.scene.shipped import load
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.gamma_report import FIRST, SOLID, Maps, study_report
-from fem_impact.study.rods import BODY, PAPER_RODS, STATES, Drop, length_of
+from fem_impact.study.gamma_findings import PLAIN, Curves
+from fem_impact.study.gamma_points import Member, Meshes, expected_time, first_jobs, more_jobs, point_of
+from fem_impact.study.gamma_report import study_report
+from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of
+from rigid import LIMIT
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
+    from fem_impact.scene.types import Scene
 
 
-FINE = np.concatenate([np.arange(10.0, 60.0, 2.0), np.arange(60.0, 121.0, 10.0)])
-COARSE = np.array([10.0, 15.0, 20.0, 30.0, 40.0, 60.0, 80.0, 120.0])
-QUICK_FINE, QUICK_COARSE = np.arange(10.0, 121.0, 22.0), np.array([20.0, 60.0])
-SPEED = 2.1  # m/s
-DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # beside 19 mm and 2.1 m/s
-ANGLES, QUICK_ANGLES = (5.0, 12.0, 20.0, 28.0, 36.0, 45.0, 54.0, 63.0, 72.0), (20.0, 45.0)
-ANCHOR_TIP, QUICK_TIP = 0.6e-3, 0.8e-3  # m
-LONG = 0.4  # m: an anchor beyond the paper's rods
-SLACK = 1e-6  # s: a cut run ends so long after its first contact
+SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
+BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods
+QUICK_BETWEEN = (LIMIT, 70.0)
+FEWER = (15.0, LIMIT, 57.3, 90.0)  # where diameters and speeds are changed
+DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the curve
+ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
+REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
+QUICK_REDUCED = REDUCED[::11]
+FULL, QUICK = Meshes(1.0, 2.0, 0.5), Meshes(2.0, 4.0, None)
+PLACES = (0.0, 0.5)  # of the barrier's grid at which the study of the sets runs them
+MOST = 400.0  # s of processor time that a finer mesh may be expected to take
 
 
 def line(quick: bool) -> list[Drop]:
-    """Return the drops of the fine line over gamma: 19 mm, 2.1 m/s, 45 degrees, every state and yielding."""
-    return [
-        Drop(length_of(g), friction=f, yields=yields)
-        for g in (QUICK_FINE if quick else FINE)
-        for yields in (False, True)
+    """Return the drops of the curve: 19 mm, 2.1 m/s, 45 degrees, elastic and yielding, every state."""
+    lengths = [*(length_of(g) for g in (QUICK_BETWEEN if quick else BETWEEN)), *PAPER_RODS.values()]
+    every = [
+        Drop(length, friction=f, yields=y)
+        for length in sorted(lengths)
+        for y in (False, True)
         for f in STATES.values()
     ]
+    return [drop for drop in every if not quick or drop.friction == STATES[PLAIN[drop.yields]]]
 
 
-def grid(quick: bool) -> list[Drop]:
-    """Return the drops of the map over diameter, speed, gamma, yielding, surface state and angle."""
-    gammas, angles = (QUICK_COARSE, QUICK_ANGLES) if quick else (COARSE, ANGLES)
-    others = [] if quick else [*((d, SPEED) for d in DIAMETERS), *((BODY, speed) for speed in SPEEDS)]
-    return [
-        Drop(length_of(g, d), angle, f, yields, d, speed=speed)
-        for d, speed in [(BODY, SPEED), *others]
-        for g in gammas
-        for yields in (False, True)
-        for f in STATES.values()
-        for angle in angles
-    ]
-
-
-def anchors(quick: bool) -> list[Drop]:
-    """Return the drops that also run with finite elements."""
+def others(quick: bool) -> list[Drop]:
+    """Return the drops with another diameter, speed or angle than the curve's."""
     if quick:
-        return [Drop(PAPER_RODS["0.08 m"], friction=STATES["machined"], yields=True)]
-    lengths = (*PAPER_RODS.values(), LONG)
-    elastic = [Drop(length) for length in lengths]
-    machined = [Drop(length, friction=STATES["machined"], yields=True) for length in lengths]
-    longest_shortest = [machined[0], machined[2]]
-    contaminated = [replace(drop, friction=STATES["contaminated"]) for drop in longest_shortest]
-    steep = [replace(drop, angle=20.0) for drop in longest_shortest]
-    return [*elastic, *machined, *contaminated, *steep, replace(elastic[0], friction=STATES["machined"])]
+        return []
+    changed = [
+        *(Drop(length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
+        *(Drop(length_of(g), speed=v) for g in FEWER for v in SPEEDS),
+        *(Drop(length, angle) for length in PAPER_RODS.values() for angle in ANGLES),
+    ]
+    return [replace(drop, friction=STATES[PLAIN[y]], yields=y) for y in (False, True) for drop in changed]
+
+
+def members(quick: bool) -> list[Member]:
+    """Return every point by finite elements: the curve, other inputs, and the measured sets."""
+    return [
+        *(Member(drop.name, drop.scene(), drop) for drop in (*line(quick), *others(quick))),
+        *(Member(name, load(name), _like(load(name)), (0.0,) if quick else PLACES) for name in SETS),
+    ]
+
+
+def _like(scene: Scene) -> Drop:
+    """Return the yielding drop with rod, angle, speed and friction of a scene."""
+    rod, impact = scene.projectile, scene.impact
+    speed, angle = hypot(impact.v_n, impact.v_t), round(degrees(impact.angle), 9)
+    return Drop(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
+
+
+def reduced(quick: bool) -> list[Drop]:
+    """Return the drops of the modal fidelity: over the same slendernesses, closer together."""
+    lengths = {length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
+    lengths |= {drop.length for drop in line(quick)}
+    states = {(drop.friction, drop.yields) for drop in line(quick)}
+    return [
+        Drop(length, friction=f, yields=yields) for length in sorted(lengths) for f, yields in sorted(states)
+    ]
 
 
 def plan(request: Request, results: Results) -> list[Job]:
-    """Return the jobs of maps and anchors; with results, also drops with two contacts cut after the first."""
-    tip = QUICK_TIP if request.quick else ANCHOR_TIP
-    chosen = anchors(request.quick)
-    drops = {drop.name: drop for drop in (*line(request.quick), *grid(request.quick), *chosen)}
-    jobs = {name: Job(name, drop.scene(), "modal") for name, drop in drops.items()}
-    solid = [Job(f"{SOLID}{drop.name}", drop.scene(tip), "solid") for drop in chosen]
-    cut = []
-    for drop in line(request.quick):
-        run = results.get(drop.name)
-        if isinstance(run, Outcome) and len(known(run.contact.intervals)) > 1:
-            scene, end = drop.scene(), known(run.contact.intervals)[0].end + SLACK
-            scene = replace(scene, accuracy=replace(scene.accuracy, max_time=end))
-            cut.append(Job(f"{FIRST}{drop.name}", scene, "modal"))
-    return [*jobs.values(), *solid, *cut]
+    """Return the jobs, the longest first; with results also those that these call for."""
+    quick = request.quick
+    meshes, jobs = QUICK if quick else FULL, [Job(d.name, d.scene(), "modal") for d in reduced(quick)]
+    for one in members(quick):
+        jobs += first_jobs(one, meshes)
+        jobs += _more(one, meshes, results) if results else []
+    unique = {job.name: job for job in jobs}.values()
+    return sorted(unique, key=expected_time, reverse=True)
+
+
+def _more(one: Member, meshes: Meshes, results: Results) -> list[Job]:
+    """Return the jobs that the results of a point call for; measured sets keep the meshes of their study."""
+    only = replace(meshes, finer=None) if one.name in SETS else meshes
+    return [job for job in more_jobs(one, only, results) if expected_time(job) <= MOST]
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
-    """Return the study: maps, differences from finite elements, vibration returned by later contacts."""
+    """Return the study: curves with bands, where the energy went, and the modal fidelity beside them."""
     quick = request.quick
-    maps = Maps(line(quick), grid(quick), anchors(quick), results)
-    return publish(study_report(maps, QUICK_TIP if quick else ANCHOR_TIP), request, results)
+    meshes = QUICK if quick else FULL
+    points = {one.name: point_of(one, meshes, results) for one in members(quick)}
+    curves = Curves(
+        [points[drop.name] for drop in line(quick)],
+        [points[drop.name] for drop in others(quick)],
+        [points[name] for name in SETS],
+        [(drop, results.get(drop.name)) for drop in reduced(quick)],
+    )
+    return publish(study_report(curves), request, results)

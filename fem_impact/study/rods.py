@@ -5,22 +5,31 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
-from fem_impact.scene.library import materials
-from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
+from fem_impact.reference.free_modes import bending_period
+from fem_impact.scene.library import surfaces
+from fem_impact.scene.shipped import load
+from fem_impact.scene.types import Impact, Save, Scene, Surface
 from rigid.slenderness import EXPONENT
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 """Lengths, m, of the three rods of 19 mm."""
 
-STATES = {"frictionless": 0.0, "contaminated": 0.16, "cleaned": 0.42, "machined": 0.57}
-"""f of the surface states at which maps are drawn; all but 0 are those of `fem_impact.scene.surfaces`."""
+PAPER = load("t5b")
+"""Scene whose steels, barrier and tip all drops have: tip B, the edge of the face, rounded by 3 mm."""
+
+STATES = {"frictionless": 0.0} | dict(sorted((name, one.friction) for name, one in surfaces().items()))
+"""f of no friction and of the shipped surface states, in the order of their names."""
 
 BODY, TIP = 0.019, 0.003  # m: diameter and edge radius of the paper's rods
-LATEST = 8e-3  # s, end of a run: a slender rod's second contact comes some bending periods after the first
-MAP_NOTES = (
+DROP_NOTES = (
     "Dropped without spin: v_n = -v cos(alpha), v_t = -v sin(alpha); no gravity during the impact.",
-    "Edge radius 3 mm on 19 mm and in proportion to other diameters; steels of the paper.",
-    "Modal: a round contact of the same sqrt(R1 R2), no ploughing, no shear flow under a sticking tip.",
+    "Tip B (the edge of the face meets the plate), edge radius 3 mm on 19 mm and in proportion to other "
+    "diameters; steels of the paper.",
+    "Elastic drops: neither body yields, whatever the pressure. Yielding drops have every effect that the "
+    "scene calls for.",
+)
+MODAL_NOTE = (
+    "Modal: a round contact of the same sqrt(R1 R2), no ploughing, no shear flow under a sticking tip."
 )
 
 
@@ -64,24 +73,39 @@ class Drop:
         """Edge radius of the tip, m."""
         return TIP * self.diameter / BODY if self.tip_radius is None else self.tip_radius
 
-    def scene(self, tip_size: float | None = None) -> Scene:
-        """Return the scene; ``tip_size``, m, is for the solid fidelity."""
-        steels, angle, f = materials(), radians(self.angle), self.friction
-        names = (
-            *(("vibration",) if self.vibrates else ()),
-            *(("friction",) if f else ()),
-            *(("rod-plasticity", "barrier-elastoplastic") if self.yields else ("barrier-elastic",)),
-            "large-rotation",
-        )
-        accuracy = Accuracy(max_time=LATEST)
-        return Scene(
+    @property
+    def first_period(self) -> float:
+        """First bending period of the rod, s."""
+        steel = PAPER.projectile.material
+        return bending_period(steel.E, steel.nu, steel.rho, self.length, self.diameter / 2)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Effects by their numbers but for what the drop states: vibration, yielding, no gravity.
+
+        The contact's heat does not act on the motion, so it is not watched.
+        """
+        stated = "vibration" if self.vibrates else "-vibration"
+        bodies = () if self.yields else ("-rod-plasticity", "barrier-elastic")
+        return ("auto", stated, *bodies, "-gravity", "-contact-heating")
+
+    def scene(self) -> Scene:
+        """Return the scene, on the mesh that it gets by itself."""
+        angle, rod = radians(self.angle), PAPER.projectile
+        return replace(
+            PAPER,
             id=self.name,
-            title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {f:g}",
-            projectile=ProjectileSpec(self.length, self.diameter, "B", self.radius, steels["rod-steel"]),
-            barrier=Barrier(steels["plate-steel"]),
-            surface=Surface("custom", f, f, f, "point of a map"),
+            title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {self.friction:g}",
+            projectile=replace(rod, length=self.length, diameter=self.diameter, tip_radius=self.radius),
+            surface=surface_of(self.friction),
             impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
-            effects=names,
-            accuracy=replace(accuracy, tip_size=tip_size) if tip_size else accuracy,
+            effects=self.effects,
             save=Save(frames=0),
+            measured=None,
         )
+
+
+def surface_of(f: float) -> Surface:
+    """Return the shipped surface state with this coefficient of friction, or one of its own."""
+    shipped = (surface for surface in surfaces().values() if surface.friction == f)
+    return next(shipped, Surface("custom", f, f, f, "point of a study"))

@@ -6,18 +6,16 @@ the place too; the run at the first place of the finer mesh is the one that is k
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cost.limits import mesh_limits
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
-from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
-from fem_impact.plan.plan import plan as plan_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.compare import COMPARED, Row, compare
@@ -29,6 +27,7 @@ from fem_impact.study.inputs import (
     sensitivity_jobs,
     sensitivity_rows,
 )
+from fem_impact.study.pairs import COARSER, resized, shifted, with_limits
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import Table
 
@@ -39,7 +38,6 @@ if TYPE_CHECKING:
 # elements of the rod twice as large as its own, those of the plate as they are, half of the frames
 QUICK = {"accuracy.tip_size": "0.6 mm", "accuracy.barrier_size": "0.3 mm", "save.frames": 60}
 QUICK_SETS = ("t3-machined", "t4", "t5b")
-COARSER = 2.0  # element sizes of the second mesh over those of the first
 HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
 
 
@@ -51,14 +49,7 @@ def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
     scene = load(set_id)
     if quick:
         scene = replace_all(scene, QUICK)
-    zones = plan_of(scene).zones
-    sizes = {"tip_size": zones.tip_size, "barrier_size": zones.barrier_size}
-    coarse: dict[str, str | int] = {
-        f"accuracy.{key}": f"{COARSER * size * 1e3:g} mm" for key, size in sizes.items()
-    }
-    coarse |= {"accuracy.unresolved": "report", "save.frames": 0}
-    coarse_scene = replace_all(scene, coarse)
-    coarse_job = Job(f"{set_id}-coarse", coarse_scene, out=out / f"{set_id}-coarse")
+    coarse_job = Job(f"{set_id}-coarse", resized(scene, COARSER), out=out / f"{set_id}-coarse")
     meshes = {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job}
     if quick:
         return meshes
@@ -68,8 +59,7 @@ def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
 
 def _half_cell(job: Job) -> Job:
     """Return the job with the grid of the barrier half a cell further along t, without fields."""
-    scene = replace_all(job.scene, {"accuracy.grid_shift": 0.5, "save.frames": 0})
-    return Job(f"{job.name}-{HALF_CELL}", scene)
+    return Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, 0.5))
 
 
 def chosen(request: Request) -> tuple[str, ...]:
@@ -89,7 +79,9 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     for name in chosen(request):
         runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
         if isinstance(runs["fine"], Outcome):
-            outcomes.append(with_limits(runs["fine"], runs, out / name))
+            limited = with_limits(at_places(runs, "fine"), at_places(runs, "coarse"))
+            limited.write(out / name / "outcome.json")
+            outcomes.append(limited)
         if not request.quick:
             changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
     comparison = [row for outcome in outcomes for row in compare(outcome)]
@@ -97,28 +89,16 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 
 
-def with_limits(fine: Outcome, runs: Results, out: Path) -> Outcome:
-    """Return the outcome with the limits of two meshes and their bands, and store it."""
-    meshes, failed = by_mesh(runs)
-    limits: Mapping[str, float] | Unknown
-    bands: Mapping[str, float] | Unknown
-    if failed:
-        limits = bands = Unknown(f"run {failed[0].name} failed: {failed[0].reason}")
-    elif known(meshes["coarse"][0].cost.tip_size) <= known(fine.cost.tip_size):
-        limits = bands = Unknown("the second mesh is not coarser: give a smaller accuracy.tip_size")
-    else:
-        limits, bands = mesh_limits(meshes["fine"], meshes["coarse"])
-    limited = replace(fine, validity=replace(fine.validity, mesh_limit=limits, mesh_band=bands))
-    limited.write(out / "outcome.json")
-    return limited
-
-
 def by_mesh(runs: Results) -> tuple[dict[str, list[Outcome]], list[Failure]]:
     """Return the finished runs of "fine" and "coarse" at their places, and the failed ones, of `jobs_of`."""
-    kinds = {mesh: (mesh, f"{mesh}-{HALF_CELL}") for mesh in ("fine", "coarse")}
-    placed = {mesh: [runs[kind] for kind in of if kind in runs] for mesh, of in kinds.items()}
+    placed = {mesh: at_places(runs, mesh) for mesh in ("fine", "coarse")}
     finished = {m: [run for run in of if isinstance(run, Outcome)] for m, of in placed.items()}
     return finished, [run for of in placed.values() for run in of if isinstance(run, Failure)]
+
+
+def at_places(runs: Results, mesh: str) -> list[Outcome | Failure]:
+    """Return the runs of a mesh at its places of the barrier's grid, of `jobs_of`."""
+    return [runs[kind] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in runs]
 
 
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")
