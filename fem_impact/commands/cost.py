@@ -25,8 +25,8 @@ PAPER = "paper"
 
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
-    from fem_impact.assess.drop import quantity
     from fem_impact.cost.quantities import chosen
+    from fem_impact.verdict.drop import quantity
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = _share(options.target) if options.target else None
@@ -70,8 +70,8 @@ def _share(text: str) -> float:
 
 def _family(scene: Scene, finest: str) -> list[Mesh]:
     """Return the meshes whose tip elements are at least ``finest`` in size."""
-    from fem_impact.assess.drop import quantity
     from fem_impact.cost.settings import FAMILY
+    from fem_impact.verdict.drop import quantity
 
     least = quantity(finest, "length", "--finest") if finest else 0.0
     sizes = [mesh.sizes(scene)[0] for mesh in FAMILY]

@@ -67,15 +67,17 @@ class Options(argparse.Namespace):
     set_id: str | None = None
     file: Path
     number: int
-    length: str
-    diameter: str
-    tip: str
+    length: str | None = None
+    diameter: str | None = None
+    tip: str = ""
     tip_radius: str | None = None
     d_c: str | None = None
     d_d: str | None = None
-    angle: str
-    height: str
-    surface: str
+    angle: str | None = None
+    height: str | None = None
+    surface: str | None = None
+    tolerance: str = ""
+    heat: bool = False
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -336,21 +338,41 @@ def _add_figure(commands: Commands, command: Command) -> None:
 
 
 def _add_assess(commands: Commands, command: Command) -> None:
-    summary = "assess a dropped rod: losses, worst case, bound of the friction heat"
-    parser = command(commands, "assess", summary, f"{_MODULE}:assess")
-    _add_rod(parser)
-    parser.add_argument("--height", required=True, help='drop height, such as "0.82 m"')
-    parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
+    summary = "say whether rigid theory may be used for a scene, and what vibration costs"
+    parser = command(commands, "assess", summary, "fem_impact.commands.assess:assess")
+    parser.add_argument("scene", metavar="SCENE", nargs="?", default="", help=_SCENE)
+    parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
+    parser.add_argument(
+        "--fidelity",
+        choices=["auto", "modal", "solid"],
+        default="auto",
+        help="auto (default): modal, and solid where the known error of modal leaves the answer open",
+    )
+    parser.add_argument("--tolerance", default="", help="change of e that may be neglected (default: 0.05)")
+    parser.add_argument(
+        "--budget", default="", metavar="TIME", help="wall time of the finite elements (default: 60 s)"
+    )
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="runs at a time, 1 or 2 (default: one a core)"
+    )
+    carried = "also carry the measured tests over: losses, worst case, bound of the friction heat"
+    parser.add_argument("--heat", action="store_true", help=carried)
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="write a page to print and sign, and verdict.json"
+    )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+    short = parser.add_argument_group("a dropped steel rod, instead of SCENE")
+    _add_rod(short, required=False)
+    short.add_argument("--height", help='drop height, such as "0.82 m"')
+    short.add_argument("--angle", help='rod axis to barrier normal, such as "45 deg"')
     surfaces = ("machined", "contaminated", "cleaned")
-    parser.add_argument("--surface", required=True, choices=surfaces, help="state of tip and plate")
-    fidelities = "of the answer whether rigid theory may be used: modal (default, seconds) or solid (minutes)"
-    parser.add_argument("--fidelity", choices=["modal", "solid"], default="modal", help=fidelities)
+    short.add_argument("--surface", choices=surfaces, help="state of tip and plate")
 
 
-def _add_rod(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--length", required=True, help='of the rod, such as "240 mm"')
-    parser.add_argument("--diameter", required=True, help='such as "19 mm"')
+def _add_rod(parser: argparse._ActionsContainer, required: bool = True) -> None:
+    parser.add_argument("--length", required=required, help='of the rod, such as "240 mm"')
+    parser.add_argument("--diameter", required=required, help='such as "19 mm"')
     tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
-    parser.add_argument("--tip", default="B", help=tips)
+    parser.add_argument("--tip", default="", help=tips)
     radii = "default: 7 mm for A, 3 mm for B; an added tip needs it"
     parser.add_argument("--tip-radius", metavar="LENGTH", help=radii)

@@ -1,4 +1,4 @@
-"""The commands that need no finite elements: ``audit``, ``coefficients``, ``figure`` and ``assess``."""
+"""The commands that need no finite elements: ``audit``, ``coefficients`` and ``figure``."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from rigid import Arms, Projectile
 
 
+USUAL_TIP = "B"
+
+
 def audit(options: Options) -> int:
     """Recompute the printed columns and print where they disagree."""
     out = checked_file(options.out) if options.out else None
@@ -33,12 +36,12 @@ def audit(options: Options) -> int:
 
 def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
-    from fem_impact.assess.camera import read_camera
-    from fem_impact.assess.own_data import own_coefficients
-    from fem_impact.assess.text import own_text
+    from fem_impact.verdict.camera import read_camera
+    from fem_impact.verdict.own_data import own_coefficients
+    from fem_impact.verdict.text import own_text
     from rigid import RigidError
 
-    rod, alpha = _rod(options), _angle(options)
+    rod, alpha = rod_of(options), angle_of(options)
     arms, source = _arms(options, rod, alpha)
     camera = read_camera(options.file)
     try:
@@ -61,31 +64,20 @@ def figure(options: Options) -> int:
     return 0
 
 
-def assess(options: Options) -> int:
-    """Assess a dropped rod."""
-    from fem_impact.assess.assess import assess as assessed
-    from fem_impact.assess.drop import DroppedRod, quantity
-    from fem_impact.assess.rigid_enough import rigid_enough
-    from fem_impact.assess.text import assess_text
+def rod_of(options: Options) -> Projectile:
+    """Return the rod that the options describe."""
+    from fem_impact.verdict.drop import rod_from_options
 
-    height = quantity(options.height, "length", "--height")
-    case = DroppedRod(_rod(options), height, _angle(options), options.surface)
-    document = assessed(case) | {"rigid_theory": rigid_enough(case, options.fidelity)}
-    _print(document, assess_text, options)
-    return 0
+    return rod_from_options(
+        options.length or "", options.diameter or "", options.tip or USUAL_TIP, options.tip_radius
+    )
 
 
-def _rod(options: Options) -> Projectile:
-    from fem_impact.assess.drop import rod_from_options
-
-    return rod_from_options(options.length, options.diameter, options.tip, options.tip_radius)
-
-
-def _angle(options: Options) -> float:
+def angle_of(options: Options) -> float:
     """Return the angle, rad; one that is not in [0, pi/2) is refused."""
-    from fem_impact.assess.drop import quantity
+    from fem_impact.verdict.drop import quantity
 
-    alpha = quantity(options.angle, "angle", "--angle")
+    alpha = quantity(options.angle or "", "angle", "--angle")
     if not 0 <= alpha < math.pi / 2:
         raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
     return alpha
@@ -95,7 +87,7 @@ def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
     """Return the arms, m, and their source; ``--d-c`` and ``--d-d`` are given both or neither."""
     import numpy as np
 
-    from fem_impact.assess.drop import quantity
+    from fem_impact.verdict.drop import quantity
     from rigid import Arms
 
     given = (options.d_c, options.d_d)

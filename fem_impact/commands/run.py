@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shlex
 import sys
 from collections.abc import Iterable
 from pathlib import Path
@@ -66,11 +67,22 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out)
+        _say_screening(scene, options)
     if outcome.validity.finished:
         return 0
     cause = outcome.validity.stopped_because
     sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
     return RunError.exit_code
+
+
+def _say_screening(scene: Scene, options: Options) -> None:
+    """Print the closed-form screening of the scene, and the command of the verdict on it."""
+    from fem_impact.verdict.screening import screening
+    from fem_impact.verdict.sentences import lines_of, screening_lines
+
+    changes = [word for change in options.changes for word in ("--set", change)]
+    lines = lines_of(screening_lines(screening(scene), shlex.join([options.scene, *changes])), indent="")
+    sys.stdout.write("\n".join(lines) + "\n")
 
 
 def _say_plan(scene: Scene, options: Options) -> None:
@@ -87,8 +99,8 @@ def _say_plan(scene: Scene, options: Options) -> None:
 
 def _budget(options: Options) -> float:
     """Return the wall time, s, of ``--budget``, for a scene that states the error it allows."""
-    from fem_impact.assess.drop import quantity
     from fem_impact.cost.to_target import BUDGET
+    from fem_impact.verdict.drop import quantity
 
     return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
 

@@ -1,4 +1,4 @@
-"""Assessment of one dropped rod by rigid theory: losses, worst case, bound of friction heat, limits."""
+"""Measured tests carried over to one dropped rod: losses, worst case, bound of friction heat, limits."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from scipy.special import stdtrit
 
-from fem_impact.assess.bounds import (
+from fem_impact.verdict.bounds import (
     Range,
     Tests,
     carry,
@@ -16,7 +16,7 @@ from fem_impact.assess.bounds import (
     sliding_heat,
     worst_losses,
 )
-from fem_impact.assess.drop import DroppedRod, outside_of, warnings_of, weights_of
+from fem_impact.verdict.drop import DroppedRod, outside_of, warnings_of, weights_of
 from rigid import LIMIT, LIMIT_MM, Errors, behaves_rigidly, in_millimetres
 from rigid.arrays import Floats
 
@@ -50,7 +50,7 @@ _NAMES = ("total", "E_lt", "E_ln", "E_r")
 """Fractions of E_0 that are reported."""
 
 
-def assess(case: DroppedRod) -> dict[str, Any]:
+def transfer(case: DroppedRod) -> dict[str, Any]:
     """Assess the first impact of a dropped rod with the measured coefficients of its surface.
 
     Parameters

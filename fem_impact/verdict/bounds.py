@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fem_impact.assess.drop import DENSITY, DroppedRod, sets_of
+from fem_impact.verdict.drop import DENSITY, DroppedRod, sets_of
 from rigid import (
     Projectile,
     critical_ratio,

@@ -1,4 +1,4 @@
-"""Assessments and coefficients as text for the terminal."""
+"""Transfers of measured tests and coefficients as text for the terminal."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ LABELS = {
 """Label of each share."""
 
 
-def assess_text(document: Document) -> str:
-    """Return the document of `assess` as text, warnings before the results."""
-    parts = (_case, _warnings, _losses, _worst, _heat, _limits, _rigid)
+def transfer_text(document: Document) -> str:
+    """Return the document of `transfer` as text, warnings before the results."""
+    parts = (_case, _warnings, _losses, _worst, _heat, _limits)
     return "\n".join(line for part in parts for line in part(document)) + "\n"
 
 
@@ -117,25 +117,6 @@ def _limits(d: Document) -> Iterator[str]:
     gamma = f"gamma = {s['gamma_per_m0_3815']:.1f} m^-0.3815 ({s['gamma_per_mm0_3815']:.2f} mm^-0.3815)"
     limit = f"limit {s['limit_per_m0_3815']:.2f} ({s['limit_per_mm0_3815']:.3f})"
     yield from _wrap(f"Slenderness: {gamma}, {limit}: {s['verdict']}. {s['meaning'].capitalize()}.", "")
-
-
-def _rigid(d: Document) -> Iterator[str]:
-    r = d.get("rigid_theory")
-    if r is None:
-        return
-    free, stiff = r["with_vibration"], r["rigid"]
-    angle = math.degrees(r["worst_angle_rad"])
-    yield ""
-    yield from _wrap(
-        f"May rigid-body theory be used? At this angle: {r['answer']} (vibration changes e by "
-        f"{r['error_of_e']:.3f}; {r['fidelity']}). At any angle: {r['answer_any_angle']} (by "
-        f"{r['worst_error_of_e']:.3f} at {angle:.0f} degrees; {r['worst_fidelity']}).",
-        "",
-    )
-    pairs = (("e", "e"), ("mu", "mu"), ("Omega", "Omega_rad_per_s"), ("E_r/E_0", "E_r_over_E_0"))
-    values = ", ".join(f"{name} {free[key]:.3g} ({stiff[key]:.3g})" for name, key in pairs)
-    yield from _wrap(f"with vibration (rigid rod on the same contact): {values}")
-    yield from _wrap(f"vibration {100 * r['E_vib_over_E_0']:.2g} % of E_0, T1/tau = {r['T1_over_tau']:.2f}")
 
 
 def own_text(document: Document) -> str:

@@ -1,1 +1,0 @@
-"""One dropped rod assessed by rigid theory: losses, worst case, heat; and camera data of one's own."""

@@ -1,0 +1,119 @@
+"""The command ``assess``: the verdict on one scene, and measured tests carried over to it on demand."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import UsageError
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+SHORT = ("length", "diameter", "height", "angle", "surface")
+"""Options that must be given where no scene is."""
+SHAPE = ("tip", "tip_radius")
+
+
+def assess(options: Options) -> int:
+    """Assess one scene and print the verdict, before anything else its three lines."""
+    from fem_impact.jobs.executors import cores
+    from fem_impact.verdict.assess import assess as assessed
+    from fem_impact.verdict.dropped import dropped
+    from fem_impact.verdict.sentences import document
+
+    scene = _scene(options)
+    case = dropped(scene) if options.heat else None
+    out = checked_out(options.out) if options.out else None
+    means = _budget(options), min(options.workers or cores(), 2)
+    verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
+    found = document(verdict)
+    if case is not None:
+        from fem_impact.verdict.transfer import transfer
+
+        found["transfer"] = transfer(case)
+    if out is not None:
+        from fem_impact.report.verdict_page import write_verdict
+
+        found["page"] = str(write_verdict(verdict, found, out))
+    if options.json:
+        print_json(found)
+    else:
+        sys.stdout.write(_text(found))
+    return 0
+
+
+def _scene(options: Options) -> Scene:
+    """Return the scene that is named, or that the options of a dropped steel rod state."""
+    given = [f"--{name.replace('_', '-')}" for name in (*SHORT, *SHAPE) if getattr(options, name, None)]
+    if options.scene:
+        if given:
+            remedy = "A scene states its rod and impact itself: change it with --set key=value."
+            raise UsageError("stands beside a scene.", key=given[0], remedy=remedy)
+        return changed_scene(options.scene, options.changes)
+    missing = [f"--{name}" for name in SHORT if not getattr(options, name, None)]
+    if options.changes or missing:
+        what = "no scene is given" if len(missing) == len(SHORT) else f"{', '.join(missing)} is missing"
+        remedy = "Name a scene (`fem-impact scenes` lists them), or state a dropped steel rod in full."
+        raise UsageError(f"{what}.", key="assess", remedy=remedy)
+    return _short(options)
+
+
+def _short(options: Options) -> Scene:
+    from fem_impact.commands.rigid import angle_of, rod_of
+    from fem_impact.verdict.drop import DroppedRod, quantity
+    from fem_impact.verdict.dropped import scene_of
+
+    height = quantity(options.height or "", "length", "--height")
+    return scene_of(DroppedRod(rod_of(options), height, angle_of(options), options.surface or ""))
+
+
+def _tolerance(options: Options) -> float:
+    from fem_impact.verdict.assess import TOLERANCE
+
+    if not options.tolerance:
+        return TOLERANCE
+    try:
+        return float(options.tolerance)
+    except ValueError:
+        remedy = "It is the change of e that may be neglected: give one such as 0.05."
+        raise UsageError(
+            "is not a number.", key="--tolerance", value=options.tolerance, remedy=remedy
+        ) from None
+
+
+def _budget(options: Options) -> float:
+    from fem_impact.verdict.assess import BUDGET
+    from fem_impact.verdict.drop import quantity
+
+    return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
+
+
+def _teller(options: Options) -> Callable[[str], None]:
+    """Return a function that prints a sentence to a terminal that waits; silent where nobody looks on."""
+    if options.quiet or not sys.stderr.isatty():
+        return lambda sentence: None
+    return lambda sentence: print(sentence, file=sys.stderr)
+
+
+def _text(found: dict[str, Any]) -> str:
+    from fem_impact.verdict.sentences import lines_of
+
+    lines = [line for title, sentence in found["box"] for line in wrapped(f"{title} {sentence}")]
+    lines += ["", "What this rests on", *lines_of(found["basis"], indent="  ")]
+    lines += ["", "What it does not cover"]
+    lines += [line for sentence in found["not_covered"] for line in wrapped(f"- {sentence}", "  ")]
+    if "transfer" in found:
+        from fem_impact.verdict.text import transfer_text
+
+        lines += [
+            "",
+            "Measured tests carried over to this drop",
+            "",
+            transfer_text(found["transfer"]).rstrip(),
+        ]
+    return "\n".join([*lines, *([f"page: {found['page']}"] if "page" in found else [])]) + "\n"

@@ -1,0 +1,106 @@
+"""The verdict on a page to print and sign, and as the box that heads a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from html import escape
+from math import degrees
+from pathlib import Path
+from typing import Any
+
+from fem_impact.files.atomic import make_directory, write_text
+from fem_impact.files.signed_json import signed
+from fem_impact.report.html import Markup, bullets, paragraph, section, table
+from fem_impact.report.page import page, sources
+from fem_impact.scene import fields
+from fem_impact.scene.library import source_of
+from fem_impact.scene.types import Material, Scene
+from fem_impact.scene.write import to_toml
+from fem_impact.tables.table import Table
+from fem_impact.verdict.assess import Verdict
+from fem_impact.verdict.screening import screening
+from fem_impact.verdict.sentences import Line, screening_lines
+
+STATED = "stated in the scene"
+
+
+def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
+    """Return titled sentences as the box that heads a page; ``answer`` gives its colour."""
+    rows = "\n".join(
+        f"<p><strong>{escape(title)}</strong> {escape(sentence)}</p>" for title, sentence in lines
+    )
+    return Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
+
+
+def screening_box(scene: Scene, name: str) -> Markup:
+    """Return the box of a run that has no twin: the closed-form screening, and how to get the verdict.
+
+    ``name`` is what the command takes: the id of a shipped scene, or the path of its file.
+    """
+    return verdict_box(screening_lines(screening(scene), name))
+
+
+def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path:
+    """Write ``verdict.html``, ``verdict.json`` and ``scene.toml`` to a folder; return the page's path."""
+    make_directory(out)
+    write_text(out / "scene.toml", to_toml(verdict.scene))
+    write_text(out / "verdict.json", json.dumps(signed(document), indent=1, allow_nan=False) + "\n")
+    return write_text(out / "verdict.html", verdict_page(verdict, document))
+
+
+def verdict_page(verdict: Verdict, document: dict[str, Any]) -> str:
+    """Return the page: verdict, what it rests on, inputs with sources, what it does not cover, papers."""
+    scene, free = verdict.scene, verdict.here.free
+    body = (
+        verdict_box(document["box"], verdict.answer),
+        section("What the verdict rests on", _titled(document["basis"])),
+        section("Inputs and their sources", _inputs(scene)),
+        section("What the verdict does not cover", bullets(document["not_covered"])),
+        section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
+        _signatures(),
+        sources(free.provenance.effects),
+    )
+    versions = ", ".join(f"{name} {version}" for name, version in document["versions"].items())
+    footer = (
+        f"Computed {free.provenance.created_utc} with {versions}. Digest of the scene "
+        f"{document['scene_digest']}."
+    )
+    lead = f"{scene.title}. Change of e that may be neglected: {verdict.tolerance:g}."
+    return page(f"May rigid theory be used: {scene.id}", "verdict", lead, footer, body)
+
+
+def _titled(lines: Sequence[Line]) -> Markup:
+    return bullets(
+        Markup(f"<strong>{escape(title)}</strong>: {escape(sentence)}") for title, sentence in lines
+    )
+
+
+def _inputs(scene: Scene) -> Markup:
+    """Return every value that enters with where it comes from."""
+    rod, impact, surface = scene.projectile, scene.impact, scene.surface
+    interval = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
+    rows: list[tuple[str, str, str]] = [
+        *((f"rod, {p.key}", str(p.write(getattr(rod, p.key))), STATED) for p in fields.PROJECTILE),
+        ("rod, tip", rod.tip, STATED),
+        *_material("rod", rod.material),
+        *_material("barrier", scene.barrier.material),
+        ("friction f", interval, surface.source),
+        ("inclination", f"{degrees(impact.angle):.4g} deg", STATED),
+        *((p.key, str(p.write(getattr(impact, p.key))), STATED) for p in fields.IMPACT if p.key != "angle"),
+    ]
+    return table(Table.of(("input", "value", "source"), rows, left=range(3)))
+
+
+def _material(body: str, steel: Material) -> list[tuple[str, str, str]]:
+    stated = [p for p in fields.MATERIAL if getattr(steel, p.key) is not None]
+    named = [(f"{body}, material", steel.name, STATED)]
+    return named + [
+        (f"{body}, {p.key}", str(p.write(getattr(steel, p.key))), source_of(steel.name, p.key))
+        for p in stated
+    ]
+
+
+def _signatures() -> Markup:
+    lines = paragraph("Assessed by, date: ______________________    Checked by, date: ______________________")
+    return section("Signatures", lines)

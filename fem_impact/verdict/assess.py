@@ -1,0 +1,213 @@
+"""One verdict on a scene: may rigid theory be used, what does vibration take, where does the rest go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.errors import RunError, SceneError
+from fem_impact.verdict.change import (
+    Answer,
+    Change,
+    Ladder,
+    largest,
+    modal_change,
+    modal_pair,
+    unfinished,
+)
+from fem_impact.verdict.screening import Screening, screening
+from fem_impact.verdict.twins import inclined
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+TOLERANCE = 0.05
+"""Change of e that may be neglected, unless stated."""
+BUDGET = 60.0
+"""Wall time, s, that the finite elements of a verdict may take, unless stated."""
+FIDELITIES = ("auto", "modal", "solid")
+ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
+"""Inclinations among which the worst one is looked for, rad."""
+LEAST_PAIRS = 2
+"""Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
+
+Tell = Callable[[str], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """The verdict on a scene.
+
+    Attributes
+    ----------
+    scene : Scene
+    tolerance : change of e that may be neglected
+    fidelity : modal or solid, of ``here``
+    screening : closed-form estimates
+    here : the change of e at the scene's inclination
+    worst : the largest change of the reduced model over all inclinations, None where none is known
+    not_known : inclinations, rad, where the reduced model has no answer, with the reason of the first
+    over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
+        None where f has no interval or no effect
+    notes : what the reader should know about how the verdict was found
+    """
+
+    scene: Scene
+    tolerance: float
+    fidelity: str
+    screening: Screening
+    here: Change
+    worst: Change | None
+    not_known: tuple[tuple[float, ...], str]
+    over_friction: tuple[float, float] | None
+    notes: tuple[str, ...]
+
+    @property
+    def answer(self) -> Answer:
+        """May rigid theory be used at the scene's inclination."""
+        return self.here.answer(self.tolerance)
+
+    @property
+    def worst_answer(self) -> Answer:
+        """May it be used at any inclination: no where it may not at this one."""
+        if "no" in (self.answer, self.worst and self.worst.answer(self.tolerance)):
+            return "no"
+        known_everywhere = self.worst is not None and not self.not_known[0]
+        both = {self.answer, self.worst.answer(self.tolerance) if self.worst else "undecided"}
+        return "yes" if known_everywhere and both == {"yes"} else "undecided"
+
+
+def assess(
+    scene: Scene,
+    fidelity: str = "auto",
+    tolerance: float = TOLERANCE,
+    budget_s: float = BUDGET,
+    workers: int = 1,
+    tell: Tell = lambda sentence: None,
+) -> Verdict:
+    """Say whether rigid theory may be used for a scene, beside its twin that cannot vibrate.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any rod and barrier; a mesh or target error that it states is not used.
+    fidelity : "auto", "modal" or "solid"
+        ``auto`` takes the reduced model with its known error, and finite elements on two meshes or more where
+        that error leaves the answer open and the budget allows. Other inclinations than the scene's are
+        computed with the reduced model.
+    tolerance : change of e that may be neglected
+    budget_s : wall time of the finite elements, s
+    workers : runs at a time, 1 or 2
+    tell : called with a sentence before something that takes long
+
+    Raises
+    ------
+    SceneError
+        The scene, tolerance or budget cannot be used.
+    RunError
+        No model gives a restitution at the scene's inclination.
+    """
+    _check(fidelity, tolerance, budget_s)
+    tell("the reduced model, at this inclination and at others ...")
+    pair, notes = modal_pair(scene), list[str]()
+    failed = unfinished(pair)
+    quick = None if failed else modal_change(scene, pair)
+    if failed:
+        notes.append(f"The reduced model has no answer here: {failed}")
+    here, used = quick, "modal"
+    open_still = quick is None or quick.answer(tolerance) == "undecided"
+    if fidelity == "solid" or (fidelity == "auto" and open_still):
+        solid = _solid(scene, fidelity, tolerance, (budget_s, workers), tell, notes)
+        here, used = (solid, "solid") if solid else (quick, "modal")
+    if here is None:
+        raise RunError(" ".join(notes))
+    worst, not_known = _over_angles(scene)
+    return Verdict(
+        scene,
+        tolerance,
+        used,
+        screening(scene),
+        here,
+        worst,
+        not_known,
+        None if quick is None else _over_friction(scene),
+        tuple(notes),
+    )
+
+
+def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
+    if fidelity not in FIDELITIES:
+        remedy = f"Use one of {', '.join(FIDELITIES)}."
+        raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
+    if not 0.0 < tolerance < 1.0:
+        remedy = "It is the change of e that may be neglected: give one such as 0.05."
+        raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
+    if not 0.0 < budget_s < 1e6:
+        raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
+
+
+def _solid(
+    scene: Scene, fidelity: str, tolerance: float, means: tuple[float, int], tell: Tell, notes: list[str]
+) -> Change | None:
+    """Return what finite elements say, None where the budget allows no mesh or no run gives an e."""
+    ladder = Ladder.of(scene, *means)
+    least = LEAST_PAIRS if fidelity == "solid" else 0
+    while not ladder.pairs or len(ladder.pairs) < least or ladder.change().answer(tolerance) == "undecided":
+        if len(ladder.pairs) < least:
+            ladder.budget_s = max(ladder.budget_s, ladder.spent_s + ladder.next_s())
+        tell(f"finite elements, mesh {len(ladder.pairs) + 1} ...")
+        if not ladder.climb():
+            notes.append(_stopped(ladder, means[0]))
+            break
+        failed = unfinished(ladder.pairs[-1])
+        if failed:
+            notes.append(f"Finite elements have no answer here: {failed}")
+            ladder.pairs.pop()
+            break
+    return ladder.change() if ladder.pairs else None
+
+
+def _stopped(ladder: Ladder, budget_s: float) -> str:
+    from fem_impact.cost.settings import FAMILY
+
+    if len(ladder.meshes) == len(FAMILY):
+        return "No finer mesh is tried: the finest of the family leaves the answer open."
+    return (
+        f"A further mesh of finite elements would take about {ladder.next_s():.2g} s of wall time, more than "
+        f"is left of the budget of {budget_s:g} s: give a larger --budget."
+    )
+
+
+def _over_angles(scene: Scene) -> tuple[Change | None, tuple[tuple[float, ...], str]]:
+    """Return the largest change of the reduced model over the inclinations, and where it has no answer."""
+    changes, missing, why = list[Change](), list[float](), ""
+    for angle in sorted({*map(float, ANGLES), scene.impact.angle}):
+        one = inclined(scene, angle)
+        try:
+            pair = modal_pair(one)
+            failed = unfinished(pair)
+        except SceneError as error:
+            failed = str(error)
+        if failed:
+            missing.append(angle)
+            why = why or failed
+        else:
+            changes.append(modal_change(one, pair))
+    return (largest(changes) if changes else None), (tuple(missing), why)
+
+
+def _over_friction(scene: Scene) -> tuple[float, float] | None:
+    """Return the range of the change of e over the ends of the interval of f, by the reduced model."""
+    surface = scene.surface
+    if surface.friction_low == surface.friction_high:
+        return None
+    values = []
+    for f in (surface.friction_low, surface.friction, surface.friction_high):
+        one = replace(scene, surface=replace(surface, state="custom", friction=f))
+        pair = modal_pair(one)
+        values += [] if unfinished(pair) else [modal_change(one, pair).value]
+    return (min(values), max(values)) if values else None

@@ -1,0 +1,106 @@
+"""How far the reduced model's effect of vibration is known to be off, beside the finite elements.
+
+The costs that ship with the package hold, for each measured set, the reduced model and the finite elements
+on their coarsest mesh with vibration and without it. The change of e by vibration is therefore known of both.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from math import log
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.outcome.keys import known
+from fem_impact.plan.measured import summary
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+from fem_impact.verdict.screening import screening
+from fem_impact.verdict.twins import twins
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+LIKE = log(1.5)
+"""Largest difference of the logarithms of T1/tau between a scene and a set whose error counts for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """One scene computed by both models: T1/tau, the change of e by vibration, E_vib over E_0 of each."""
+
+    name: str
+    ratio: float
+    modal: float
+    solid: float
+    E_vib_modal: float
+    E_vib_solid: float
+
+
+@dataclass(frozen=True, slots=True)
+class KnownError:
+    """Largest error of the reduced model over comparable scenes.
+
+    Attributes
+    ----------
+    change_of_e, E_vib : of the change of e by vibration, and of E_vib over E_0
+    compared : the scenes whose errors these are
+    alike : whether T1/tau of these scenes is near; else they are all there are
+    """
+
+    change_of_e: float
+    E_vib: float
+    compared: tuple[str, ...]
+    alike: bool
+
+    @property
+    def sentence(self) -> str:
+        """Say the error and what it was found on."""
+        scenes = ", ".join(self.compared)
+        which = (
+            f"scenes of like T1/tau ({scenes})"
+            if self.alike
+            else f"all scenes that were computed both ways ({scenes}), none of which has a like T1/tau"
+        )
+        return (
+            f"Beside the finite elements the reduced model's change of e by vibration is off by up to "
+            f"{self.change_of_e:.2g}, its E_vib by up to {self.E_vib:.2g} of E_0, over {which}."
+        )
+
+
+def known_error(scene: Scene) -> KnownError:
+    """Return how far the reduced model may be off for a scene."""
+    ratio = screening(scene).ratio
+    near = [one for one in comparisons() if abs(log(one.ratio / ratio)) <= LIKE]
+    counted = near or comparisons()
+    return KnownError(
+        max(abs(one.modal - one.solid) for one in counted),
+        max(abs(one.E_vib_modal - one.E_vib_solid) for one in counted),
+        tuple(one.name for one in counted),
+        bool(near),
+    )
+
+
+@cache
+def comparisons() -> tuple[Beside, ...]:
+    """Return the scenes that are stored with both models."""
+    scenes = summary()["scenes"].items()
+    return tuple(_beside(name, read_dict(cost["scene"]), cost["settings"]) for name, cost in scenes)
+
+
+def _beside(name: str, scene: Scene, settings: list[dict[str, Any]]) -> Beside:
+    modal = next(one for one in settings if one["kind"] == "modal")["value"]
+    stiff = next(one for one in settings if one["name"].endswith("without vibration"))["value"]
+    meshes = [one for one in settings if one["kind"] == "mesh"]
+    coarse = max(meshes, key=lambda one: one["tip_size_m"])["value"]
+    fine = min(meshes, key=lambda one: one["tip_size_m"])["value"]
+    twin = simulate(twins(scene)[1], "modal")
+    return Beside(
+        name,
+        screening(scene).ratio,
+        modal["e"] - known(twin.restitution.edge.e),
+        coarse["e"] - stiff["e"],
+        modal["E_vib"],
+        fine["E_vib"],
+    )

@@ -1,0 +1,58 @@
+"""Closed-form screening of a scene: T1/tau and gamma, at once and without a solver."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from fem_impact.effects.slots import bodies_of
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.contact import contact_estimate, projectile
+from fem_impact.plan.choose import resolved
+from rigid import LIMIT, behaves_rigidly
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+@dataclass(frozen=True, slots=True)
+class Screening:
+    """Estimates of whether a rod vibrates.
+
+    Attributes
+    ----------
+    period, duration : first bending period T1 and contact time tau of the first contact, s
+    gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
+    """
+
+    period: float
+    duration: float
+    gamma: float
+
+    @property
+    def ratio(self) -> float:
+        """T1/tau: small where the contact is slow beside the rod's bending."""
+        return self.period / self.duration
+
+    @property
+    def published(self) -> str:
+        """What the published limit, gamma <= 26.45 m^-0.3815, says."""
+        rigid = bool(behaves_rigidly(self.gamma))
+        said = "the rod rebounds as a rigid body" if rigid else "the rod does not rebound as a rigid body"
+        return f"the published limit {LIMIT:g} says: {said}"
+
+    @property
+    def sentence(self) -> str:
+        """Both numbers in one sentence."""
+        return (
+            f"T1/tau = {self.ratio:.2f} (first bending period {self.period * 1e6:.3g} us, contact "
+            f"{self.duration * 1e6:.3g} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
+        )
+
+
+def screening(scene: Scene) -> Screening:
+    """Return the closed-form estimates of a scene with the effects that it calls for."""
+    bodies = bodies_of(resolved(scene))
+    return Screening(
+        bending_period(scene), float(contact_estimate(bodies).duration), float(projectile(scene).gamma)
+    )

@@ -1,0 +1,201 @@
+"""A verdict in words: the three lines of its box, what it rests on, what it does not cover; and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import degrees
+from typing import Any
+
+from fem_impact.outcome.groups import Energy
+from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.record import Outcome, installed_versions
+from fem_impact.outcome.shares import SHARES
+from fem_impact.physics.contact import projectile
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest, to_dict
+from fem_impact.tables.text import wrapped
+from fem_impact.verdict.assess import Verdict
+from fem_impact.verdict.change import Change
+from fem_impact.verdict.screening import Screening
+
+SCHEMA = "fem-impact/verdict/1"
+LEAST_SHARE = 0.005
+"""Shares of E_0 below it are not named among those of the rest."""
+
+FIRST_ONLY = (
+    "The first impact only: the rod keeps the rest of its energy and may strike again.",
+    "Fracture, chipping and wear of rod and barrier; chemical heat.",
+    "Supports and other bodies that the rod or the barrier may touch.",
+)
+
+Line = tuple[str, str]
+
+
+def box(v: Verdict) -> tuple[Line, Line, Line]:
+    """Return title and sentence of the three lines that come first."""
+    return (
+        ("May rigid theory be used here?", _may(v)),
+        ("Vibration takes", _vibration(v)),
+        ("The rest goes to", _rest(v.here.free.energy)),
+    )
+
+
+def _may(v: Verdict) -> str:
+    here = f"leaving vibration out changes e by {_signed(v.here)} here"
+    worst = "the worst inclination is not known"
+    if v.worst is not None:
+        angle = degrees(v.worst.angle)
+        worst = f"by {_signed(v.worst)} at the worst inclination, {angle:.0f} degrees"
+    anywhere = f"at any inclination: {v.worst_answer}"
+    return f"{v.answer.upper()}: {here}, {worst} (allowed: {v.tolerance:g}); {anywhere}"
+
+
+def _signed(change: Change) -> str:
+    return f"{change.value:+.3f} ± {change.band:.3f}"
+
+
+def _vibration(v: Verdict) -> str:
+    here = v.here
+    share = f"{100 * here.E_vib:.2g} % of the energy"
+    if or_none(here.free.energy.below_floor):
+        return f"{share}, which is below the numerical floor of the model"
+    kind = "known error of the reduced model" if v.fidelity == "modal" else "band of the meshes"
+    return f"{share} (± {100 * here.E_vib_band:.2g} %, {kind})"
+
+
+def _rest(energy: Energy) -> str:
+    named = [
+        (share.label, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"
+    ]
+    listed = [f"{label} {100 * part:.0f} %" for label, part in named if part > LEAST_SHARE]
+    return f"{', '.join(listed)}; {_heating(energy)}"
+
+
+def _heating(energy: Energy) -> str:
+    """Return what can heat the contact."""
+    skin, friction = energy.skin, or_none(energy.friction) or 0.0
+    if not isinstance(skin, Unknown):
+        return f"{100 * skin:.0f} % can heat the contact (friction, and plastic work down to 0.1 mm)"
+    plastic = or_none(energy.plastic) or 0.0
+    return (
+        f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
+        "work) can heat the contact"
+    )
+
+
+def basis(v: Verdict) -> tuple[Line, ...]:
+    """Return what the verdict rests on: title and sentence."""
+    free, stiff = v.here.free, v.here.stiff
+    return (
+        ("case", case_sentence(v.scene)),
+        ("T1/tau and gamma", f"{v.screening.sentence}."),
+        ("with vibration", _motion(free)),
+        ("its twin that cannot vibrate", _motion(stiff)),
+        ("fidelity", f"{v.fidelity}. {v.here.source}"),
+        *_other_angles(v),
+        *_friction(v),
+        *(("note", note) for note in v.notes),
+    )
+
+
+def case_sentence(scene: Scene) -> str:
+    """Return the scene in one sentence: rod, material, barrier, impact."""
+    rod, impact = scene.projectile, scene.impact
+    return (
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {rod.material.name}, tip "
+        f"{rod.tip}, {projectile(scene).mass:.3g} kg, on {scene.barrier.material.name}, "
+        f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
+        f"{scene.surface.friction:g} ({scene.surface.state})."
+    )
+
+
+def _motion(run: Outcome) -> str:
+    return (
+        f"e {known(run.restitution.edge.e):.3f}, mu {known(run.restitution.mu):.3f}, Omega "
+        f"{run.motion.Omega:.3g} rad/s, E_r {100 * known(run.energy.rigid):.3g} % of E_0."
+    )
+
+
+def _other_angles(v: Verdict) -> Iterator[Line]:
+    if v.worst is not None:
+        told = f"by the reduced model at every 5 degrees. {v.worst.source}" if v.fidelity == "solid" else ""
+        yield "other inclinations", told or "by the reduced model at every 5 degrees, with the same error."
+    angles, why = v.not_known
+    if angles:
+        listed = ", ".join(f"{degrees(angle):.0f}" for angle in angles)
+        yield (
+            "not known",
+            f"at {listed} degrees the reduced model gives no answer; at the first of them {why}",
+        )
+
+
+def _friction(v: Verdict) -> Iterator[Line]:
+    if v.over_friction is None:
+        return
+    low, high = v.over_friction
+    surface = v.scene.surface
+    yield (
+        "uncertain friction",
+        f"over f from {surface.friction_low:g} to {surface.friction_high:g} the reduced model's change of e "
+        f"runs from {low:+.3f} to {high:+.3f}.",
+    )
+
+
+def not_covered(v: Verdict) -> tuple[str, ...]:
+    """Return what the verdict does not cover: limits of the model, and of what was measured."""
+    validity = v.here.free.validity
+    return (*FIRST_ONLY, *validity.outside, *validity.warnings, *validity.assumptions)
+
+
+def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
+    """Return titled sentences as lines of a terminal."""
+    return [line for title, sentence in titled for line in wrapped(f"{title}: {sentence}", indent)]
+
+
+def screening_lines(screening: Screening, scene: str) -> tuple[Line, ...]:
+    """Return the closed-form screening of a scene and the command that gives the verdict on it."""
+    return (
+        ("may rigid theory be used (estimate)", f"{screening.sentence}."),
+        ("the verdict", f"fem-impact assess {scene}"),
+    )
+
+
+def document(v: Verdict) -> dict[str, Any]:
+    """Return the verdict as plain JSON."""
+    return {
+        "schema": SCHEMA,
+        "scene": to_dict(v.scene),
+        "scene_digest": digest(v.scene),
+        "versions": installed_versions(),
+        "tolerance": v.tolerance,
+        "fidelity": v.fidelity,
+        "answer": v.answer,
+        "answer_any_angle": v.worst_answer,
+        "here": _change_entry(v.here),
+        "worst": _change_entry(v.worst) if v.worst else None,
+        "not_known_rad": list(v.not_known[0]),
+        "change_of_e_over_friction": list(v.over_friction) if v.over_friction else None,
+        "screening": {
+            "T1_s": v.screening.period,
+            "tau_s": v.screening.duration,
+            "T1_over_tau": v.screening.ratio,
+            "gamma_per_m0_3815": v.screening.gamma,
+            "published": v.screening.published,
+        },
+        "box": [list(line) for line in box(v)],
+        "basis": [list(line) for line in basis(v)],
+        "not_covered": list(not_covered(v)),
+        "with_vibration": v.here.free.to_dict(),
+        "without_vibration": v.here.stiff.to_dict(),
+    }
+
+
+def _change_entry(change: Change) -> dict[str, Any]:
+    return {
+        "angle_rad": change.angle,
+        "change_of_e": change.value,
+        "band": change.band,
+        "E_vib_over_E_0": change.E_vib,
+        "E_vib_band": change.E_vib_band,
+        "source": change.source,
+    }

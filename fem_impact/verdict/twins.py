@@ -1,0 +1,34 @@
+"""A scene beside its twin: the same contact under a rod that cannot vibrate, at any inclination."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan2, cos, hypot, sin
+
+from fem_impact.effects.registry import NAMES, grounded
+from fem_impact.plan.choose import active
+from fem_impact.scene.types import Scene
+
+VIBRATION = "vibration"
+
+
+def twins(scene: Scene) -> tuple[Scene, Scene]:
+    """Return the scene with a rod that vibrates, and the same scene with one that cannot.
+
+    Both have the effects that the scene calls for; vibration is in the first one even where the scene would
+    leave it out as small, because its size is the question. No field is kept of either.
+    """
+    on = {*active(scene), VIBRATION}
+    free = tuple(name for name in NAMES if name in on)
+    stiff = tuple(grounded([name for name in free if name != VIBRATION]))
+    plain = replace(scene, measured=None, save=replace(scene.save, frames=0))
+    return replace(plain, effects=free), replace(plain, effects=stiff)
+
+
+def inclined(scene: Scene, angle: float) -> Scene:
+    """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays."""
+    impact = scene.impact
+    speed, beside = hypot(impact.v_n, impact.v_t), atan2(-impact.v_t, -impact.v_n) - impact.angle
+    way = angle + beside
+    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=-speed * sin(way))
+    return replace(scene, impact=turned, measured=None)

@@ -1,0 +1,247 @@
+"""The verdict on a scene: twins, known errors, the answer with its band, finite elements where it is open."""
+
+import json
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from fem_impact.errors import SceneError
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.verdict import assess as assess_module
+from fem_impact.verdict import change as change_module
+from fem_impact.verdict.assess import assess
+from fem_impact.verdict.change import Change
+from fem_impact.verdict.dropped import dropped
+from fem_impact.verdict.reliability import comparisons, known_error
+from fem_impact.verdict.screening import screening
+from fem_impact.verdict.sentences import box, document
+from fem_impact.verdict.twins import inclined, twins
+
+ALUMINIUM = {
+    "projectile.length": "500 mm",
+    "projectile.diameter": "20 mm",
+    "projectile.material": {
+        "name": "Al 6082-T6",
+        "E": "70 GPa",
+        "nu": 0.33,
+        "rho": "2700 kg/m3",
+        "yield_stress": "260 MPa",
+        "ultimate_stress": "310 MPa",
+    },
+}
+
+
+def aluminium():
+    return replace_all(load("t5b"), ALUMINIUM)
+
+
+@pytest.fixture(scope="module")
+def short():
+    return assess(load("t5b"), "modal")
+
+
+def test_twins_differ_by_vibration_alone_and_have_it_where_a_scene_would_leave_it_out():
+    scene = replace_all(load("t5b"), {"effects": ["auto", "-vibration"]})
+    free, stiff = twins(scene)
+    assert set(free.effects) - set(stiff.effects) == {"vibration"}
+    assert replace(free, effects=()) == replace(stiff, effects=())
+
+
+def test_an_inclined_scene_turns_rod_and_velocity_together():
+    scene = load("t6-60")
+    turned = inclined(scene, 0.3)
+    assert math.hypot(turned.impact.v_n, turned.impact.v_t) == pytest.approx(
+        math.hypot(scene.impact.v_n, scene.impact.v_t)
+    )
+    beside = [math.atan2(-s.impact.v_t, -s.impact.v_n) - s.impact.angle for s in (scene, turned)]
+    assert beside[0] == pytest.approx(beside[1], abs=1e-12)
+    assert inclined(scene, scene.impact.angle).impact.v_n == pytest.approx(scene.impact.v_n)
+
+
+@pytest.mark.parametrize(
+    ("value", "band", "said"),
+    [
+        (0.01, 0.02, "yes"),
+        (-0.01, 0.02, "yes"),
+        (0.04, 0.02, "undecided"),
+        (-0.2, 0.1, "no"),
+        (0.06, 0.02, "undecided"),
+    ],
+)
+def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
+    assert Change(0.0, value, band, 0.0, 0.0, None, None, "").answer(0.05) == said
+
+
+def test_the_change_of_e_is_that_of_two_runs(short):
+    free, stiff = (simulate(one, "modal").restitution.edge.e for one in twins(load("t5b")))
+    assert short.here.value == free - stiff
+    assert abs(short.worst.value) >= abs(short.here.value)
+    assert (short.answer, short.fidelity) == ("yes", "modal")
+
+
+def test_the_known_error_is_that_of_scenes_of_like_ratio():
+    error = known_error(load("t4"))
+    (own,) = [one for one in comparisons() if one.name == "t4"]
+    assert error.compared == ("t4",)
+    assert error.change_of_e == abs(own.modal - own.solid) > 0.02
+    long = known_error(load("t2"))
+    assert set(long.compared) == {"t2", "t3-machined", "t3-contaminated", "t3-cleaned"}
+
+
+def test_a_scene_unlike_all_gets_the_largest_error_of_all():
+    error = known_error(aluminium())
+    assert not error.alike
+    assert len(error.compared) == len(comparisons()) == 13
+    assert error.change_of_e == max(abs(one.modal - one.solid) for one in comparisons())
+    assert "none of which has a like T1/tau" in error.sentence
+
+
+def test_aluminium_is_not_answered_as_steel():
+    steel = replace_all(load("t5b"), {k: v for k, v in ALUMINIUM.items() if "material" not in k})
+    assert screening(aluminium()).period != pytest.approx(screening(steel).period, rel=0.005)
+    with pytest.raises(SceneError, match=r"about a rod of rod-steel, not of Al 6082-T6"):
+        dropped(aluminium())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"surface.friction": 0.3}, "not custom ones"),
+        ({"impact.omega": "3 rad/s"}, "without spin"),
+        ({"barrier.material.E": "70 GPa"}, "barrier of plate-steel"),
+    ],
+)
+def test_measured_tests_are_carried_to_what_they_are_about(changes, words):
+    with pytest.raises(SceneError, match=words):
+        dropped(replace_all(load("t5b"), changes))
+
+
+def meshed(monkeypatch, shifts):
+    """Let the reduced model stand for finite elements; e with vibration is moved by a shift on each mesh."""
+    asked = []
+
+    def stand_in(scenes, fidelity, options, workers):
+        shift = shifts[len(asked)]
+        asked.append(scenes[0].accuracy.tip_size)
+        runs = []
+        for scene, moved in zip(scenes, (shift, 0.0), strict=True):
+            run = simulate(replace(scene, accuracy=load("t5b").accuracy), "modal")
+            edge = replace(run.restitution.edge, e=run.restitution.edge.e + moved)
+            cost = replace(run.cost, tip_size=scene.accuracy.tip_size)
+            runs.append(replace(run, restitution=replace(run.restitution, edge=edge), cost=cost))
+        return runs, 0.0
+
+    monkeypatch.setattr(change_module, "side_by_side", stand_in)
+    return asked
+
+
+def test_auto_stays_with_the_reduced_model_where_its_error_leaves_no_doubt(monkeypatch):
+    asked = meshed(monkeypatch, [])
+    assert assess(load("t5b"), tolerance=0.2).fidelity == "modal"
+    assert asked == []
+
+
+def test_auto_takes_meshes_until_the_answer_is_clear(monkeypatch):
+    asked = meshed(monkeypatch, [0.03, 0.031, 0.031])
+    found = assess(load("t5b"), tolerance=0.04, budget_s=1e5)
+    assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 2)
+    assert asked[0] > asked[1]
+    assert found.here.band < 0.005
+
+
+def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
+    meshed(monkeypatch, [0.02, 0.035, 0.035])
+    found = assess(load("t5b"), tolerance=0.04, budget_s=1e5)
+    assert found.answer == "undecided"
+    assert any("finest of the family" in note for note in found.notes)
+
+
+def test_a_budget_that_allows_no_mesh_leaves_the_reduced_model_and_says_so(monkeypatch):
+    asked = meshed(monkeypatch, [])
+    found = assess(load("t5b"), tolerance=0.04, budget_s=0.01)
+    assert (found.fidelity, found.answer, asked) == ("modal", "undecided", [])
+    assert any("give a larger --budget" in note for note in found.notes)
+
+
+def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
+    real = assess_module.modal_pair
+
+    def cut_off(scene):
+        free, stiff = real(scene)
+        if math.degrees(scene.impact.angle) < 12:
+            free = replace(free, validity=replace(free.validity, finished=False, stopped_because="the tail."))
+        return free, stiff
+
+    monkeypatch.setattr(assess_module, "modal_pair", cut_off)
+    found = assess(load("t5b"), "modal", tolerance=0.2)
+    assert [round(math.degrees(angle)) for angle in found.not_known[0]] == [5, 10]
+    assert found.not_known[1].endswith("the tail.")
+    assert (found.answer, found.worst_answer) == ("yes", "undecided")
+
+
+@pytest.mark.parametrize(
+    ("means", "words"),
+    [({"fidelity": "rigid"}, "fidelity"), ({"tolerance": 2.0}, "tolerance"), ({"budget_s": -1.0}, "budget")],
+)
+def test_wrong_wishes_are_refused_before_any_work(means, words):
+    with pytest.raises(SceneError, match=words):
+        assess(load("t5b"), **means)
+
+
+def test_the_three_lines_and_the_document(short):
+    lines = box(short)
+    assert [title for title, _ in lines] == [
+        "May rigid theory be used here?",
+        "Vibration takes",
+        "The rest goes to",
+    ]
+    assert lines[0][1].startswith("YES: leaving vibration out changes e by +0.001")
+    found = document(short)
+    assert found["answer"] == "yes"
+    json.dumps(found, allow_nan=False)
+
+
+def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
+    code, out, err = cli("assess", "t5b", "--fidelity", "modal", "--out", "page", "--set", "save.frames=0")
+    assert (code, err) == (0, "")
+    assert out.startswith("May rigid theory be used here? YES")
+    page = Path("page/verdict.html").read_text(encoding="utf-8")
+    digest = json.loads(Path("page/verdict.json").read_text(encoding="utf-8"))["scene_digest"]
+    for words in (
+        digest,
+        "measured on the 19 mm bar",
+        "Averill",
+        "does not cover",
+        "Signatures",
+        "fem-impact",
+    ):
+        assert words in page
+    assert 'src="http' not in page
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "words"),
+    [
+        (("t5b", "--length", "80 mm"), 2, "stands beside a scene"),
+        ((), 2, "no scene is given"),
+        (("--length", "80 mm"), 2, "--diameter"),
+        (("t5b", "--tolerance", "five"), 2, "is not a number"),
+        (("t5b", "--tolerance", "5"), 3, "between 0 and 1"),
+        (("t5b", "--budget", "60"), 2, "has no unit"),
+        (("t5bb",), 2, "Did you mean t5b"),
+    ],
+)
+def test_wrong_lines_are_refused(cli, line, code, words):
+    found, out, err = cli("assess", *line)
+    assert (found, out) == (code, "")
+    assert words in err
+
+
+def test_a_plain_run_names_the_command_of_the_verdict(cli):
+    _, out, _ = cli("run", "t5b", "--fidelity", "rigid", "--set", "surface.friction=0.4")
+    words = " ".join(out.split())
+    assert "may rigid theory be used (estimate): T1/tau = " in words
+    assert "fem-impact assess t5b --set surface.friction=0.4" in words
