@@ -25,42 +25,59 @@ if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.plan import plan as make_plan
+    from fem_impact.scene import units
     from fem_impact.scene.shipped import load, replace, replace_all
     from fem_impact.scene.types import Scene
     from fem_impact.scene.units import format_quantity, parse_quantity
+    from fem_impact.study.results import Results
+    from fem_impact.study.sweep import sweep
+    from fem_impact.tables.history import read_history
+    from fem_impact.verdict.assess import Verdict, assess
 
 __all__ = [
     "Outcome",
     "Plan",
+    "Results",
     "RunOptions",
     "Scene",
     "Unknown",
+    "Verdict",
+    "assess",
     "format_quantity",
     "known",
     "load",
     "make_plan",
     "parse_quantity",
     "read_fields",
+    "read_history",
     "replace",
     "replace_all",
     "simulate",
+    "sweep",
+    "units",
 ]
 
 _PLACES = {
     "Outcome": "outcome.record:Outcome",
     "Plan": "plan.plan:Plan",
+    "Results": "study.results:Results",
     "RunOptions": "options:RunOptions",
     "Scene": "scene.types:Scene",
     "Unknown": "outcome.keys:Unknown",
+    "Verdict": "verdict.assess:Verdict",
+    "assess": "verdict.assess:assess",
     "format_quantity": "scene.units:format_quantity",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
     "make_plan": "plan.plan:plan",  # the package `fem_impact.plan` has the name itself
     "parse_quantity": "scene.units:parse_quantity",
     "read_fields": "files.fields_read:read_fields",
+    "read_history": "tables.history:read_history",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",
     "simulate": "cost.to_target:simulate",
+    "sweep": "study.sweep:sweep",
+    "units": "scene.units:",  # the module itself
 }
 
 
@@ -69,7 +86,8 @@ def __getattr__(name: str) -> object:
     if name not in _PLACES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, _, attribute = _PLACES[name].partition(":")
-    value: object = getattr(import_module(f"{__name__}.{module}"), attribute)
+    home = import_module(f"{__name__}.{module}")
+    value: object = getattr(home, attribute) if attribute else home
     globals()[name] = value
     return value
 

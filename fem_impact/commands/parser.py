@@ -37,6 +37,7 @@ class Options(argparse.Namespace):
     quiet: bool = False
     scene: str = ""
     changes: Sequence[str] = ()
+    vary: Sequence[str] = ()
     fidelity: str = ""
     ids: Sequence[str] = ()
     name: str = ""
@@ -91,7 +92,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for add in (_add_run, _add_study, _add_render, _add_report):
+    for add in (_add_run, _add_sweep, _add_study, _add_render, _add_report):
         add(commands)
     _command(commands, "scenes", "list the shipped scenes", "fem_impact.commands.run:scenes")
     for add in (_add_check, _add_cost, _add_verify, _add_stress):
@@ -171,6 +172,30 @@ def _add_study(commands: Commands) -> None:
     parser.add_argument(
         "--estimate", action="store_true", help="say how long it takes on 1 to 1000 workers, and stop"
     )
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_sweep(commands: Commands) -> None:
+    summary = "compute a scene with values varied in all combinations"
+    parser = _command(commands, "sweep", summary, "fem_impact.commands.sweep:sweep")
+    _add_scene_options(parser)
+    values = (
+        "values of one key, such as impact.angle=15..60:5deg or projectile.length=0.2,0.4m; may be repeated"
+    )
+    parser.add_argument(
+        "--vary", action="append", required=True, metavar="KEY=VALUES", default=[], help=values
+    )
+    parser.add_argument("--fidelity", choices=FIDELITIES, default="", help="of the runs (default: modal)")
+    _add_many(parser)
+
+
+def _add_many(parser: argparse.ArgumentParser) -> None:
+    """Add the options of many runs."""
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: below results)")
+    parser.add_argument(
+        "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
+    )
+    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask.distributed cluster to run on")
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 

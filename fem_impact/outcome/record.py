@@ -27,6 +27,7 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
+from fem_impact.tables.table import Missing, Table
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
 
@@ -75,6 +76,15 @@ class Outcome:
             f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
             f"mu={mu}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
         )
+
+    def _repr_html_(self) -> str:
+        """Return every number of the outcome as the table that a notebook shows."""
+        numbers = ((key, key.of(self)) for key in KEYS if key.kind == "number")
+        rows = [
+            (key.name, Missing(value.reason) if isinstance(value, Unknown) else value, key.unit, key.meaning)
+            for key, value in numbers
+        ]
+        return Table.of(("quantity", "value", "unit", "meaning"), rows, left=(0, 2, 3)).html(repr(self))
 
     @property
     def reasons(self) -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
+from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -69,6 +70,8 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     *path, last = key.split(".")
     if path[-2:] == ["material", "rate"]:
         _open_rate(_section(data, path[:-1], key), last)
+    if not path and last not in data:
+        _refuse_bare(key, data)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
     bare = (last.removesuffix(suffix) for suffix in _SUFFIXES)
@@ -83,6 +86,16 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     other = (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
     if other and data.pop("measured", None):
         data["title"] = f"{data['title']} (changed)"
+
+
+def _refuse_bare(key: str, data: dict[str, Any]) -> None:
+    """Refuse a key without its section that one of a section comes near to, such as ``lenght``."""
+    sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
+    whole = {inner: f"{name}.{inner}" for name, table in sections for inner in table}
+    near = get_close_matches(key, whole, 1, 0.8)
+    if near:
+        remedy = f"Did you mean {whole[near[0]]}?"
+        raise SceneError("is not a key of a scene.", key=key, remedy=remedy, source="--set")
 
 
 def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:

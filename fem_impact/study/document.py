@@ -38,16 +38,19 @@ class Request:
         Measured sets, where the study is about them; all when empty.
     quick : bool
         Whether to run the small version.
+    line : str
+        Command line that made it, where that is not one of ``fem-impact study``.
     """
 
     out: Path
     ids: tuple[str, ...] = ()
     quick: bool = False
+    line: str = ""
 
     def command(self, study: str) -> str:
         """Return the command line of this request."""
         options = [*self.ids, *(["--quick"] if self.quick else [])]
-        return " ".join(["fem-impact study", study, *options])
+        return self.line or " ".join(["fem-impact study", study, *options])
 
 
 @dataclass(frozen=True, slots=True)

@@ -38,7 +38,7 @@ LEAST_PAIRS = 2
 Tell = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Verdict:
     """The verdict on a scene.
 
@@ -65,6 +65,12 @@ class Verdict:
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
     notes: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return (
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, e changes by {self.here.value:+.3f} ± "
+            f"{self.here.band:.3f}, vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
+        )
 
     @property
     def answer(self) -> Answer:

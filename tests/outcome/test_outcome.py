@@ -264,3 +264,9 @@ def test_versions_name_python_and_packages():
     versions = installed_versions()
     assert versions["numpy"] == np.__version__
     assert set(versions) == {"python", "numpy", "scipy", "scikit-fem", "numba", "fem-impact"}
+
+
+def test_a_notebook_shows_every_number_with_its_meaning(record):
+    page = Outcome.from_dict(record)._repr_html_()
+    assert page.count("<tr>") == 1 + sum(key.kind == "number" for key in KEYS)
+    assert "Impulse ratio: tangential over normal impulse" in page

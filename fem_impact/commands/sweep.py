@@ -1,0 +1,67 @@
+"""The command ``sweep``: one scene with values varied in all combinations."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from contextlib import closing, nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json
+from fem_impact.commands.parser import Options
+from fem_impact.errors import RunError, UsageError
+from fem_impact.jobs.executors import cores, on_scheduler
+
+if TYPE_CHECKING:
+    from fem_impact.study.results import Results
+
+
+def sweep(options: Options) -> int:
+    """Compute all combinations, write table, figures and report, and print the findings."""
+    from fem_impact.scene.write import digest
+    from fem_impact.study.sweep import FIDELITY, publish_sweep
+    from fem_impact.study.sweep import sweep as swept
+    from fem_impact.study.vary import cases
+
+    scene, vary = changed_scene(options.scene, options.changes), _vary(options)
+    cases(scene, vary)  # refuses what cannot run before a directory is made
+    out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{digest(scene)[:8]}")
+    fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
+    lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
+    with closing(chosen_meter(options)) as meter, lent as executor:
+        results = swept(scene, vary, fidelity, out, workers, meter, executor)
+    made = publish_sweep(results, scene.title, _line(options), out)
+    if options.json:
+        print_json(_document(results, out))
+    else:
+        sys.stdout.write(f"{made.text.rstrip()}\nresults: {out}\nreport: fem-impact report {out}\n")
+    return RunError.exit_code if made.document["failures"] else 0
+
+
+def _vary(options: Options) -> dict[str, list[Any]]:
+    from fem_impact.study.vary import read_vary
+
+    pairs = [read_vary(text) for text in options.vary]
+    keys = [key for key, _ in pairs]
+    twice = next((key for key in keys if keys.count(key) > 1), "")
+    if twice:
+        raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
+    return dict(pairs)
+
+
+def _line(options: Options) -> str:
+    words = ["fem-impact", "sweep", options.scene]
+    words += [word for change in options.changes for word in ("--set", change)]
+    words += [word for text in options.vary for word in ("--vary", text)]
+    return shlex.join([*words, *(["--fidelity", options.fidelity] if options.fidelity else [])])
+
+
+def _document(results: Results, out: Path) -> dict[str, Any]:
+    table = results.table()
+    names = [column.name for column in table.columns]
+    return {
+        "vary": {key: list(values) for key, values in results.vary.items()},
+        "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
+        "path": str(out),
+    }

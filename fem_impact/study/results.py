@@ -1,0 +1,171 @@
+"""The results of a sweep: rows of values and outcomes, a table, a data frame, a choice by value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.errors import MissingLibraryError, UsageError, did_you_mean
+from fem_impact.jobs.job import Failure
+from fem_impact.outcome.record import Outcome
+from fem_impact.study.document import LEDGER
+from fem_impact.study.vary import Case, in_unit, measure
+from fem_impact.tables.table import Cell, Table
+
+if TYPE_CHECKING:
+    import pandas
+
+    from fem_impact.arrays import Array
+
+
+OUTCOME = tuple(name for name in LEDGER if name not in ("run", "contacts"))
+STATE = ("finished", "reason")
+"""Columns of how a run ended: whether it came to its end, and why not."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One case of a sweep: the values that it states, its outcome, or None and the reason."""
+
+    case: Case
+    outcome: Outcome | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Results(Sequence[Row]):
+    """The cases of a sweep in the order of their values, the last key changing fastest.
+
+    Attributes
+    ----------
+    vary : the values by key, as stated
+    rows : one a case, failed ones too
+
+    Examples
+    --------
+    >>> import fem_impact
+    >>> found = fem_impact.sweep(fem_impact.load("t5b"), {"surface.friction": [0.2, 0.4]}, fidelity="rigid")
+    >>> [round(row.outcome.restitution.mu, 2) for row in found]
+    [0.2, 0.4]
+    >>> len(found.select({"surface.friction": 0.4}))
+    1
+    """
+
+    vary: Mapping[str, Sequence[Any]]
+    rows: tuple[Row, ...]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __getitem__(self, at: Any) -> Any:
+        return self.rows[at]
+
+    def __repr__(self) -> str:
+        failed = sum(row.outcome is None for row in self.rows)
+        return f"Results({len(self.rows)} cases of {', '.join(self.vary)}; {failed} failed)"
+
+    def _repr_html_(self) -> str:
+        return self.table().html(repr(self))
+
+    def select(self, values: Mapping[str, Any]) -> Results:
+        """Return the cases with given values, such as ``{"impact.angle": "30 deg"}``, in any unit.
+
+        Raises
+        ------
+        UsageError
+            A key does not vary, or no case has the value.
+        """
+        rows = self.rows
+        for key, value in values.items():
+            if key not in self.vary:
+                remedy = did_you_mean(key, self.vary, f"Varied are: {', '.join(self.vary)}.")
+                raise UsageError("is not varied in this sweep.", key=key, remedy=remedy)
+            rows = tuple(row for row in rows if _same(row.case.values[key], value))
+            if not rows:
+                listed = ", ".join(map(str, self.vary[key]))
+                raise UsageError(
+                    "is no value of this sweep.", key=key, value=value, remedy=f"There are: {listed}."
+                )
+        return Results(self.vary, rows)
+
+    def numbers(self, name: str) -> Array:
+        """Return a column of the table as floats (n,), NaN where it is not known.
+
+        Raises
+        ------
+        UsageError
+            There is no such column.
+        """
+        import numpy as np
+
+        names = [column.name for column in self.table().columns]
+        if name not in names:
+            raise UsageError("is no column.", key=name, remedy=did_you_mean(name, names, f"{names}."))
+        column = (row[names.index(name)] for row in self.table().rows)
+        return np.array([float("nan") if cell is None else float(cell) for cell in column])  # type: ignore[arg-type]
+
+    def table(self) -> Table:
+        """Return one row a case: values, unit in the header, how it ended, motion, shares of E_0."""
+        units = {key: _unit(values) for key, values in self.vary.items()}
+        heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
+        rows = [
+            [
+                row.case.name,
+                *(in_unit(row.case.values[key], unit) for key, unit in units.items()),
+                *_ended(row),
+            ]
+            for row in self.rows
+        ]
+        return Table.of(("case", *heads, *STATE, *OUTCOME), rows)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """Return the table as a data frame of pandas.
+
+        Raises
+        ------
+        MissingLibraryError
+            pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            problem = "A data frame needs pandas: pip install 'fem-impact[frames]'. The table needs nothing."
+            raise MissingLibraryError(problem) from None
+        table = self.table()
+        return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
+
+
+def _unit(values: Sequence[Any]) -> str:
+    return measure(values[0])[1]
+
+
+def _same(stated: Any, wanted: Any) -> bool:
+    """Return whether two values are one, to the precision of a change of units."""
+    unit = measure(stated)[1]
+    a, b = in_unit(stated, unit), in_unit(wanted, unit)
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    return abs(a - b) <= 1e-9 * max(abs(a), abs(b))
+
+
+def _values(row: Row, units: Mapping[str, str]) -> list[Cell]:
+    return [in_unit(row.case.values[key], unit) for key, unit in units.items()]
+
+
+def _ended(row: Row) -> list[Cell]:
+    if row.outcome is None:
+        return [False, row.reason, *([None] * len(OUTCOME))]
+    values, validity = row.outcome.to_dict(), row.outcome.validity
+    reason = "" if validity.finished else validity.stopped_because
+    return [validity.finished, reason, *(values[name] for name in OUTCOME)]
+
+
+def row_of(case: Case, result: Outcome | Failure | None) -> Row:
+    """Return the row of a case from what its job gave."""
+    if isinstance(result, Outcome):
+        return Row(case, result, "")
+    return Row(case, None, result.reason if result else case.refused)

@@ -1,0 +1,150 @@
+"""Values of a sweep: lists and ranges with units, and the scenes that all their combinations make."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from decimal import Decimal
+from itertools import product
+from typing import Any
+
+from fem_impact.errors import FemImpactError, SceneError, UsageError
+from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.types import Scene
+from fem_impact.scene.units import DIMENSIONS
+
+MOST = 100_000
+"""Largest number of cases of one sweep."""
+
+_NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*:\s*({_NUMBER})\s*(\S.*)?")
+_QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*)?")
+_EXAMPLE = "Write --vary impact.angle=15..60:5deg, or --vary projectile.length=0.2,0.4,0.8m."
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """One combination of values: its name, the values by key as stated, and its scene or why it has none."""
+
+    name: str
+    values: Mapping[str, Any]
+    scene: Scene | None
+    refused: str = ""
+
+
+def read_vary(text: str) -> tuple[str, list[Any]]:
+    """Return key and values of one ``key=values``: a list, or a range ``first..last:step``, with its unit.
+
+    Raises
+    ------
+    UsageError
+        The text is of neither form, or the range has no step towards its end.
+
+    Examples
+    --------
+    >>> read_vary("impact.angle=15..30:5deg")
+    ('impact.angle', ['15 deg', '20 deg', '25 deg', '30 deg'])
+    >>> read_vary("projectile.length=0.2,0.4m")
+    ('projectile.length', ['0.2 m', '0.4 m'])
+    """
+    key, equals, listed = text.partition("=")
+    if not equals or not key.strip() or not listed.strip():
+        raise UsageError("is not of the form key=values.", key="--vary", value=text, remedy=_EXAMPLE)
+    match = _RANGE.fullmatch(listed)
+    return key.strip(), _steps(match, text) if match else _listed(listed)
+
+
+def _steps(match: re.Match[str], text: str) -> list[Any]:
+    first, last, step = (Decimal(part) for part in match.group(1, 2, 3))
+    if step == 0 or (last - first) / step < 0 or (last - first) / step >= MOST:
+        problem = "has no step that leads from its first to its last value."
+        raise UsageError(problem, key="--vary", value=text, remedy=_EXAMPLE)
+    count = int((last - first) / step) + 1
+    return [_with_unit(f"{first + at * step:f}", match[4]) for at in range(count)]
+
+
+def _listed(text: str) -> list[Any]:
+    """Return the values of a list; a unit after the last one is that of those before without one."""
+    parts = [part.strip() for part in text.split(",")]
+    last = _QUANTITY.fullmatch(parts[-1])
+    unit = last[2] if last else None
+    return [_value(part, unit) for part in parts]
+
+
+def _value(text: str, unit: str | None) -> Any:
+    match = _QUANTITY.fullmatch(text)
+    if match is None:
+        return text.strip("\"'")
+    return _with_unit(match[1], match[2] or unit)
+
+
+def _with_unit(number: str, unit: str | None) -> Any:
+    return f"{number} {unit.strip()}" if unit else tomllib.loads(f"value = {_plain(number)}")["value"]
+
+
+def _plain(number: str) -> str:
+    """Return a number as TOML writes it: with digits on both sides of its point."""
+    whole, point, rest = number.partition(".")
+    return f"{whole or '0'}.{rest or '0'}" if point else number
+
+
+def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Case]:
+    """Return the scenes of all combinations, the last key changing fastest; a refused one says why.
+
+    Raises
+    ------
+    SceneError, UsageError
+        Nothing varies, there are too many combinations, or each of them is refused.
+    """
+    _check(vary)
+    made = list(_made(scene, vary))
+    if all(case.scene is None for case in made):
+        raise SceneError(f"no combination is a scene; the first says: {made[0].refused}", key="vary")
+    return made
+
+
+def _check(vary: Mapping[str, Sequence[Any]]) -> None:
+    if not vary or not all(vary.values()):
+        raise UsageError("names no values.", key="vary", remedy=_EXAMPLE)
+    count = 1
+    for key, values in vary.items():
+        if isinstance(values, str):
+            remedy = "Give a list, such as ['15 deg', '30 deg']."
+            raise UsageError("is one text, not a list of values.", key=key, value=values, remedy=remedy)
+        count *= len(values)
+    if count > MOST:
+        remedy = f"Give at most {MOST}, or several sweeps."
+        raise UsageError(f"makes {count} combinations.", key="vary", remedy=remedy)
+
+
+def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Case]:
+    for number, values in enumerate(product(*vary.values()), 1):
+        stated = dict(zip(vary, values, strict=True))
+        try:
+            yield Case(f"case-{number:05d}", stated, replace_all(scene, stated))
+        except FemImpactError as error:
+            yield Case(f"case-{number:05d}", stated, None, str(error))
+
+
+def measure(value: Any) -> tuple[float | str, str]:
+    """Return number and unit of a stated value, a text and no unit where it is none."""
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        return str(value), ""
+    match = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    if isinstance(value, str):
+        return (float(match[1]), (match[2] or "").strip()) if match else (value, "")
+    return float(value), ""
+
+
+def in_unit(value: Any, unit: str) -> float | str:
+    """Return a stated value as a number in a unit; texts stay as they are."""
+    number, own = measure(value)
+    if isinstance(number, str) or own == unit:
+        return number
+    pairs = ((kind.unit(own), kind.unit(unit)) for kind in DIMENSIONS.values())
+    of, to = next(((of, to) for of, to in pairs if of and to), (None, None))
+    if of is None or to is None:
+        return str(value)
+    return (of.to_si(repr(number)) - to.offset) / (to.to_si("1") - to.offset)

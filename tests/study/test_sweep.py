@@ -1,0 +1,159 @@
+"""Sweeps: values with units, cases that fail as rows, a store to go on from, tables and data frames."""
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import fem_impact
+from fem_impact.errors import MissingLibraryError, SceneError, UsageError
+from fem_impact.jobs import run as jobs_run
+from fem_impact.scene.shipped import load, replace
+from fem_impact.study.sweep import publish_sweep, sweep
+from fem_impact.study.vary import cases, in_unit, read_vary
+from fem_impact.tables.table import read_csv
+
+
+@pytest.mark.parametrize(
+    ("text", "values"),
+    [
+        ("impact.angle=15..60:15deg", ["15 deg", "30 deg", "45 deg", "60 deg"]),
+        ("impact.angle = 20 .. 10 : -5 deg", ["20 deg", "15 deg", "10 deg"]),
+        ("surface.friction=0.1..0.4:0.1", [0.1, 0.2, 0.3, 0.4]),
+        ("projectile.length=0.2,0.4,.8m", ["0.2 m", "0.4 m", ".8 m"]),
+        ("projectile.length=200 mm, 40 cm", ["200 mm", "40 cm"]),
+        ("accuracy.across=8,12", [8, 12]),
+        ("projectile.tip=A,B", ["A", "B"]),
+    ],
+)
+def test_lists_and_ranges_with_units(text, values):
+    assert read_vary(text) == (text.partition("=")[0].strip(), values)
+
+
+@pytest.mark.parametrize("text", ["impact.angle", "impact.angle=", "x=10..60:0deg", "x=60..10:5deg"])
+def test_what_names_no_values_is_refused(text):
+    with pytest.raises(UsageError, match=r"--vary impact.angle=15..60:5deg"):
+        read_vary(text)
+
+
+def test_all_combinations_with_the_last_key_changing_fastest():
+    made = cases(load("t5b"), {"surface.friction": [0.1, 0.2], "projectile.length": ["80 mm", "90 mm"]})
+    stated = [(case.scene.surface.friction, case.scene.projectile.length) for case in made]
+    assert stated == [(0.1, 0.08), (0.1, 0.09), (0.2, 0.08), (0.2, 0.09)]
+
+
+def test_values_of_other_units_come_in_that_of_the_first():
+    assert in_unit("40 cm", "mm") == pytest.approx(400.0)
+    assert in_unit("430 degC", "K") == pytest.approx(703.15)
+    assert in_unit("A", "") == "A"
+
+
+@pytest.mark.parametrize(
+    ("vary", "words"),
+    [
+        ({"impact.angel": ["15 deg"]}, "Did you mean angle"),
+        ({"lenght": ["15 mm"]}, "Did you mean projectile.length"),
+        ({"projectile.length": ["1 mm", "2 mm"]}, "no combination is a scene"),
+        ({}, "names no values"),
+        ({"impact.angle": "15 deg"}, "one text, not a list"),
+        ({"surface.friction": [0.1] * 400, "restitution": [0.1] * 400}, "160000 combinations"),
+    ],
+)
+def test_what_cannot_run_at_all_is_refused_before_any_run(vary, words):
+    with pytest.raises((SceneError, UsageError), match=words):
+        sweep(load("t5b"), vary)
+
+
+def test_a_wrong_fidelity_is_refused():
+    with pytest.raises(UsageError, match="Did you mean modal"):
+        sweep(load("t5b"), {"surface.friction": [0.1]}, fidelity="model")
+
+
+@pytest.fixture(scope="module")
+def swept(tmp_path_factory):
+    out = tmp_path_factory.mktemp("swept")
+    vary = {"surface.friction": [0.1, 0.5], "projectile.length": ["80 mm", "1 mm", "90 mm"]}
+    return sweep(load("t5b"), vary, fidelity="rigid", out=out), out
+
+
+def test_each_row_is_the_run_of_its_scene(swept):
+    results, _ = swept
+    row = results.select({"surface.friction": 0.5, "projectile.length": "9 cm"}).rows[0]
+    scene = replace(replace(load("t5b"), "surface.friction", 0.5), "projectile.length", "90 mm")
+    alone = fem_impact.simulate(scene, "rigid")
+    assert row.outcome.to_dict()["e_edge"] == alone.to_dict()["e_edge"]
+    assert np.isfinite(results.numbers("mu")).sum() == 4
+
+
+def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
+    results, _ = swept
+    failed = [row for row in results if row.outcome is None]
+    assert len(failed) == 2 and len(results) == 6
+    assert all("shorter than the diameter" in row.reason for row in failed)
+    assert "2 failed" in repr(results) and "<table" in results._repr_html_()
+
+
+def test_a_second_call_takes_what_is_stored(swept, monkeypatch):
+    results, out = swept
+    monkeypatch.setattr(jobs_run, "_compute", None)  # would be called for a job that is not stored
+    again = sweep(load("t5b"), results.vary, fidelity="rigid", out=out)
+    assert again.table().rows == results.table().rows
+
+
+def test_a_choice_of_what_is_not_there_is_refused(swept):
+    results, _ = swept
+    with pytest.raises(UsageError, match=r"Did you mean surface.friction"):
+        results.select({"surface.fricton": 0.1})
+    with pytest.raises(UsageError, match=r"There are: 0.1, 0.5"):
+        results.select({"surface.friction": 0.3})
+
+
+def test_a_data_frame_holds_the_table(swept):
+    pandas = pytest.importorskip("pandas")
+    results, _ = swept
+    frame = results.to_dataframe()
+    assert isinstance(frame, pandas.DataFrame)
+    assert list(frame["projectile.length [mm]"]) == [80.0, 1.0, 90.0] * 2
+    assert frame["mu"].notna().sum() == 4
+
+
+def test_without_pandas_the_error_says_what_to_install(swept, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MissingLibraryError, match=r"fem-impact\[frames\]"):
+        swept[0].to_dataframe()
+
+
+def test_the_files_of_a_sweep(swept, tmp_path):
+    results, _ = swept
+    made = publish_sweep(results, "t5b", "fem-impact sweep t5b", tmp_path)
+    assert made.document["command"] == "fem-impact sweep t5b"
+    assert len(made.document["failures"]) == 2
+    table = read_csv(tmp_path / "sweep.csv")
+    assert len(table.rows) == 6
+    data = read_csv(tmp_path / "figures" / "sweep.csv")
+    drawn = {float(row[data.names.index("x")]) for row in data.rows}
+    assert drawn == {80.0, 90.0}
+
+
+def test_the_command(cli):
+    line = ("sweep", "t5b", "--vary", "impact.angle=30,45deg", "--fidelity", "rigid", "--workers", "1")
+    code, out, _ = cli(*line, "--out", "here", "--quiet")
+    assert code == 0
+    assert "2 cases of impact.angle; 0 failed" in out
+    code, out, _ = cli(*line, "--out", "here", "--quiet", "--json")
+    assert [row["impact.angle [deg]"] for row in json.loads(out)["rows"]] == [30.0, 45.0]
+    assert cli("report", "here")[0] == 0
+    assert "Sweep" in Path("here/report.html").read_text(encoding="utf-8")
+    assert cli("sweep", "t5b", "--vary", "impact.angle=3", "--vary", "impact.angle=4")[0] == 2
+
+
+def test_the_example_of_the_page_prints_what_it_shows(capsys):
+    page = (Path(__file__).parents[2] / "docs" / "how-to" / "sweep.md").read_text(encoding="utf-8")
+    code, told = (
+        page.partition(f"<!-- {mark} -->\n```{kind}\n")[2].partition("```")[0]
+        for mark, kind in (("run", "python"), ("prints", "text"))
+    )
+    exec(compile(code, "sweep.md", "exec"), {})
+    assert capsys.readouterr().out == told
