@@ -93,11 +93,11 @@ def _budget(options: Options) -> float:
     return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
 
 
-def _teller(options: Options) -> Callable[[str], None]:
+def _teller(options: Options) -> Callable[[str], object]:
     """Return a function that prints a sentence to a terminal that waits; silent where nobody looks on."""
     if options.quiet or not sys.stderr.isatty():
         return lambda sentence: None
-    return lambda sentence: print(sentence, file=sys.stderr)
+    return lambda sentence: sys.stderr.write(f"{sentence}\n")
 
 
 def _text(found: dict[str, Any]) -> str:

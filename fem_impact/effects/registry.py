@@ -19,6 +19,7 @@ from fem_impact.effects import (
 )
 from fem_impact.effects.slots import Effect
 from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.plugins import added, wrong
 
 EFFECTS: dict[str, Effect] = {
     effect.name: effect
@@ -38,6 +39,11 @@ EFFECTS: dict[str, Effect] = {
         heating.EFFECT,
     )
 }
+
+for _name, _effect in added("effects", EFFECTS).items():
+    if not isinstance(_effect, Effect) or _effect.name != _name:
+        raise wrong(_name, "effects", "is no Effect of that name.")
+    EFFECTS[_name] = _effect
 
 AUTO = "auto"
 NAMES = tuple(EFFECTS)

@@ -27,6 +27,7 @@ from fem_impact.outcome.groups import (
     Validity,
 )
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
+from fem_impact.plugins import providers
 from fem_impact.tables.table import Missing, Table
 
 PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
@@ -169,7 +170,8 @@ def utc_now() -> str:
 
 def installed_versions() -> dict[str, str]:
     """Return the versions of Python and of the packages that shape a result, where they are installed."""
-    return {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}}
+    ours = {name: _version(name) for name in PACKAGES}
+    return {"python": platform.python_version(), **ours, **providers()}
 
 
 @cache

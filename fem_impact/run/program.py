@@ -9,6 +9,7 @@ from importlib import metadata
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
+from fem_impact.plugins import providers
 from fem_impact.scene.write import digest
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ def source_digest() -> str:
         digest.update(file.read_bytes())
     for library in LIBRARIES:
         digest.update(f"{library} {metadata.version(library)}\n".encode())
+    for package, version in providers().items():
+        digest.update(f"{package} {version}\n".encode())
     return digest.hexdigest()
 
 

@@ -9,6 +9,7 @@ from math import inf
 from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.plugins import added, wrong
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.material import RATES, Material, Rate
@@ -109,4 +110,16 @@ def _values(table: dict[str, Any], wanted: tuple[Parameter, ...]) -> dict[str, A
 
 @cache
 def _table(name: str) -> dict[str, Any]:
-    return tomllib.loads(_DATA.joinpath(*name.split("/")).read_text(encoding="utf-8"))
+    table = tomllib.loads(_DATA.joinpath(*name.split("/")).read_text(encoding="utf-8"))
+    return table | _added_materials(table) if name == "materials.toml" else table
+
+
+def _added_materials(ours: dict[str, Any]) -> dict[str, Any]:
+    """Return the tables of materials that other packages add, each checked."""
+    tables = added("materials", ours)
+    for name, table in tables.items():
+        try:
+            _material(name, table)
+        except (SceneError, TypeError, ValueError, AttributeError) as error:
+            raise wrong(name, "materials", f"is no table of a material ({error}).") from None
+    return tables

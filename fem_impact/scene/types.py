@@ -216,9 +216,9 @@ def _check_skin(surface: Surface) -> None:
 def _check_tip_name(tip: str) -> None:
     if tip in ("A", "B", "plain"):
         return  # the published ones need no import of the rigid package, which would slow every command
-    from rigid import SHAPES
+    from fem_impact.scene.tips import tips
 
-    check_choice(tip, tuple(SHAPES), "tip")
+    check_choice(tip, tuple(tips()), "tip")
 
 
 def _check_tip(rod: ProjectileSpec) -> None:

@@ -35,7 +35,7 @@ ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 LEAST_PAIRS = 2
 """Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
 
-Tell = Callable[[str], None]
+Tell = Callable[[str], object]
 
 
 @dataclass(frozen=True, slots=True, repr=False)

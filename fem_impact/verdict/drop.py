@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.scene.tips import tips
 from fem_impact.scene.units import parse_quantity
 from rigid import SHAPES, Arms, Projectile, RigidError, drop_velocities
 from rigid.arrays import Floats
@@ -200,8 +201,9 @@ def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | Non
     SceneError
         No such rod can be turned.
     """
-    if tip not in SHAPES:
-        remedy = did_you_mean(tip, SHAPES, f"Known are: {', '.join(SHAPES)}.")
+    known = tips()
+    if tip not in known:
+        remedy = did_you_mean(tip, known, f"Known are: {', '.join(known)}.")
         raise UsageError("is no tip.", key="--tip", value=tip, remedy=remedy)
     if tip_radius is None and tip not in TIP_RADII:
         remedy = 'Give its radius, such as --tip-radius "3 mm".'
