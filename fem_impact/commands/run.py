@@ -47,7 +47,7 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
-    _say_old_fall(scene, options)
+    _say_fall(scene, options)
     _say_plan(scene, options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.commands.outcome import print_outcome
@@ -120,19 +120,21 @@ def _elements(size: RunSize) -> str:
     return f"{about(size.rod + size.barrier)} elements, {about(size.steps)} steps"
 
 
-def _say_old_fall(scene: Scene, options: Options) -> None:
-    """Warn where ``--set`` changed the angle of impact and not its velocities."""
-    changed, impact = read_changes(options.changes), scene.impact
-    if not {"impact.angle", "impact.angle_rad"} & set(changed):
-        return
-    if any(key.startswith(("impact.v_n", "impact.v_t")) for key in changed):
+def _say_fall(scene: Scene, options: Options) -> None:
+    """Say what became of stated velocities where ``--set`` changed the angle of impact alone."""
+    changed, impact = set(read_changes(options.changes)), scene.impact
+    stated = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
+    if stated or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
         return
     speed = math.hypot(impact.v_n, impact.v_t)
-    v_n, v_t = -speed * math.cos(impact.angle), -speed * math.sin(impact.angle)
-    sys.stderr.write(
-        "fem-impact: warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
-        f"--set impact.v_n='{v_n:.4g} m/s' --set impact.v_t='{v_t:.4g} m/s'\n"
-    )
+    if impact.speed:
+        told = f"the rod falls along its axis as fast as before, {speed:.4g} m/s"
+    else:
+        told = (
+            "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
+            f"--set impact.speed='{speed:.4g} m/s'"
+        )
+    sys.stderr.write(f"fem-impact: {told}\n")
 
 
 def _way_on(out: Path) -> str:
@@ -171,7 +173,7 @@ def check(options: Options) -> int:
     from fem_impact.plan.plan import plan
 
     planned = plan(changed_scene(options.scene, options.changes))
-    _say_old_fall(planned.scene, options)
+    _say_fall(planned.scene, options)
     statement = _statement(planned)
     if options.json:
         print_json(statement)

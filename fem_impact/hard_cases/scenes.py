@@ -59,7 +59,8 @@ class HardCase:
 
 
 def _angle(degrees: int) -> Changes:
-    return {"impact.angle": f"{degrees} deg"}
+    """Return the changes to another angle at the velocities of t5b, which then is no fall."""
+    return {"impact.angle": f"{degrees} deg", "impact.v_n": "-1.5024 m/s", "impact.v_t": "-1.4821 m/s"}
 
 
 def _speed(v: float) -> Changes:

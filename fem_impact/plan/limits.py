@@ -9,6 +9,7 @@ from dataclasses import replace
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
 from fem_impact.scene import library
+from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 
@@ -18,7 +19,6 @@ DIAMETER = 0.019
 SPEEDS = (1.30, 6.10)
 ANGLES = (math.radians(17.0), math.radians(60.0))
 TIPS = {("A", 0.007), ("B", 0.003)}
-FALL = 2.0  # deg between velocity and axis of a dropped rod at most; of the measured ones 1.0 (t6-60)
 SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 
@@ -61,12 +61,12 @@ def _section(scene: Scene) -> str:
 
 def _fall(scene: Scene) -> str:
     impact = scene.impact
-    beside = math.degrees(math.atan2(-impact.v_t, -impact.v_n) - impact.angle)
-    if abs(beside) <= FALL:
+    if abs(impact.beside) <= BESIDE:
         return ""
+    beside, angle = (math.degrees(a) for a in (abs(impact.beside), impact.angle))
     return (
-        f"outside the measured range: the rod moves {abs(beside):.2g} deg beside its axis, which no dropped "
-        f"rod does: v_n and v_t are those of another angle than {math.degrees(impact.angle):.4g} deg"
+        f"outside the measured range: the rod moves {beside:.2g} deg beside its axis, which no dropped "
+        f"rod does: v_n and v_t are those of another angle than {angle:.4g} deg"
     )
 
 

@@ -184,27 +184,31 @@ SKIN = (
 TOP = (Parameter("restitution", "energetic restitution of the rigid fidelity", "", 0.0, 1.0),)
 _INTO = "n points out of the barrier, so a rod that strikes it has v_n below 0."
 _DOWN = "t points up the slope, so a falling rod has v_t at or below 0."
-IMPACT = (
-    Parameter(
-        "angle",
-        "angle between the rod's axis and the barrier's normal",
-        "angle",
-        0.0,
-        math.pi / 2,
-        high_open=True,
-    ),
-    Parameter("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO),
-    Parameter("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN),
-    Parameter(
-        "omega",
-        "angular velocity, positive turning n towards t",
-        "angular speed",
-        -1e4,
-        1e4,
-        default=0.0,
-        source="a rod dropped from rest does not turn (the paper, reducing Eq. 1 to Eq. 9)",
-    ),
+ANGLE = Parameter(
+    "angle",
+    "angle between the rod's axis and the barrier's normal",
+    "angle",
+    0.0,
+    math.pi / 2,
+    high_open=True,
 )
+V_N = Parameter("v_n", "velocity along the normal", "speed", -500.0, -1e-6, remedy=_INTO)
+V_T = Parameter("v_t", "velocity up the slope", "speed", -500.0, 0.0, remedy=_DOWN)
+OMEGA = Parameter(
+    "omega",
+    "angular velocity, positive turning n towards t",
+    "angular speed",
+    -1e4,
+    1e4,
+    default=0.0,
+    source="a rod dropped from rest does not turn (the paper, reducing Eq. 1 to Eq. 9)",
+)
+IMPACT = (ANGLE, V_N, V_T, OMEGA)
+_GIVEN = "none: the velocities are stated in another way"
+HEIGHT = Parameter(
+    "height", "height of fall along the rod's axis", "length", 1e-12, 1e4, derived=_GIVEN, unit="m"
+)
+SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
 ACCURACY = (
     Parameter(
         "tip_size",

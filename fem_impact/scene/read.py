@@ -13,12 +13,12 @@ from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
 from fem_impact.scene.checks import check_choice, check_names
 from fem_impact.scene.fields import Parameter
+from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.types import (
     Accuracy,
     Barrier,
     Heating,
-    Impact,
     ProjectileSpec,
     Save,
     Scene,
@@ -107,7 +107,7 @@ def read_scene(data: Table) -> Scene:
         projectile=_within(data, "projectile", _projectile),
         barrier=_within(data, "barrier", _barrier),
         surface=_within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
-        impact=_within(data, "impact", lambda t: Impact(**_numbers(t, fields.IMPACT))),
+        impact=_within(data, "impact", _impact),
         effects=effects,
         accuracy=_within(data, "accuracy", _accuracy, {}),
         save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
@@ -153,6 +153,18 @@ def _barrier(table: Table) -> Barrier:
     _check_keys(table, ("material", "boundary"))
     given = {"boundary": table["boundary"]} if "boundary" in table else {}
     return Barrier(_within(table, "material", _material), **given)
+
+
+def _impact(table: Table) -> Impact:
+    """Read a motion that a height, a speed or velocities state."""
+    known = (*fields.IMPACT, fields.HEIGHT, fields.SPEED)
+    given = {p.key for p in known if {p.key, p.si_key} & set(table)}
+    _check_keys(table, (*(p.key for p in known), *(p.si_key for p in known)), [p.key for p in known])
+    way = the_way(given)
+    if way == WAYS[2]:
+        return Impact(**_numbers(table, fields.IMPACT))
+    made = Impact.dropped if way == WAYS[0] else Impact.thrown
+    return made(**_numbers(table, (fields.ANGLE, fields.OMEGA, *(p for p in known if p.key in way))))
 
 
 def _accuracy(table: Table | str) -> Accuracy:

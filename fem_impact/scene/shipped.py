@@ -11,6 +11,7 @@ from typing import Any
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
+from fem_impact.scene.impact import restated
 from fem_impact.scene.library import nearest_scene, shipped, stated
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.types import Scene
@@ -43,6 +44,8 @@ def _shipped(name: str) -> Scene:
     return read_dict(stated(name), f"shipped scene {name}")
 
 
+_CHANGED = ", changed: "
+_LONGEST = 300  # characters of a title
 # longest first: "_rad_per_s" before "_s"
 _SUFFIXES = sorted((f"_{dimension.suffix}" for dimension in DIMENSIONS.values()), key=len, reverse=True)
 
@@ -55,14 +58,20 @@ def replace(scene: Scene, key: str, value: Any) -> Scene:
 def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
-    A changed friction makes the surface custom, a changed property renames its material, and a changed rod,
-    impact or surface state no longer repeats a measured set, which the title says: a name never stands for
-    other values. Friction, materials, effects and accuracy are the model's side and leave ``measured`` as it
-    is.
+    A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
+    property renames its material, and a changed rod, impact or surface state no longer repeats a measured
+    set, which the title says: a name never stands for other values. Friction, materials, effects and accuracy
+    are the model's side and leave ``measured`` as it is.
     """
     data = to_dict(scene)
     for key, value in changes.items():
         _change(data, key, value)
+    if other := {key: value for key, value in changes.items() if _is_another_impact(key)}:
+        measured = data.pop("measured", "")
+        if "title" not in changes:
+            data["title"] = _title(data["title"], measured, other)
+    if moved := {_bare(key.removeprefix("impact.")) for key in changes if key.startswith("impact.")}:
+        data["impact"] = restated(scene.impact, data["impact"], moved)
     return read_dict(data, "--set")
 
 
@@ -74,8 +83,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         _refuse_bare(key, data)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
-    bare = (last.removesuffix(suffix) for suffix in _SUFFIXES)
-    table.pop(next((name for name in bare if name in table), last), None)
+    table.pop(_bare(last) if _bare(last) in table else last, None)
     table[last] = value
     _rename(table, path, last)
     if "material" in path and last != "name":
@@ -83,9 +91,24 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         metal["name"] = f"{metal['name'].removesuffix(' (changed)')} (changed)"
     if path == ["accuracy"]:
         _keep_one(table, last)
-    other = (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
-    if other and data.pop("measured", None):
-        data["title"] = f"{data['title']} (changed)"
+
+
+def _bare(key: str) -> str:
+    """Return a key without the suffix of its SI unit."""
+    return next((key.removesuffix(suffix) for suffix in _SUFFIXES if key.endswith(suffix)), key)
+
+
+def _is_another_impact(key: str) -> bool:
+    *path, last = key.split(".")
+    return (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
+
+
+def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
+    """Return the title of a scene that repeated a measured set: the set, and what differs from it."""
+    told = ", ".join(f"{key} = {value}" for key, value in changes.items())
+    if measured:
+        return f"{measured}{_CHANGED}{told}"[:_LONGEST]
+    return f"{title}, {told}"[:_LONGEST] if _CHANGED in title else title
 
 
 def _refuse_bare(key: str, data: dict[str, Any]) -> None:

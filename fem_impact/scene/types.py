@@ -12,6 +12,7 @@ from typing import Literal, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 
 MEASURED_SETS = (
@@ -87,19 +88,6 @@ class Surface:
                 value=self.friction,
                 remedy="Give friction_low <= friction <= friction_high.",
             )
-
-
-@dataclass(frozen=True, slots=True)
-class Impact:
-    """Motion at first contact: angle in rad, v_n and v_t of the mass centre in m/s, omega in rad/s."""
-
-    angle: float
-    v_n: float
-    v_t: float
-    omega: float = 0.0
-
-    def __post_init__(self) -> None:
-        check_numbers(self, fields.IMPACT)
 
 
 @dataclass(frozen=True, slots=True)

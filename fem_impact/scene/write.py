@@ -10,6 +10,7 @@ from typing import Any
 
 from fem_impact.scene import fields
 from fem_impact.scene.fields import Parameter
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Accuracy, Barrier, Scene
 
@@ -31,7 +32,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         },
         "barrier": _barrier(scene.barrier),
         "surface": surface | _written(scene.surface, (*fields.SURFACE, *fields.SKIN)),
-        "impact": _written(scene.impact, fields.IMPACT),
+        "impact": _impact(scene.impact),
         "accuracy": _accuracy(scene.accuracy),
         "save": _written(scene.save, fields.SAVE),
         "heating": _written(scene.heating, fields.HEATING),
@@ -52,6 +53,14 @@ def digest(scene: Scene) -> str:
 def _barrier(barrier: Barrier) -> dict[str, Any]:
     written = {"boundary": barrier.boundary} if barrier.boundary != "half-space" else {}
     return {**written, "material": _material(barrier.material)}
+
+
+def _impact(impact: Impact) -> dict[str, Any]:
+    """Write the velocities as they are stated."""
+    stated = ("angle", *impact.stated, "omega")
+    return _written(
+        impact, tuple(p for p in (*fields.IMPACT, fields.HEIGHT, fields.SPEED) if p.key in stated)
+    )
 
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:

@@ -51,13 +51,14 @@ def _yield(body: str, stress: float) -> dict[str, Any]:
     return {f"{body}.material.{key}": f"{stress} MPa" for key in ("yield_stress", "ultimate_stress")}
 
 
+_FALL = {"impact.v_n": "-1.5024 m/s", "impact.v_t": "-1.4821 m/s"}  # of the base scene, at every angle
 DESIGNED: Mapping[str, Mapping[str, Any]] = {
     "short-slow": {"projectile.length": "40 mm", **_speed(0.2)},
     "short-fast": {"projectile.length": "40 mm", **_speed(8.0)},
     "long-slow": {"projectile.length": "200 mm", **_speed(0.2)},
     "long-fast": {"projectile.length": "200 mm", **_speed(8.0)},
-    "low-angle": {"impact.angle": "5 deg"},
-    "high-angle": {"impact.angle": "75 deg"},
+    "low-angle": {"impact.angle": "5 deg", **_FALL},
+    "high-angle": {"impact.angle": "75 deg", **_FALL},
     "axial": {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "projectile.tip": "A"},
     "slippery": {"surface.friction": 0.0},
     "soft-plate": _yield("barrier", 80.0),

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
 from fem_impact.reference.free_modes import bending_period
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Impact, Save, Scene, Surface
+from fem_impact.scene.types import Save, Scene, Surface
 from rigid.slenderness import EXPONENT
 
 PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}

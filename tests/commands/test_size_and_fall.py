@@ -5,6 +5,7 @@ import json
 import pytest
 
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import to_toml
 
 
 def test_check_tells_elements_memory_steps_and_time(cli):
@@ -36,26 +37,29 @@ def stop(*_, **__):
 
 
 OLD = "v_n and v_t are those of the old angle"
+BESIDE = "which no dropped rod does"
 
 
 @pytest.mark.parametrize("command", ["check", "run"])
-def test_a_new_angle_with_the_old_fall_is_told_with_the_fall_at_the_new_one(cli, command):
+def test_a_fall_at_a_new_angle_stays_a_fall_and_the_user_is_told(cli, command):
     rigid = () if command == "check" else ("--fidelity", "rigid")
     _, out, err = cli(command, "t5b", "--set", "impact.angle=30 deg", *rigid)
-    assert (
-        OLD in err
-        and "impact.v_n='-1.828 m/s'" in err
-        and "which no dropped rod does" in " ".join(out.split())
-    )
-    fall = ("--set", "impact.v_n=-1.828 m/s", "--set", "impact.v_t=-1.055 m/s")
-    _, out, err = cli(command, "t5b", "--set", "impact.angle=30 deg", *fall, *rigid)
-    assert OLD not in err and "which no dropped rod does" not in " ".join(out.split())
+    assert "along its axis as fast as before, 2.11 m/s" in err and BESIDE not in " ".join(out.split())
+
+
+def test_velocities_beside_the_axis_are_kept_at_a_new_angle_and_the_user_is_told(cli, tmp_path):
+    mine = tmp_path / "mine.toml"
+    mine.write_text(to_toml(replace_all(load("t5b"), {"impact.angle": "30 deg", "impact.v_n": "-1.5 m/s"})))
+    _, out, err = cli("check", str(mine), "--set", "impact.angle=20 deg")
+    assert OLD in err and "impact.speed='2.109 m/s'" in err and BESIDE in " ".join(out.split())
+    _, out, err = cli("check", str(mine), "--set", "impact.angle=20 deg", "--set", "impact.speed=2.107 m/s")
+    assert not err and BESIDE not in " ".join(out.split())
 
 
 def test_the_outcome_keeps_the_doubt(cli):
     from fem_impact.run.simulate import simulate
 
-    scene = replace_all(load("t5b"), {"impact.angle": "30 deg"})
+    scene = replace_all(load("t5b"), {"impact.angle": "30 deg", "impact.v_n": "-1.5024 m/s"})
     assert any("15 deg beside its axis" in s for s in simulate(scene, "rigid").validity.outside)
 
 

@@ -12,11 +12,12 @@ from hypothesis import strategies as st
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import SceneError
 from fem_impact.scene.fields import Boundary, Element, YieldingElement
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
+from fem_impact.scene.types import Accuracy, Barrier, ProjectileSpec, Save, Scene, Surface
 from fem_impact.scene.write import digest, to_dict, to_toml
 
 LINEAR = Material("linear", 206e9, 0.29, 7850.0, 300e6, 400e6, hardening=2e9)
@@ -32,6 +33,12 @@ def scenes(draw):
     rod = ProjectileSpec(diameter * draw(st.floats(1.0, 20.0)), diameter, tip, radius, draw(STEELS))
     angle = draw(st.floats(0.0, math.pi / 2, exclude_max=True))
     speed = st.floats(-300.0, -1e-6)
+    spin = draw(st.floats(-100, 100))
+    motions = [
+        Impact(angle, draw(speed), draw(speed), spin),
+        Impact.dropped(draw(st.floats(0.0, 1.5)), draw(st.floats(1e-9, 1e4)), spin),
+        Impact.thrown(draw(st.floats(0.0, 1.5)), draw(st.floats(1e-3, 500.0)), spin),
+    ]
     listed = (draw(st.sampled_from(BARRIERS)), *draw(st.sets(st.sampled_from(OPTIONAL))))
     effects = draw(st.sampled_from([listed, ("auto",), ("auto", "barrier-elastic", "-gravity")]))
     custom = st.floats(0.0, 3.0).map(lambda f: Surface("custom", f, f / 2, 2 * f, 'a \\ "guess" in é'))
@@ -41,7 +48,7 @@ def scenes(draw):
         projectile=rod,
         barrier=Barrier(draw(STEELS), draw(st.sampled_from(get_args(Boundary)))),
         surface=draw(st.one_of(custom, st.sampled_from(list(surfaces().values())))),
-        impact=Impact(angle, draw(speed), draw(speed), draw(st.floats(-100, 100))),
+        impact=draw(st.sampled_from(motions)),
         effects=effects,
         accuracy=Accuracy(
             *(draw(st.one_of(st.none(), st.floats(1e-4, 1e-3))) for _ in range(2)),
@@ -135,7 +142,8 @@ def test_a_title_says_that_its_set_was_changed():
     stated = load("t5b")
     assert replace(stated, "surface.friction", 0.3).title == stated.title
     changed = replace(replace(stated, "impact.angle", "20 deg"), "projectile.length", "100 mm")
-    assert changed.title == f"{stated.title} (changed)"
+    assert changed.title == "t5b, changed: impact.angle = 20 deg, projectile.length = 100 mm"
+    assert replace_all(stated, {"title": "mine", "impact.angle": "20 deg"}).title == "mine"
 
 
 def test_changes_are_checked_together():

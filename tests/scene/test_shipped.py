@@ -8,10 +8,11 @@ import pytest
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials, shipped, source_of, stated_keys, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace
-from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Impact, Save
+from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save
 from fem_impact.scene.write import to_dict
 from rigid.experiments import measured_set, set_ids
 

@@ -1,0 +1,105 @@
+"""The motion at first contact, stated in one of three ways: by a height, a speed or two velocities."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from math import atan2, cos, hypot, isclose, radians, sin, sqrt
+from typing import Any
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields
+from fem_impact.scene.checks import check_numbers
+
+BESIDE = radians(2.0)  # rad between velocity and axis of a dropped rod at most; of the measured ones .017
+WAYS = (("height",), ("speed",), ("v_n", "v_t"))
+"""The keys of each way to state how fast the rod comes."""
+_KEEP = "Give a height, or a speed along the rod's axis, or v_n and v_t, and keep one of them."
+
+
+@dataclass(frozen=True, slots=True)
+class Impact:
+    """Motion at first contact: angle in rad, v_n and v_t of the mass centre in m/s, omega in rad/s.
+
+    Where the velocities follow from a ``height``, m, or a ``speed``, m/s, that is kept beside them: make such
+    an impact by `Impact.dropped` or `Impact.thrown`.
+    """
+
+    angle: float
+    v_n: float
+    v_t: float
+    omega: float = 0.0
+    height: float | None = None
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        check_numbers(self, (*fields.IMPACT, fields.HEIGHT, fields.SPEED))
+        if self.height is None and self.speed is None:
+            return
+        speed = self.speed if self.height is None else _fallen(self.height)
+        wanted = _along(self.angle, speed) if speed and None in (self.height, self.speed) else (0.0, 0.0)
+        if not all(isclose(a, b, rel_tol=1e-9) for a, b in zip(wanted, (self.v_n, self.v_t), strict=True)):
+            raise SceneError("does not belong to its v_n and v_t.", key=self.stated[0], remedy=_KEEP)
+
+    @classmethod
+    def dropped(cls, angle: float, height: float, omega: float = 0.0) -> Impact:
+        """Return the impact of a rod that fell from rest by ``height``, m, along its axis: v^2 = 2 g h."""
+        return cls(angle, *_along(angle, _fallen(fields.HEIGHT.checked(height))), omega, height=height)
+
+    @classmethod
+    def thrown(cls, angle: float, speed: float, omega: float = 0.0) -> Impact:
+        """Return the impact of a rod that moves along its axis at ``speed``, m/s."""
+        return cls(angle, *_along(angle, fields.SPEED.checked(speed)), omega, speed=speed)
+
+    @property
+    def stated(self) -> tuple[str, ...]:
+        """The keys by which its velocities are stated, one of `WAYS`."""
+        return next((way for way in WAYS[:2] if getattr(self, way[0]) is not None), WAYS[2])
+
+    @property
+    def beside(self) -> float:
+        """Angle, rad, from the rod's axis to its velocity; about 0 for a rod that was dropped."""
+        return atan2(-self.v_t, -self.v_n) - self.angle
+
+
+def _fallen(height: float) -> float:
+    from rigid import GRAVITY
+
+    return sqrt(2 * GRAVITY * height)
+
+
+def _along(angle: float, speed: float) -> tuple[float, float]:
+    return -speed * cos(angle), -speed * sin(angle)
+
+
+def the_way(keys: Collection[str]) -> tuple[str, ...]:
+    """Return the way by which a table with these keys states the velocities.
+
+    Raises
+    ------
+    SceneError
+        If there is none, or more than one.
+    """
+    given = [way for way in WAYS if set(way) & set(keys)]
+    if len(given) == 1:
+        return given[0]
+    names = " and by ".join(" and ".join(key for key in way if key in keys) for way in given)
+    problem = f"states the velocity twice, by {names}." if given else "does not say how fast the rod comes."
+    raise SceneError(problem, remedy=_KEEP)
+
+
+def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> dict[str, Any]:
+    """Return the table of a changed impact, in which the changed keys state the velocities.
+
+    A new height or speed takes the place of velocities, and they of it. A new angle alone leaves a fall a
+    fall: a rod that came along its axis still does, as fast as before.
+    """
+    new = set(changed)
+    if not new & {key for way in WAYS for key in way}:
+        if "angle" not in new or old.stated != WAYS[2] or abs(old.beside) > BESIDE:
+            return table
+        table, new = {**table, "speed": fields.SPEED.write(hypot(old.v_n, old.v_t))}, {"speed"}
+    kept = {key for way in WAYS if set(way) & new for key in way}
+    others = {key for way in WAYS for key in way} - kept
+    both = {p.key: p.write(getattr(old, p.key)) for p in (fields.V_N, fields.V_T) if p.key in kept - new}
+    return {**both, **{key: value for key, value in table.items() if key not in others}}
