@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def number(scene: Scene) -> float:
     """Return g (tau + T1) over the impact speed; a second contact comes about T1 after the first."""
     duration = contact_estimate(bodies_of(scene)).duration + bending_period(scene)
-    return GRAVITY * duration / hypot(scene.impact.v_n, scene.impact.v_t)
+    return GRAVITY * duration / hypot(scene.relative.v_n, scene.relative.v_t)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 def number(scene: Scene) -> float:
     """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter).
 
-    Nothing leaves a block with fixed faces.
+    Nothing leaves a block with fixed faces, and what leaves a plate that bends are bending waves.
     """
-    if scene.barrier.boundary == "fixed":
+    if scene.barrier.boundary == "fixed" or scene.barrier.bends:
         return 0.0
     plate = scene.barrier.material
     return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
@@ -34,8 +34,15 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
     Raises
     ------
     SceneError
-        If the block's faces are fixed.
+        If the block's faces are fixed, or the barrier is a plate that bends.
     """
+    if scene.barrier.bends:
+        raise SceneError(
+            "lets bending waves out, which are the effect plate-bending, not radiation into a half-space.",
+            key="barrier.support",
+            value="infinite",
+            remedy='Leave "radiation" out of the effects.',
+        )
     if scene.barrier.boundary == "fixed":
         raise SceneError(
             "lets no waves out, which radiation asks for.",

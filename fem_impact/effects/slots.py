@@ -26,6 +26,7 @@ class ModelSpec:
     skin : hardened layer of the surfaces, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
+    plate : impedance of a plate that bends, N s/m, or None
     gravity : acceleration, m/s2, or None
     loss_factor : of the rod's vibration, or None
     heat : the contact's heat is computed
@@ -39,6 +40,7 @@ class ModelSpec:
     skin: Skin | None = None
     meshed_barrier: bool = False
     radiating: bool = False
+    plate: float | None = None
     gravity: float | None = None
     loss_factor: float | None = None
     heat: bool = False

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
+from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import POINTS, Geometry, build_geometry, rest_mass
@@ -146,7 +147,8 @@ class MeshedBodies:
     @cached_property
     def layout(self) -> DofLayout:
         """Return the numbering of the unknowns."""
-        return number(self.geometry.rod, self.geometry.barrier)
+        gives_way = self.scene.barrier.mass is not None or self.spec.plate is not None
+        return number(self.geometry.rod, self.geometry.barrier, gives_way)
 
     @cached_property
     def rest_mass(self) -> float:
@@ -237,12 +239,33 @@ class MeshedBodies:
         mass = assemble_masses(self.bodies, self.layout)
         if not self.spec.vibrating:
             mass[self.layout.rod[-POINTS:]] = self.rest_mass / POINTS
+        if self.scene.barrier.mass is not None:
+            mass[self.layout.footing] = self.rest_of_barrier(self.scene.barrier.mass, mass)
         return mass
+
+    def rest_of_barrier(self, whole: float, mass: Array) -> float:
+        """Return half of what a free barrier of mass ``whole``, kg, has beside its block's (size,) ``mass``.
+
+        Raises
+        ------
+        SceneError
+            If the block alone is heavier.
+        """
+        block = 2 * float(mass[self.layout.barrier_slice].sum()) / 3
+        if whole <= block:
+            raise SceneError(
+                f"is less than that of its meshed block, {block:.3g} kg.",
+                key="barrier.mass",
+                value=f"{whole:.3g} kg",
+                remedy="Give a smaller accuracy.block_margin, or the effect barrier-rigid.",
+            )
+        return 0.5 * (whole - block)
 
     @cached_property
     def inverse_mass(self) -> Array:
         """Return the inverse lumped masses (size,), 1/kg, 0 where an unknown is fixed."""
         inverse = invert(self.mass, self.bodies)
+        inverse[self.layout.footing[1:2]] = 0.0  # symmetry
         if self.barrier and self.scene.barrier.boundary == "fixed":
             inverse[self.barrier.places[np.unique(self.barrier.mesh.faces_with(OUTER))]] = 0.0
         return inverse

@@ -19,7 +19,7 @@ class DofLayout:
     """Indices of all degrees of freedom in one flat vector.
 
     Order: rod slices as (component, section node, layer) so that a layer's neighbours are contiguous,
-    free nose nodes, free barrier nodes, hanging nodes, one dummy element that fills up blocks.
+    free nose nodes, free barrier nodes, hanging nodes, the footing, one dummy element that fills up blocks.
 
     Attributes
     ----------
@@ -28,6 +28,7 @@ class DofLayout:
     body_shape : number of rows (3 * section nodes) and of layers of the slices
     rod_size, free_size, size : ends of the rod's free part, of all free parts, of the vector
     dummy : (8, 3) int64, indices of the dummy element's unknowns
+    footing : (3,) int64, indices of the barrier's motion as a whole; (0,) where it is massive
     """
 
     rod: Ints
@@ -37,6 +38,7 @@ class DofLayout:
     free_size: int
     size: int
     dummy: Ints
+    footing: Ints
 
     @property
     def barrier_slice(self) -> slice:
@@ -54,8 +56,8 @@ def _triples(start: int, count: int) -> Ints:
     return start + np.arange(3 * count, dtype=np.int64).reshape(count, 3)
 
 
-def number(rod: RodMesh, barrier: HexMesh | None) -> DofLayout:
-    """Return the numbering of a rod and, if meshed, its barrier."""
+def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False) -> DofLayout:
+    """Return the numbering of a rod and, if meshed, its barrier, which a ``footing`` lets move as a whole."""
     n_section, n_layers = rod.body_nodes.shape
     places = np.full((len(rod.mesh.points), 3), -1, dtype=np.int64)
     grid = np.arange(3 * n_section * n_layers, dtype=np.int64).reshape(3, n_section, n_layers)
@@ -71,8 +73,9 @@ def number(rod: RodMesh, barrier: HexMesh | None) -> DofLayout:
     places[rod.mesh.is_hanging] = _triples(free_size, n_hanging)
     block[hanging_barrier] = _triples(free_size + 3 * n_hanging, int(hanging_barrier.sum()))
     end = free_size + 3 * (n_hanging + int(hanging_barrier.sum()))
-    shape = (3 * n_section, n_layers)
-    return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8))
+    whole = end + np.arange(3 * footing, dtype=np.int64)
+    end, shape = end + len(whole), (3 * n_section, n_layers)
+    return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8), whole)
 
 
 # section coordinate, x (0) or y (1), in which motions along t, b, n are linear: motions symmetric about the

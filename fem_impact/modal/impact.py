@@ -12,11 +12,14 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import (
+    BASE_N,
+    BASE_T,
     HARDEST,
     MOST_CONTACTS,
     NOTHING,
     PEAK,
     WORK_G,
+    WORK_P,
     WORK_T,
     Bounds,
     ModalEnd,
@@ -45,6 +48,8 @@ class ModalResult:
     V_n, V_t, Omega : after the last separation, what gravity gave in contact removed, m/s, rad/s
     E_0, kinetic, friction, plastic, stored, residual : J, of the whole rod; kinetic is the rigid motion's,
         stored what the contact still holds elastically where the run was cut off
+    plate : work on a plate that bends, J; ``barrier`` : what the motion of a free barrier holds, J
+    V_bn, V_bt : velocity of the barrier, m/s, as seen from where it was before
     fallen : what gravity added to these and to the vibration, J
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
@@ -63,6 +68,10 @@ class ModalResult:
     friction: float
     plastic: float
     stored: float
+    plate: float
+    barrier: float
+    V_bn: float
+    V_bt: float
     residual: float
     fallen: float
     contacts: Array
@@ -101,7 +110,10 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
     # the contact gives back what it stores: the normal force by itself, the springs out of friction
     plastic, friction = plastic_work(law, tally[PEAK]), -tally[WORK_T] - end.held[1]
-    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held)
+    base_n, base_t = end.motion.rigid[[BASE_N, BASE_T]]
+    barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
+    given = barrier + tally[WORK_P]
+    spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held) + given
     fell = fall(plan.slots.gravity, end.time, contacts[: end.touches, :2])
     V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
@@ -116,6 +128,10 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
         friction=friction,
         plastic=plastic,
         stored=sum(end.held),
+        plate=tally[WORK_P],
+        barrier=barrier,
+        V_bn=base_n,
+        V_bt=base_t,
         residual=E_0 + tally[WORK_G] - spent,
         fallen=tally[WORK_G] + kinetic - _kinetic(rod, *motion),
         contacts=contacts[: end.touches],
@@ -168,7 +184,8 @@ def reach(law: ContactLaw, energy: float) -> float:
 
 
 def _start(plan: Plan, rod: ModalRod) -> Start:
-    g, impact = plan.slots.gravity or 0.0, plan.scene.impact
+    g, impact = plan.slots.gravity or 0.0, plan.scene.relative
+    mass = plan.scene.barrier.mass
     return Start(
         rod.mass,
         rod.k2,
@@ -180,6 +197,8 @@ def _start(plan: Plan, rod: ModalRod) -> Start:
         impact.omega,
         -g * sin(impact.angle),
         -g * cos(impact.angle),
+        1 / mass if mass else 0.0,
+        1 / plan.slots.plate if plan.slots.plate else 0.0,
     )
 
 

@@ -20,13 +20,18 @@ SPRINGS = 100
 LOOK = 8  # steps between looks at the rod's other points
 TILT = 0.5  # of the largest depth: a face has tipped over where an edge is so much lower than its middle
 
-V_N, V_T, SPIN, HEIGHT, ALONG, TURN = range(6)  # of the rigid motion: m/s, m/s, rad/s, m, m, rad
-PEAK, HARDEST, WORK_N, WORK_T, WORK_G = range(5)  # of the tally: m, N, J, J, J
+# of the rigid motion: m/s, m/s, rad/s, m and m from the barrier, rad; the barrier's velocities, m/s
+V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T = range(8)
+PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P = range(6)  # of the tally: m, N, J, J, J, J
 NOTHING, TIP = -1, -2  # of what strikes
 
 
 class Start(NamedTuple):
-    """Rigid rod at first contact: kg, m2, m, m/s, rad/s, m/s2 along t and n."""
+    """Rigid rod at first contact: kg, m2, m, m/s, rad/s, m/s2 along t and n.
+
+    ``lightness`` is 1 / the barrier's mass, 1/kg; ``give`` is 1 / the impedance of a plate that bends,
+    m/(N s); both are 0 for a massive barrier.
+    """
 
     mass: float
     k2: float
@@ -38,6 +43,8 @@ class Start(NamedTuple):
     omega: float
     g_t: float
     g_n: float
+    lightness: float = 0.0
+    give: float = 0.0
 
 
 class Modes(NamedTuple):
@@ -79,7 +86,7 @@ class Bounds(NamedTuple):
 
 
 class ModalState(NamedTuple):
-    """What moves: (6,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
+    """What moves: (8,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
 
     rigid: Array
     q: Array
@@ -99,7 +106,8 @@ class ModalEnd(NamedTuple):
 
     Attributes
     ----------
-    motion : then; tally : (5,) largest depth and force, works of normal force, tangential force and gravity
+    motion : then
+    tally : (6,) largest depth and force, works of the contact along n and t, of gravity, on a plate
     held : energy in the contact and in its springs, J, 0 but for a run that was cut off
     time, steps, touches : s, number of steps, of contacts
     struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s
@@ -230,8 +238,8 @@ def fly(
     """Move on by a step of free flight; return the work of gravity, J/kg."""
     (rigid, q, rate), (cosine, sine) = now, turns
     lift = g_n * (rigid[V_N] + 0.5 * dt * g_n) + g_t * (rigid[V_T] + 0.5 * dt * g_t)
-    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n)
-    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t)
+    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[BASE_N])
+    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[BASE_T])
     rigid[TURN] += dt * rigid[SPIN]
     rigid[V_N] += dt * g_n
     rigid[V_T] += dt * g_t
@@ -252,9 +260,13 @@ def push(
     p_t: float,
     tally: Array,
 ) -> None:
-    """Change the motion by an impulse at the followed point, N s, and book its work."""
+    """Change the motion by an impulse at the followed point, N s, and book its work on both bodies."""
     (c, s, arm_t, arm_n), (rigid, _, rate) = arm, now
     w_n, w_t = rigid[V_N] - rigid[SPIN] * arm_t, rigid[V_T] + rigid[SPIN] * arm_n
+    w_n -= 2 * rigid[BASE_N] - p_n * start.lightness
+    w_t -= 2 * rigid[BASE_T] - p_t * start.lightness
+    rigid[BASE_N] -= p_n * start.lightness
+    rigid[BASE_T] -= p_t * start.lightness
     rigid[V_N] += p_n / start.mass
     rigid[V_T] += p_t / start.mass
     rigid[SPIN] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
@@ -320,6 +332,8 @@ def touch(
     """
     p_n, p_t = span * force[0], -span * grip(springs, moved, force[0], force[1], law)
     push(now, start, modes, arm, p_n, p_t, tally)
+    now.rigid[HEIGHT] += p_n * start.give  # a plate sinks away under the force
+    tally[WORK_P] += p_n * force[0] * start.give
     tally[HARDEST] = max(tally[HARDEST], force[0])
     return p_n, p_t
 
@@ -332,9 +346,9 @@ def drop(
 
     ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.
     """
-    dt, k, tally = bounds.step, len(modes.omega), np.zeros(5)
+    dt, k, tally = bounds.step, len(modes.omega), np.zeros(6)
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
-    rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0])
+    rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0, 0.0, 0.0])
     now = ModalState(rigid, np.zeros(k), np.zeros(k))
     springs = springs_over(bounds.reach)
     gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), start.centre_t, False, 0.0

@@ -13,9 +13,10 @@ from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.march import Others
 from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
 from fem_impact.plan.plan import plan
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.types import Accuracy, Barrier, ProjectileSpec, Scene, Surface
+from fem_impact.scene.types import Accuracy, ProjectileSpec, Scene, Surface
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine

@@ -117,6 +117,23 @@ class RodMotion:
 
 
 @group
+class BarrierMotion:
+    """The barrier as a whole, before and after the impact; the rod's velocities are in the same frame."""
+
+    mass: Num = key("barrier_mass_kg", "kg", "Mass of a barrier that is free to move.")
+    v_bn: float = key("v_bn_m_per_s", "m/s", "Normal velocity of the barrier at first contact.")
+    v_bt: float = key("v_bt_m_per_s", "m/s", "Tangential velocity of the barrier at first contact.")
+    V_bn: float = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.")
+    V_bt: float = key("V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.")
+    momentum_error: Num = key(
+        "momentum_error",
+        "-",
+        "Change of the momentum of rod and barrier together, less gravity's part, over the rod's at first "
+        "contact as seen from the barrier.",
+    )
+
+
+@group
 class ArmCoefficients:
     """Coefficients and losses by rigid impulse-momentum theory with one set of contact arms."""
 
@@ -147,7 +164,11 @@ class Restitution:
 class Energy:
     """Where the energy at first contact is after the last separation: E_0 in J, the rest as shares of it."""
 
-    E_0: float = key("E_0_J", "J", "Kinetic energy of the whole rod at first contact.")
+    E_0: float = key(
+        "E_0_J",
+        "J",
+        "Kinetic energy of the whole rod at first contact. It is that seen from a moving barrier.",
+    )
     rigid: Num = key(
         "E_r_over_E_0",
         "-",
@@ -192,6 +213,13 @@ class Energy:
     )
     radiated: Num = key(
         "W_radiated_over_E_0", "-", "Energy radiated through the barrier's outer boundary" + SHARE, True
+    )
+    plate: Num = key("W_plate_over_E_0", "-", "Energy that bending waves carry away in a plate" + SHARE, True)
+    barrier: Num = key(
+        "E_barrier_over_E_0",
+        "-",
+        "Kinetic energy of a free barrier as a whole, as seen from where it was before" + SHARE,
+        True,
     )
     closing: Num = key(
         "W_closing_over_E_0",

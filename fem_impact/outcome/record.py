@@ -17,6 +17,7 @@ from fem_impact.files.atomic import read_text, write_text
 from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.outcome.check import SCHEMA_VERSION, check_record
 from fem_impact.outcome.groups import (
+    BarrierMotion,
     Contact,
     Energy,
     Heat,
@@ -59,6 +60,7 @@ class Outcome:
     provenance: Provenance
     validity: Validity
     motion: RodMotion
+    barrier: BarrierMotion
     restitution: Restitution
     energy: Energy
     contact: Contact

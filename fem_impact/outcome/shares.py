@@ -56,6 +56,8 @@ SHARES = (
     _share("E_locked_rod", "locked in rod", "sky", "figure", "comparison"),
     _share("E_locked_barrier", "locked in barrier", "orange", "figure", "comparison"),
     _share("W_radiated", "radiated", "yellow", "figure", "comparison"),
+    _share("W_plate", "bending of the plate", "yellow", "figure", "comparison"),
+    _share("E_barrier", "motion of the barrier", "sand", "figure", "comparison"),
     _share("W_closing", "contact closing", "grey", "figure"),
     _share("W_damping", "damping", "sand", "figure"),
     _share("E_contact", "held by the contact", "grey"),
@@ -87,6 +89,7 @@ ACCOUNTS = (
     LedgerAccount("E_strain_barrier_J", "strain barrier", "orange"),
     LedgerAccount("E_kinetic_barrier_J", "kinetic barrier", "sand"),
     LedgerAccount("W_radiated_J", "radiated", "yellow"),
+    LedgerAccount("W_plate_J", "bending of the plate", "yellow"),
     LedgerAccount("W_damping_J", "damping", "night"),
     LedgerAccount("W_closing_J", "contact closing", "grey"),
 )

@@ -127,7 +127,7 @@ def strike(bodies: ContactBodies, vibrating: bool, rate: bool, gravity: bool) ->
 def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> BeamImpact:
     """March in time, impulse of the contact force and exact flight in turn, until the rod has left."""
     scene = bodies.scene
-    rod, impact, (d_c, d_d) = projectile(scene), scene.impact, arms(scene)
+    rod, impact, (d_c, d_d) = projectile(scene), scene.relative, arms(scene)
     dt, inertia = contact_estimate(bodies).duration / STEPS, rod.mass * rod.k2
     g = GRAVITY * dt if gravity else 0.0
     flight = BeamFlight(modes, dt, d_c, (g * cos(impact.angle), g * sin(impact.angle)))

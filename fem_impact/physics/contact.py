@@ -100,12 +100,12 @@ def touch_point(scene: Scene) -> tuple[float, float]:
 
 def approach(scene: Scene) -> float:
     """Return the speed, m/s, at which the contact point comes towards the barrier, spin included."""
-    return -scene.impact.v_n - arms(scene)[0] * scene.impact.omega
+    return -scene.relative.v_n - arms(scene)[0] * scene.impact.omega
 
 
 def sliding(scene: Scene) -> float:
     """Return the velocity, m/s, of the contact point up the slope before the impact, spin included."""
-    return scene.impact.v_t - arms(scene)[1] * scene.impact.omega
+    return scene.relative.v_t - arms(scene)[1] * scene.impact.omega
 
 
 def fall(gravity: float | None, time: float, intervals: Array) -> float:
@@ -143,16 +143,27 @@ def section_frequency(scene: Scene) -> float:
     return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
 
 
+def reduced(scene: Scene) -> tuple[float, float]:
+    """Return mass, kg, and k^2, m2, of the relative motion of rod and barrier.
+
+    A free barrier of mass M that does not turn leaves the relative motion of mass centre and barrier the same
+    equations, with m M / (m + M) for m and unchanged m k^2.
+    """
+    rod, M = projectile(scene), scene.barrier.mass
+    share = 1.0 if M is None else 1 / (1 + rod.mass / M)
+    return rod.mass * share, rod.k2 / share
+
+
 def effective_mass(bodies: ContactBodies) -> float:
     """Return m*, kg, at least that of a frictionless contact."""
-    rod, (d_c, d_d) = projectile(bodies.scene), arms(bodies.scene)
-    frictionless = 1 + d_c**2 / rod.k2
-    return float(rod.mass / min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / rod.k2)))
+    (mass, k2), (d_c, d_d) = reduced(bodies.scene), arms(bodies.scene)
+    frictionless = 1 + d_c**2 / k2
+    return float(mass / min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / k2)))
 
 
 def start_energy(scene: Scene) -> float:
     """Return E_0, J."""
-    rod, impact = projectile(scene), scene.impact
+    rod, impact = projectile(scene), scene.relative
     return float(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2 + rod.k2 * impact.omega**2))
 
 

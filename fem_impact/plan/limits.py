@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
+from fem_impact.physics.plate import contact_time, least_span
 from fem_impact.scene import library
 from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.types import Scene
@@ -24,7 +25,7 @@ SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range."""
-    speed = round(math.hypot(scene.impact.v_n, scene.impact.v_t), 3)
+    speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     sentences = (
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
@@ -35,6 +36,7 @@ def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
         if scene.impact.omega
         else "",
         _steels(scene),
+        _barrier(scene),
         _surface(scene, active),
         _idealised(active),
     )
@@ -76,6 +78,13 @@ def _steels(scene: Scene) -> str:
     return "" if same else "outside the measured range: other materials than the measured steels"
 
 
+def _barrier(scene: Scene) -> str:
+    barrier = scene.barrier
+    ways = {"bent": barrier.bends, "was free": barrier.mass is not None, "moved": barrier.v_n or barrier.v_t}
+    found = [f"no measured barrier {way}" for way, stated in ways.items() if stated]
+    return f"outside the measured range: {' or '.join(found)}" if found else ""
+
+
 def _surface(scene: Scene, active: Collection[str]) -> str:
     known = library.surfaces().values()
     bare = replace(scene.surface, skin_depth=None, skin_factor=None)
@@ -105,6 +114,30 @@ def require_shallow(bodies: ContactBodies) -> None:
         )
 
 
+def require_plate(bodies: ContactBodies) -> None:
+    """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
+    barrier, estimate = bodies.scene.barrier, contact_estimate(bodies)
+    if not barrier.bends or barrier.thickness is None:
+        return
+    width, least = 2 * max(estimate.a_t, estimate.a_b), least_span(bodies)
+    if width > barrier.thickness:
+        raise SceneError(
+            f"is less than the width of the contact, {width * 1e3:.2g} mm: it is no local one, and the plate "
+            "would bulge under it.",
+            key="barrier.thickness",
+            value=f"{barrier.thickness * 1e3:.3g} mm",
+            remedy="Give a thicker plate or a lower speed.",
+        )
+    if barrier.span is not None and barrier.span < least:
+        raise SceneError(
+            f"is so short that bending waves are back after less than the contact of about "
+            f"{contact_time(bodies) * 1e6:.2g} us.",
+            key="barrier.span",
+            value=f"{barrier.span * 1e3:.3g} mm",
+            remedy=f"Give at least {least * 1e3:.3g} mm.",
+        )
+
+
 def require_approach(scene: Scene) -> None:
     """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
     speed = approach(scene)
@@ -114,5 +147,5 @@ def require_approach(scene: Scene) -> None:
             "another part would strike.",
             key="impact.omega",
             value=f"{scene.impact.omega:.3g} rad/s",
-            remedy=f"Keep it under {abs(scene.impact.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
+            remedy=f"Keep it under {abs(scene.relative.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
         )

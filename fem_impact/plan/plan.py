@@ -12,7 +12,7 @@ from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.cells import coarse_tip
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.limits import require_approach, require_shallow, validity
+from fem_impact.plan.limits import require_approach, require_plate, require_shallow, validity
 from fem_impact.plan.metals import unknowns
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, require_layer, zones_of
@@ -84,6 +84,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
     bodies = bodies_of(in_model)
+    require_plate(bodies)
     slots, zones = ModelSpec(), zones_of(bodies)
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import cos, inf, sin
+from dataclasses import replace
+from math import cos, hypot, inf, sin
 from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.arrays import Array
 from fem_impact.outcome.groups import (
     ArmCoefficients,
+    BarrierMotion,
     EffectChoice,
     Heat,
     Provenance,
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
+MASSIVE = Unknown("the barrier is massive")
+UNBENT = Unknown("the plate-bending effect is off")
 HARDER = Unknown("the contact law lets the softer body alone flow: what the harder one takes is in its share")
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
@@ -133,7 +137,10 @@ def _gained(speed: float, share: float) -> str:
 
 
 def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
-    """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2)."""
+    """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2).
+
+    ``V_n`` and ``V_t`` are those seen from the barrier as it was before the impact.
+    """
     scene = plan.scene
     return RodMotion(
         friction=plan.bodies.f,
@@ -143,42 +150,83 @@ def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: fl
         gamma=projectile(scene).gamma,
         v_n=scene.impact.v_n,
         v_t=scene.impact.v_t,
-        V_n=float(V_n),
-        V_t=float(V_t),
+        V_n=float(V_n) + scene.barrier.v_n,
+        V_t=float(V_t) + scene.barrier.v_t,
         Omega=float(Omega),
     )
 
 
-def restitution(scene: Scene, motion: RodMotion, fallen: float = 0.0) -> Restitution:
-    """Return impulse ratios, and the coefficients with the three sets of arms.
+def barrier_motion(scene: Scene, base_n: float, base_t: float, error: Num) -> BarrierMotion:
+    """Return the motion of the barrier; ``base_n`` and ``base_t``, m/s, are what the impact added to it."""
+    barrier = scene.barrier
+    return BarrierMotion(
+        mass=MASSIVE if barrier.mass is None else barrier.mass,
+        v_bn=barrier.v_n,
+        v_bt=barrier.v_t,
+        V_bn=barrier.v_n + float(base_n),
+        V_bt=barrier.v_t + float(base_t),
+        momentum_error=MASSIVE if barrier.mass is None else error,
+    )
+
+
+def momentum_error(
+    scene: Scene, motion: RodMotion, base_n: float, base_t: float, fallen: float = 0.0
+) -> float:
+    """Return the change of the momentum of rod and free barrier over that of the rod before.
+
+    ``fallen``, m/s, is what gravity gave the rod in flights between contacts, which is taken out.
+    """
+    before, alpha, M = scene.relative, scene.impact.angle, scene.barrier.mass or 0.0
+    gained_n = motion.mass * (motion.V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
+    gained_t = motion.mass * (motion.V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
+    return hypot(gained_n, gained_t) / (motion.mass * hypot(before.v_n, before.v_t))
+
+
+def as_on_massive(scene: Scene, motion: RodMotion, barrier: BarrierMotion) -> RodMotion:
+    """Return the motion relative to the barrier, of the mass and k^2 that a massive one would have met so."""
+    share = 1.0 if scene.barrier.mass is None else 1 / (1 + motion.mass / scene.barrier.mass)
+    return replace(
+        motion,
+        mass=motion.mass * share,
+        k_squared=motion.k_squared / share,
+        v_n=motion.v_n - barrier.v_bn,
+        v_t=motion.v_t - barrier.v_bt,
+        V_n=motion.V_n - barrier.V_bn,
+        V_t=motion.V_t - barrier.V_bt,
+    )
+
+
+def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen: float = 0.0) -> Restitution:
+    """Return impulse ratios, and the coefficients with the three sets of arms, of the relative motion.
 
     ``fallen`` is the speed, m/s, that gravity gave the rod in flights between contacts: a part of the motion,
     but no impulse.
     The centre of the impulse is the point at the height of the geometric contact where the moment
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
-    (d_c, d_d), omega, m = arms(scene), scene.impact.omega, motion
+    (d_c, d_d), omega, m = arms(scene), scene.impact.omega, as_on_massive(scene, motion, barrier)
     before = m.v_n, m.v_t
     e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
     spin, alpha = m.k_squared * (m.Omega - omega), scene.impact.angle
     centre = (spin + d_d * (m.V_t - m.v_t)) / (m.V_n - m.v_n)
     table = measured_set(scene.measured).arms if scene.measured else None
+    E_0 = float(rigid.kinetic_energy(m.v_n, m.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     return Restitution(
         mu=float(rigid.impulse_ratio(*before, m.V_n + fallen * cos(alpha), m.V_t + fallen * sin(alpha))),
         mu_c=float(rigid.critical_ratio(*before, e=e, d_c=d_c, d_d=d_d, k2=m.k_squared, omega=omega)),
-        paper=_with_arms(float(table.d_c), float(table.d_d), omega, m)
+        paper=_with_arms(float(table.d_c), float(table.d_d), omega, m, E_0)
         if table
         else unknown(ArmCoefficients, NO_TABLE),
-        edge=_with_arms(d_c, d_d, omega, m),
-        impulse=_with_arms(centre, d_d, omega, m),
+        edge=_with_arms(d_c, d_d, omega, m, E_0),
+        impulse=_with_arms(centre, d_d, omega, m, E_0),
     )
 
 
-def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoefficients:
-    """Return coefficients and losses with one set of arms, m."""
+def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -> ArmCoefficients:
+    """Return coefficients and losses over E_0, J, with one set of arms, m."""
     velocities = (m.v_n, m.v_t, m.V_n, m.V_t, m.Omega)
     body = {"d_c": d_c, "d_d": d_d, "k2": m.k_squared, "omega": omega}
-    lost = rigid.losses(*velocities, **body, mass=m.mass).fractions()
+    lost = rigid.losses(*velocities, **body, mass=m.mass)
     e: Num = UNDETERMINED
     e_m: Num = UNDETERMINED
     if m.v_n + d_c * omega < 0:
@@ -186,7 +234,9 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion) -> ArmCoeffic
         e, moment = float(found.e), d_c * (m.V_n - m.v_n) - d_d * (m.V_t - m.v_t) + m.k_squared * omega
         if abs(moment) > ROUND_OFF * d_d * (m.V_n - m.v_n):
             e_m = float(found.e_m)
-    return ArmCoefficients(d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln), E_lt=float(lost.E_lt))
+    return ArmCoefficients(
+        d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln) / E_0, E_lt=float(lost.E_lt) / E_0
+    )
 
 
 def plastic_shares(bodies: ContactBodies, share: float) -> tuple[Num, Num]:

@@ -14,7 +14,11 @@ from fem_impact.physics.contact import between
 from fem_impact.plan.measured import summary
 from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
+    MASSIVE,
+    UNBENT,
+    barrier_motion,
     gravity_warning,
+    momentum_error,
     motion,
     open_ledger,
     plastic_shares,
@@ -38,7 +42,9 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     rod, scene, contacts = result.rod, plan.scene, result.contacts[:, :2]
     moved = motion(plan, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
     fallen = (plan.slots.gravity or 0.0) * between(contacts)
-    coefficients, energy = restitution(scene, moved, fallen), _energy(plan, result)
+    base = result.V_bn, result.V_bt
+    struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base, fallen))
+    coefficients, energy = restitution(scene, moved, struck, fallen), _energy(plan, result)
     origin = provenance(plan, CHOICES, WITHOUT)
     failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
     return Outcome(
@@ -47,12 +53,13 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
             plan,
             result.finished and not failed,
             failed or result.reason,
-            result.V_n,
+            result.V_n - result.V_bn,
             "the reduced model has no second mesh",
             (*ASSUMPTIONS, *beside_solid(scene)),
             [*doubts(origin, moved, coefficients, energy), *gravity_warning(plan, contacts)],
         ),
         motion=moved,
+        barrier=struck,
         restitution=coefficients,
         energy=energy,
         contact=_contact(result),
@@ -79,6 +86,8 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         locked_rod=NO_STRESS,
         locked_barrier=NO_STRESS,
         radiated=Unknown("a local contact law sends no waves into the barrier"),
+        plate=result.plate / E_0 if plan.slots.plate else UNBENT,
+        barrier=result.barrier / E_0 if plan.scene.barrier.mass else MASSIVE,
         closing=Unknown("no contact nodes close"),
         damping=Unknown("the reduced model has no material damping"),
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),

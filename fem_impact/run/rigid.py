@@ -9,23 +9,36 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 import rigid
-from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RunCost
+from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import ContactBodies, approach, arms, effective_mass, projectile
+from fem_impact.physics.contact import ContactBodies, approach, arms, effective_mass, projectile, reduced
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
-from fem_impact.run.common import heat, motion, plastic_shares, provenance, restitution, validity
+from fem_impact.run.common import (
+    MASSIVE,
+    barrier_motion,
+    heat,
+    momentum_error,
+    motion,
+    plastic_shares,
+    provenance,
+    restitution,
+    validity,
+)
 from fem_impact.run.doubts import doubts
 
 if TYPE_CHECKING:
     from fem_impact.plan.plan import Plan
+    from fem_impact.scene.types import Scene
 
 
+STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
 UNKNOWN = "a rigid rod in an impact without duration does not know it"
 WITHOUT = (
-    *("vibration", "rate-hardening", "machined-skin", "radiation", "gravity", "large-rotation"),
+    *("vibration", "rate-hardening", "machined-skin", "radiation", "plate-bending", "gravity"),
+    "large-rotation",
     "material-damping",
 )
 ASSUMPTIONS = (
@@ -40,8 +53,11 @@ def rigid_outcome(plan: Plan) -> Outcome:
     e, source = _normal_restitution(plan.bodies)
     path, wall, cpu = _timed_path(plan.bodies, e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
-    moved, energy = motion(plan, V_n, V_t, Omega, rod.mass, rod.k2), _energy(plan.bodies, path, rod)
-    origin, coefficients = provenance(plan, Unknown(UNKNOWN), WITHOUT), restitution(scene, moved)
+    base = _barrier_gain(scene, V_n, V_t)
+    moved = motion(plan, V_n + base[0], V_t + base[1], Omega, rod.mass, rod.k2)
+    struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base))
+    energy = _energy(plan.bodies, path, moved, base)
+    origin, coefficients = provenance(plan, Unknown(UNKNOWN), WITHOUT), restitution(scene, moved, struck)
     warnings = doubts(origin, moved, coefficients, energy)
     return Outcome(
         provenance=origin,
@@ -51,10 +67,11 @@ def rigid_outcome(plan: Plan) -> Outcome:
             "A rigid impact is over at once.",
             V_n,
             UNKNOWN,
-            assumptions=(source, *ASSUMPTIONS),
+            assumptions=(source, *ASSUMPTIONS, *([STIFF_PLATE] if plan.slots.plate else [])),
             warnings=warnings,
         ),
         motion=moved,
+        barrier=struck,
         restitution=coefficients,
         energy=energy,
         contact=Contact(
@@ -65,11 +82,18 @@ def rigid_outcome(plan: Plan) -> Outcome:
     )
 
 
+def _barrier_gain(scene: Scene, V_n: float, V_t: float) -> tuple[float, float]:
+    """Return the velocity, m/s, that a free barrier gains where V_n, V_t is the rod's relative to it."""
+    mass, before = projectile(scene).mass, scene.relative
+    share = 0.0 if scene.barrier.mass is None else mass / (mass + scene.barrier.mass)
+    return -share * (V_n - before.v_n), -share * (V_t - before.v_t)
+
+
 def _timed_path(bodies: ContactBodies, e: float) -> tuple[rigid.SlidingPath, float, float]:
-    """Return the impact of energetic restitution e, and its wall and processor time, s."""
-    rod, impact, (d_c, d_d) = projectile(bodies.scene), bodies.scene.impact, arms(bodies.scene)
+    """Return the relative motion in an impact of energetic restitution e; wall and processor time, s."""
+    k2, impact, (d_c, d_d) = reduced(bodies.scene)[1], bodies.scene.relative, arms(bodies.scene)
     moving = partial(rigid.sliding_path, impact.v_n, impact.v_t, omega=impact.omega)
-    impulse = partial(moving, e=e, f=bodies.f, d_c=d_c, d_d=d_d, k2=rod.k2)
+    impulse = partial(moving, e=e, f=bodies.f, d_c=d_c, d_d=d_d, k2=k2)
     impulse()  # a first call is slow: the second is timed
     wall, cpu = time.perf_counter(), time.process_time()
     path = impulse()
@@ -97,11 +121,15 @@ def _normal_restitution(bodies: ContactBodies) -> tuple[float, str]:
     )
 
 
-def _energy(bodies: ContactBodies, path: rigid.SlidingPath, rod: rigid.Projectile) -> Energy:
-    impact = bodies.scene.impact
-    start = rigid.kinetic_energy(impact.v_n, impact.v_t, impact.omega, mass=rod.mass, k2=rod.k2)
-    end = rigid.kinetic_energy(*path.motion, mass=rod.mass, k2=rod.k2)
-    normal, tangential = (rod.mass * sum(w) for w in (path.normal_work, path.tangential_work))
+def _energy(
+    bodies: ContactBodies, path: rigid.SlidingPath, m: RodMotion, base: tuple[float, float]
+) -> Energy:
+    scene, before, body = bodies.scene, bodies.scene.relative, {"mass": m.mass, "k2": m.k_squared}
+    start = rigid.kinetic_energy(before.v_n, before.v_t, before.omega, **body)
+    end = rigid.kinetic_energy(m.V_n - scene.barrier.v_n, m.V_t - scene.barrier.v_t, m.Omega, **body)
+    pushed = 0.5 * (scene.barrier.mass or 0.0) * (base[0] ** 2 + base[1] ** 2)
+    mass = reduced(scene)[0]
+    normal, tangential = (mass * sum(w) for w in (path.normal_work, path.tangential_work))
     plastic_rod, plastic_barrier = plastic_shares(bodies, float(-normal / start))
     return replace(
         unknown(Energy, UNKNOWN),
@@ -110,5 +138,6 @@ def _energy(bodies: ContactBodies, path: rigid.SlidingPath, rod: rigid.Projectil
         friction=float(-tangential / start),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
-        residual=float((start + normal + tangential - end) / start),
+        barrier=MASSIVE if scene.barrier.mass is None else float(pushed / start),
+        residual=float((start + normal + tangential - end - pushed) / start),
     )

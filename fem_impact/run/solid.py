@@ -23,8 +23,12 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import between, fall
 from fem_impact.physics.flash import flash, halves
 from fem_impact.run.common import (
+    MASSIVE,
+    UNBENT,
+    barrier_motion,
     gravity_warning,
     heat,
+    momentum_error,
     motion,
     open_ledger,
     provenance,
@@ -58,14 +62,17 @@ def reduce(result: SolidResult) -> Outcome:
         raise RunError(f"There was no contact in {past}. {result.reason}")
     plan, moved = result.plan, _motion(result)
     fallen = (plan.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
-    coefficients, energy = restitution(plan.scene, moved, fallen), _energy(result, moved)
+    error = momentum_error(plan.scene, moved, *result.base, fallen)
+    struck = barrier_motion(plan.scene, *result.base, error)
+    coefficients, energy = restitution(plan.scene, moved, struck, fallen), _energy(result, moved)
     origin = provenance(plan, _choices(result))
     withheld = not is_resolved(result) and plan.scene.accuracy.unresolved == "withhold"
     doubted = [] if withheld else doubts(origin, moved, coefficients, energy)
     outcome = Outcome(
         provenance=origin,
-        validity=_validity(result, moved.V_n, doubted),
+        validity=_validity(result, moved.V_n - struck.V_bn, doubted),
         motion=moved,
+        barrier=struck,
         restitution=coefficients,
         energy=energy,
         contact=_contact(result, moved),
@@ -131,8 +138,10 @@ def _motion(result: SolidResult) -> RodMotion:
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
-    a, E_0 = result.accounts, result.E_0
-    kept = float(rigid.kinetic_energy(moved.V_n, moved.V_t, moved.Omega, mass=moved.mass, k2=moved.k_squared))
+    a, E_0, barrier = result.accounts, result.E_0, result.plan.scene.barrier
+    V_n, V_t, k2 = moved.V_n - barrier.v_n, moved.V_t - barrier.v_t, moved.k_squared
+    kept = float(rigid.kinetic_energy(V_n, V_t, moved.Omega, mass=moved.mass, k2=k2))
+    given = 0.5 * (barrier.mass or 0.0) * (result.base[0] ** 2 + result.base[1] ** 2)
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
     check = result.vibration_check
     locked = a["strain_rod"] - (check[1] if check else result.flight.strain)
@@ -153,8 +162,10 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         plastic_rod=share(a["plastic_rod"]),
         plastic_barrier=share(a["plastic_barrier"]),
         locked_rod=share(locked),
-        locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"]),
+        locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"] - given),
         radiated=share(a["radiated"]),
+        plate=share(a["plate"]) if result.plan.slots.plate else UNBENT,
+        barrier=share(given) if barrier.mass else MASSIVE,
         closing=share(a["closing"]),
         damping=_if_on("material-damping", result, share(a["damping"])),
         contact=Unknown("what a contact holds is strain energy of the meshed bodies"),

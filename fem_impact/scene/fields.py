@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError
@@ -203,12 +203,28 @@ OMEGA = Parameter(
     default=0.0,
     source="a rod dropped from rest does not turn (the paper, reducing Eq. 1 to Eq. 9)",
 )
-IMPACT = (ANGLE, V_N, V_T, OMEGA)
+IMPACT = (ANGLE, V_N, V_T, OMEGA)  # as seen from the barrier
+MOTION = (ANGLE, *(replace(p, low=-500.0, high=500.0, remedy="") for p in (V_N, V_T)), OMEGA)
 _GIVEN = "none: the velocities are stated in another way"
 HEIGHT = Parameter(
     "height", "height of fall along the rod's axis", "length", 1e-12, 1e4, derived=_GIVEN, unit="m"
 )
 SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
+_MASSIVE = "none: the barrier is massive"
+BARRIER = (
+    Parameter("thickness", "thickness of a plate", "length", 1e-5, 10.0, derived="none: a half-space"),
+    Parameter(
+        "span",
+        "shortest way across a plate struck in its middle",
+        "length",
+        1e-4,
+        1e4,
+        derived="none: no wave comes back",
+    ),
+    Parameter("mass", "mass of a barrier that is free to move", "mass", 1e-6, 1e9, derived=_MASSIVE),
+    Parameter("v_n", "velocity of the barrier along the normal", "speed", -500.0, 500.0, default=0.0),
+    Parameter("v_t", "velocity of the barrier up the slope", "speed", -500.0, 500.0, default=0.0),
+)
 ACCURACY = (
     Parameter(
         "tip_size",
@@ -288,6 +304,7 @@ ACCURACY = (
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
 YieldingElement = Literal["bbar", "full"]  # element of cells that may yield
+Support = Literal["backed", "infinite"]  # of a plate: bonded to a base, or free underneath and wide
 Boundary = Literal["half-space", "fixed"]  # of a meshed barrier's outer faces
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve
 MESH = ("tip_size", "across", "grid_shift")  # keys of accuracy that a target replaces

@@ -33,7 +33,7 @@ class Impact:
     speed: float | None = None
 
     def __post_init__(self) -> None:
-        check_numbers(self, (*fields.IMPACT, fields.HEIGHT, fields.SPEED))
+        check_numbers(self, (*fields.MOTION, fields.HEIGHT, fields.SPEED))
         if self.height is None and self.speed is None:
             return
         speed = self.speed if self.height is None else _fallen(self.height)

@@ -11,13 +11,13 @@ from typing import Any, TypeVar
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_names
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.types import (
     Accuracy,
-    Barrier,
     Heating,
     ProjectileSpec,
     Save,
@@ -150,9 +150,10 @@ def _projectile(table: Table) -> ProjectileSpec:
 
 
 def _barrier(table: Table) -> Barrier:
-    _check_keys(table, ("material", "boundary"))
-    given = {"boundary": table["boundary"]} if "boundary" in table else {}
-    return Barrier(_within(table, "material", _material), **given)
+    words = ("boundary", "support")
+    numbers = _numbers(table, fields.BARRIER, ("material", *words))
+    given = {key: table[key] for key in words if key in table}
+    return Barrier(_within(table, "material", _material), **numbers, **given)
 
 
 def _impact(table: Table) -> Impact:

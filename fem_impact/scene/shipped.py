@@ -100,7 +100,8 @@ def _bare(key: str) -> str:
 
 def _is_another_impact(key: str) -> bool:
     *path, last = key.split(".")
-    return (path in (["projectile"], ["impact"]) and last != "material") or key == "surface.state"
+    bodies = (["projectile"], ["impact"], ["barrier"])
+    return (path in bodies and last not in ("material", "boundary")) or key == "surface.state"
 
 
 def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:

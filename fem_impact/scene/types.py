@@ -11,6 +11,7 @@ from typing import Literal, get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
@@ -42,21 +43,6 @@ class ProjectileSpec:
                 value=f"{self.length * 1e3:.3g} mm",
                 remedy="Give a length of at least one diameter.",
             )
-
-
-@dataclass(frozen=True, slots=True)
-class Barrier:
-    """The massive plate that the rod strikes.
-
-    ``boundary`` is what holds the outer faces of a meshed block: springs and dashpots of the half-space
-    around it, or a rigid frame (``fixed``), as in plain models of other codes.
-    """
-
-    material: Material
-    boundary: fields.Boundary = "half-space"
-
-    def __post_init__(self) -> None:
-        check_choice(self.boundary, get_args(fields.Boundary), "boundary")
 
 
 @dataclass(frozen=True, slots=True)
@@ -184,7 +170,31 @@ class Scene:
             check_choice(self.measured, MEASURED_SETS, "measured")
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
+        _check_approach(self)
         _check_tip_size(self)
+
+    @property
+    def relative(self) -> Impact:
+        """The impact as seen from the barrier before it, which a moving barrier changes."""
+        impact, barrier = self.impact, self.barrier
+        if barrier.v_n == barrier.v_t == 0.0:
+            return impact
+        return Impact(impact.angle, impact.v_n - barrier.v_n, impact.v_t - barrier.v_t, impact.omega)
+
+
+def _check_approach(scene: Scene) -> None:
+    """Refuse a rod that does not come down on the barrier, as seen from it."""
+    seen, moving = scene.impact, scene.barrier.v_n or scene.barrier.v_t
+    for parameter in (fields.V_N, fields.V_T):
+        key = parameter.key
+        seen_speed = getattr(seen, key) - getattr(scene.barrier, key)
+        if moving and not parameter.allows(seen_speed):
+            problem = f"is {parameter.write(seen_speed)} as seen from the barrier, which moves too."
+            raise SceneError(problem, key=f"impact.{key}", value=getattr(seen, key), remedy=parameter.remedy)
+        try:
+            parameter.checked(seen_speed)
+        except SceneError as error:
+            raise error.under("impact") from None
 
 
 def _check_skin(surface: Surface) -> None:

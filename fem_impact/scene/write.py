@@ -9,10 +9,11 @@ from math import inf
 from typing import Any
 
 from fem_impact.scene import fields
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Accuracy, Barrier, Scene
+from fem_impact.scene.types import Accuracy, Scene
 
 
 def to_dict(scene: Scene) -> dict[str, Any]:
@@ -51,8 +52,12 @@ def digest(scene: Scene) -> str:
 
 
 def _barrier(barrier: Barrier) -> dict[str, Any]:
-    written = {"boundary": barrier.boundary} if barrier.boundary != "half-space" else {}
-    return {**written, "material": _material(barrier.material)}
+    """Write what differs from a half-space at rest."""
+    plain = Barrier(barrier.material)
+    words = {key: getattr(barrier, key) for key in ("boundary", "support")}
+    written = words | _written(barrier, fields.BARRIER)
+    other = {key: value for key, value in written.items() if getattr(barrier, key) != getattr(plain, key)}
+    return {**other, "material": _material(barrier.material)}
 
 
 def _impact(impact: Impact) -> dict[str, Any]:

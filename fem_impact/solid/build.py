@@ -27,6 +27,7 @@ from fem_impact.fem.stable import stable_step
 from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.physics.hardening import Hardening
 from fem_impact.plan.plan import Plan
+from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -38,6 +39,7 @@ from meshes import SKIN
 
 if TYPE_CHECKING:
     from fem_impact.solid.elastic import ModalDamping
+    from fem_impact.solid.footing import FootingSprings
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
     from fem_impact.solid.yielding import YieldingZone
 
@@ -82,6 +84,24 @@ def elastic_block(
     return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
 
 
+def footing_springs(layout: DofLayout, x: Array, block: ElasticBlockParts) -> FootingSprings:
+    """Return the springs of a block on a footing; those along b hold no motion of the footing."""
+    from fem_impact.solid.footing import FootingSprings
+
+    stiffness = block.springs.diagonal()
+    places = np.flatnonzero(stiffness)
+    ends = _ends(layout, layout.barrier_slice.start + places)
+    held = ends != layout.footing[1]
+    places, ends = places[held], ends[held]
+    whole = layout.barrier_slice.start + places
+    return FootingSprings(whole, stiffness[places], x[whole].copy(), ends, block.linear.effect)
+
+
+def _ends(layout: DofLayout, places: Ints) -> Ints:
+    """Return the unknown of the footing in the direction of each unknown of a block's free nodes."""
+    return np.asarray(layout.footing[(places - layout.barrier_slice.start) % 3])
+
+
 def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
     """Return the dashpots of a block's boundary, which take the radiated energy."""
     from fem_impact.fem.boundary import radiating_share
@@ -93,7 +113,10 @@ def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: El
     damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))
     places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
-    return Dashpots(places, damping[places - place.start], inverse_mass[places])
+    ends = _ends(layout, places) if len(layout.footing) else places[:0]
+    return Dashpots(
+        places, damping[places - place.start], inverse_mass[places], ends, inverse_mass[ends].copy()
+    )
 
 
 def yielding_zone(
@@ -149,7 +172,7 @@ class Builder:
     @cached_property
     def v(self) -> Array:
         """Return the velocities (size,) of the mass points at time 0, m/s; omega is positive from n to t."""
-        v, impact = np.zeros(self.meshed.layout.size), self.scene.impact
+        v, impact = np.zeros(self.meshed.layout.size), self.scene.relative
         arm = self.meshed.x[self.meshed.rod.places] - mass_centre(
             self.meshed.mass, self.meshed.x, self.meshed.rod.places
         )
@@ -181,18 +204,31 @@ class Builder:
         return ElasticRod(slices, self.meshed.drawn, product, self.frame, self.meshed.layout, d, y), whole
 
     @cached_property
+    def block_parts(self) -> ElasticBlockParts:
+        """Return the operators of a meshed barrier."""
+        assert self.meshed.barrier is not None, "the barrier is meshed"
+        effect = "barrier-elastoplastic" if self.spec.barrier_law else "barrier-elastic"
+        return elastic_block(self.meshed.barrier, self.meshed.layout, self.meshed.x, effect)
+
+    @cached_property
     def block(self) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
         """Return the items of a meshed barrier and its stable step, s, under its name; empty without one."""
         if self.meshed.barrier is None:
             return [], [], {}
-        effect = "barrier-elastoplastic" if self.spec.barrier_law else "barrier-elastic"
-        block = elastic_block(self.meshed.barrier, self.meshed.layout, self.meshed.x, effect)
+        block = self.block_parts
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
         pots = (
             [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if self.spec.radiating else []
         )
         return [block.linear], pots, {"barrier": step}
+
+    @cached_property
+    def footing(self) -> list[FootingSprings]:
+        """Return the springs between a block and a footing, if there are both."""
+        if self.meshed.barrier is None or self.scene.barrier.mass is None:
+            return []
+        return [footing_springs(self.meshed.layout, self.meshed.x, self.block_parts)]
 
     @cached_property
     def steps(self) -> dict[str, float]:
@@ -226,7 +262,7 @@ class Builder:
         return strengths(body.mesh.cells[body.yields], under, self.spec.skin)
 
     @cached_property
-    def contact(self) -> PlaneContact | SurfaceContact:
+    def contact(self) -> PlaneContact | MovingPlane | SurfaceContact:
         """Return the contact; the rigid section behind the nose of a rigid rod has no part in it."""
         g, f = self.meshed.geometry, self.spec.friction or 0.0
         if self.meshed.barrier:
@@ -236,7 +272,10 @@ class Builder:
         skin = g.rod.mesh.free_skin
         if not self.spec.vibrating:
             skin = np.setdiff1d(skin, g.rod.body_nodes)
-        return PlaneContact(self.meshed.rod.places[skin], self.meshed.inverse_mass, f)
+        nodes, inverse = self.meshed.rod.places[skin], self.meshed.inverse_mass
+        if self.scene.barrier.mass is not None:
+            return MovingPlane.of(nodes, self.meshed.layout.footing, inverse, f)
+        return PlaneContact(nodes, inverse, f)
 
     def weight(self, gravity: float) -> Weight:
         """Return the rod's weight under the acceleration ``gravity``, m/s2."""
@@ -268,14 +307,22 @@ class Builder:
         """Return the items that add forces, in their order."""
         (linear, _), (block, _, _), gravity = self.elastic_rod, self.block, self.spec.gravity
         weight = [] if gravity is None else [self.weight(gravity)]
-        return [linear, *weight, *block, *self.zones]
+        return [linear, *weight, *block, *self.footing, *self.zones]
 
     def impulses(self) -> list[Impulse]:
-        """Return the items that change velocities, in their order; the contact is the last."""
+        """Return the items that change velocities, in their order, which ends with the contact."""
         (_, pots, _), loss = self.block, self.spec.loss_factor
         rest = [] if self.spec.vibrating else [self.rigid_rest()]
         damping = [] if loss is None else [self.damping(loss)]
-        return [*rest, *damping, *pots, self.contact]
+        return [*rest, *damping, *pots, *self.contacts()]
+
+    def contacts(self) -> list[Impulse]:
+        """Return the contact, within the frame of a plate that bends."""
+        if self.spec.plate is None or isinstance(self.contact, MovingPlane):
+            return [self.contact]
+        from fem_impact.solid.footing import on_plate
+
+        return on_plate(self.contact, int(self.meshed.layout.footing[2]), self.spec.plate)
 
     def model(self) -> Model:
         """Return the model."""

@@ -14,6 +14,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
@@ -70,14 +71,14 @@ class SkinWatch:
         skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
         touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
         self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]
-        self.rows = self.places[:, 2]
+        self.rows, self.footing = self.places[:, 2], model.layout.footing
         self.lowest = np.inf
         self.deepest = -DEEP * model.geometry.tip_size
         self.reason = ""
 
     def observe(self, state: State) -> bool:
         """Record the lowest height so far; stop the run when it is too deep."""
-        heights = state.x[self.rows]
+        heights = state.x[self.rows] - risen(self.footing, state.x)
         self.lowest = min(self.lowest, float(np.min(heights, initial=np.inf)))
         if self.lowest >= self.deepest:
             return False

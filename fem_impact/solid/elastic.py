@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import ClassVar
 
 import numpy as np
@@ -76,7 +76,9 @@ class ElasticBlock:
 class Dashpots:
     """Viscous boundary that absorbs radiated waves; implicit in time, so it does not limit the step.
 
-    ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg.
+    ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg. On a free
+    barrier ``ends`` (k,) are the unknowns of its footing that hold the other ends, ``footing_inverse`` (k,),
+    1/kg, its inverse masses; both are empty else.
     """
 
     effect: ClassVar[str] = "radiation"
@@ -86,10 +88,15 @@ class Dashpots:
     places: Ints
     damping: Array
     inverse_mass: Array
+    ends: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
+    footing_inverse: Array = field(default_factory=lambda: np.zeros(0))
     radiated: float = 0.0
 
     def resolve(self, state: State) -> None:
         """Damp the boundary velocities; the dashpot force uses the mean velocity of the step."""
+        if len(self.ends):
+            self._resolve_free(state)
+            return
         kicked = state.v[self.places]
         old = kicked - state.kick * self.inverse_mass * state.force[self.places]
         share = 0.5 * state.kick * self.inverse_mass * self.damping
@@ -97,6 +104,18 @@ class Dashpots:
         mean = 0.5 * (old + new)
         self.radiated += state.kick * float(self.damping @ (mean * mean))
         state.v[self.places] = new
+
+    def _resolve_free(self, state: State) -> None:
+        """Damp the velocities relative to the footing, which takes the opposite impulses."""
+        seen = state.v[self.places] - state.v[self.ends]
+        pushed = state.kick * self.inverse_mass * state.force[self.places]
+        dragged = state.kick * self.footing_inverse * state.force[self.ends]
+        old, share = seen - pushed + dragged, 0.5 * state.kick * self.inverse_mass * self.damping
+        impulse = ((seen - share * old) / (1 + share) - seen) / self.inverse_mass
+        state.v[self.places] += self.inverse_mass * impulse
+        np.add.at(state.v, self.ends, -self.footing_inverse * impulse)
+        new = state.v[self.places] - state.v[self.ends]
+        self.radiated -= 0.5 * float(impulse @ (old + new))
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return the energy radiated so far."""

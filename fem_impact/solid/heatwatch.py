@@ -9,8 +9,10 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.book import IMPULSE_T
+from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
@@ -59,7 +61,7 @@ class HeatWatch:
         contact = self.model.contact
         if isinstance(contact, SurfaceContact):
             self.surface = PairSurface(contact, self.model)
-        elif isinstance(contact, PlaneContact):
+        elif isinstance(contact, PlaneContact | MovingPlane):
             self.surface = PlaneSurface(contact, self.model)
 
     @property
@@ -92,13 +94,13 @@ class HeatWatch:
 class PlaneSurface:
     """The patch on a rigid plane: area of the skin nodes on it, mean over a window's steps."""
 
-    def __init__(self, contact: PlaneContact, model: Model) -> None:
+    def __init__(self, contact: PlaneContact | MovingPlane, model: Model) -> None:
         g = model.geometry
         quads = g.rod.mesh.faces_with(SKIN)
         areas = tributary_areas(model.start[0], model.layout.rod, quads)
         node = np.full(model.layout.size, -1)
         node[model.layout.rod[:, 2]] = np.arange(len(areas))
-        self.rows = contact.nodes[:, 2]
+        self.rows, self.footing = contact.nodes[:, 2], model.layout.footing
         self.area = areas[node[self.rows]]
         self.sum, self.steps = 0.0, 0
 
@@ -113,7 +115,7 @@ class PlaneSurface:
 
     def add(self, state: State) -> None:
         """Add the skin at the height of the plane."""
-        self.sum += float(self.area[state.x[self.rows] < 1e-9].sum())
+        self.sum += float(self.area[state.x[self.rows] < risen(self.footing, state.x) + 1e-9].sum())
         self.steps += 1
 
     def close(self) -> float:

@@ -14,6 +14,7 @@ from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.layout import DofLayout, MassPoints
 from fem_impact.fem.sparse import Hanging
 from fem_impact.solid.contact.book import ContactBook
+from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
@@ -60,7 +61,7 @@ class Model:
     impulses: Sequence[Impulse]
     rod: ElasticRod | ElasticNose
     zones: Sequence[YieldingZone]
-    contact: PlaneContact | SurfaceContact | None
+    contact: PlaneContact | MovingPlane | SurfaceContact | None
     hanging: Hanging
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]
@@ -75,6 +76,11 @@ class Model:
     def book(self) -> ContactBook:
         """Return the record of the contact, an empty one without contact."""
         return self.contact.book if self.contact else ContactBook()
+
+    @property
+    def in_plate_frame(self) -> bool:
+        """Return whether the barrier's positions are those seen from a plate that bends."""
+        return bool(len(self.layout.footing)) and not self.mass[self.layout.footing].any()
 
     def nodes(self, vector: Array) -> Array:
         """Return displacements or velocities of the nodes from those of the mass points, both (size,)."""

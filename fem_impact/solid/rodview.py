@@ -13,6 +13,7 @@ from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
+from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
@@ -144,6 +145,8 @@ class FieldSampler:
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return point data and cell data of the present state."""
         u = self.model.nodes(state.x - self.model.start[0])[self.places]
+        if self.model.in_plate_frame:
+            u[len(self.model.geometry.rod_points) :, 2] += risen(self.model.layout.footing, state.x)
         v = self.model.nodes(state.v)[self.places]
         return {"displacement": u, "velocity": v}, self._cells(state, self.points + u)
 

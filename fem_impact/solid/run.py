@@ -56,6 +56,7 @@ class SolidResult:
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
+    base : velocity (n, t), m/s, that a free barrier gained as a whole, that of its mass centre; else 0
     skin_share : share of the barrier's plastic work done right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     peak_nodes : nodes of the half model that were pressed at once then
@@ -75,6 +76,7 @@ class SolidResult:
     worst: float
     motion: RigidMotion
     flight: FreeVibration
+    base: tuple[float, float]
     skin_share: float
     peak_force: float
     peak_nodes: int
@@ -176,6 +178,7 @@ def _result(
         worst=ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
+        base=_base(plan, model, state),
         skin_share=skin_share(model),
         peak_force=watchers.peak.largest,
         peak_nodes=watchers.peak.nodes,
@@ -187,6 +190,16 @@ def _result(
         warnings=tuple(w for f in watchers.frames for w in f.writer.warnings) + doubts(model, watchers.skin),
         heat=watchers.heat,
     )
+
+
+def _base(plan: Plan, model: Model, state: State) -> tuple[float, float]:
+    """Return the velocity of a free barrier's mass centre along n and t, m/s; 0 for any other barrier."""
+    whole, block = plan.scene.barrier.mass, model.layout.barrier_slice
+    if whole is None:
+        return 0.0, 0.0
+    momentum = (model.mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0)
+    momentum += model.mass[model.layout.footing] * state.v[model.layout.footing]
+    return 2 * float(momentum[2]) / whole, 2 * float(momentum[0]) / whole
 
 
 def _peak_memory() -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 import numpy as np
@@ -12,6 +12,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
+from fem_impact.solid.footing import risen, speed_of
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
@@ -51,7 +52,7 @@ class Separation:
         book = self.model.book
         if not book.intervals or book.touching or state.time - book.last_touch < QUIET:
             return False
-        motion = self.view.rigid(state)
+        motion = self._relative(state)
         ahead = min(self.horizon, self._tail_strikes(state, motion))
         if not self._stays_away(state, motion, max(ahead, SAMPLE)):
             return False
@@ -65,6 +66,11 @@ class Separation:
         self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no contact."
         return True
 
+    def _relative(self, state: State) -> RigidMotion:
+        """Return the rod's motion as seen from the barrier as a whole."""
+        motion, (u_n, u_t) = self.view.rigid(state), speed_of(self.model.layout.footing, state.v)
+        return replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)
+
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
         """Return the time, s from now, until the tail reaches the barrier; infinite if it does not."""
         if not len(self.tail):
@@ -72,7 +78,7 @@ class Separation:
         start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
         arm = self.tail - self.view.mass @ start / self.view.mass.sum()
         heights = _rigid_heights(arm, motion, t, self.view.angle(state, self.model))
-        down = heights.min(axis=0) < 0.0
+        down = heights.min(axis=0) < risen(self.model.layout.footing, state.x)
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
@@ -80,15 +86,26 @@ class Separation:
         ahead, contact = self.view.flight(state, self.model), self.model.contact
         t = np.arange(0.0, until, SAMPLE)
         lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
+        footing = self.model.layout.footing
+        ground = risen(footing, state.x)
         if not isinstance(contact, SurfaceContact):
-            return bool(lowest.min() > 0.0)
+            return bool(lowest.min() > ground)
         surface = contact.barrier.places[:, 2]
         # allows the barrier to move on for the time QUIET at its present speed
-        margin = QUIET * float(np.abs(state.v[surface]).max())
-        deep = t[lowest <= max(0.0, float(state.x[surface].max())) + margin + contact.rod.sag]
-        return all(
-            contact.clearance(flown(state.x, contact.rod.places, motion, ahead, s)) > margin for s in deep
-        )
+        base = ground if self.model.in_plate_frame else 0.0  # of the barrier's positions
+        carried = 0.0 if self.model.in_plate_frame else speed_of(footing, state.v)[0]
+        margin = QUIET * float(np.abs(state.v[surface] - carried).max())
+        deep = t[
+            lowest - base <= max(ground - base, float(state.x[surface].max())) + margin + contact.rod.sag
+        ]
+        places = contact.rod.places
+
+        def clearance(s: float) -> float:
+            moved = flown(state.x, places, motion, ahead, s)
+            moved[places[:, 2]] -= base
+            return contact.clearance(moved)
+
+        return all(clearance(s) > margin for s in deep)
 
 
 def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:

@@ -27,6 +27,7 @@ from fem_impact.solid import build
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
+from fem_impact.solid.footing import on_plate
 from fem_impact.solid.frame import FixedFrame, TurningFrame
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
@@ -68,6 +69,7 @@ class FreeBody:
     friction : Coulomb's coefficient, or None for no contact at all
     block : what it strikes, or None for the rigid plane n = 0
     turning : the linear part follows large rotations
+    impedance : of a plate that bends under the plane or the block, N s/m, or None
     """
 
     mesh: RodMesh
@@ -84,6 +86,7 @@ class FreeBody:
     friction: float | None = None
     block: Block | None = None
     turning: bool = False
+    impedance: float | None = None
 
 
 def unsliced(mesh: HexMesh) -> RodMesh:
@@ -109,7 +112,7 @@ def rigid_of(model: Model, state: State) -> RigidMotion:
 def body_model(body: FreeBody) -> Model:
     """Return the model of one body over the rigid plane n = 0, or over its block."""
     block = body.block
-    layout = number(body.mesh, block.mesh if block else None)
+    layout = number(body.mesh, block.mesh if block else None, body.impedance is not None)
     parts = [_part(body, layout), *([_block_part(block, layout)] if block else [])]
     mass = assemble_masses(parts, layout)
     inverse = _inverse(body, parts, mass, layout)
@@ -125,8 +128,12 @@ def body_model(body: FreeBody) -> Model:
         around = build.elastic_block(parts[1], layout, x)
         steps["barrier"] = stable_step(around.stiffness, inverse[place])
         forces.append(around.linear)
-        impulses.append(build.dashpots(parts[1], layout, inverse, around))
+        if body.impedance is None:
+            impulses.append(build.dashpots(parts[1], layout, inverse, around))
     contact = _contact(body, parts, inverse, x)
+    touching: list[Impulse] = [contact] if contact else []
+    if contact and body.impedance is not None:
+        touching = on_plate(contact, int(layout.footing[2]), body.impedance)
     return Model(
         geometry=Geometry(body.mesh, body.points, block.mesh if block else None, 0.0, 0.0),
         layout=layout,
@@ -136,7 +143,7 @@ def body_model(body: FreeBody) -> Model:
         scaling=1.0,
         drawn=drawn,
         forces=forces,
-        impulses=[*impulses, *([contact] if contact else [])],
+        impulses=[*impulses, *touching],
         rod=linear,
         zones=zones,
         contact=contact,

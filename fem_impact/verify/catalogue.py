@@ -19,6 +19,7 @@ PROBLEMS = {
     "bar": ("bar", "PROBLEM"),
     "hertz": ("spheres", "HERTZ"),
     "oblique-sphere": ("spheres", "OBLIQUE_SPHERE"),
+    "plate": ("plate_strike", "PROBLEM"),
     "sears": ("sears_rod", "PROBLEM"),
     "thornton": ("thornton_tip", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),

@@ -71,8 +71,18 @@ def small_contact(p: Values, share: float = 1.0) -> None:
     within(p, "speed", low, high, "m/s", f"contact radii of {CONTACT[0]:g} to {CONTACT[1]:g} of the ball's.")
 
 
-def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f: float = 0.0) -> Model:
-    """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t."""
+def sphere_model(
+    p: Values,
+    touch: HertzImpact,
+    v_n: float,
+    v_t: float = 0.0,
+    f: float = 0.0,
+    impedance: float | None = None,
+) -> Model:
+    """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t.
+
+    The barrier as a whole gives way at the force over the ``impedance``, N s/m, if there is one.
+    """
     R, across = p["radius"], int(p["across"])
     base = 2 * R / across
     levels = levels_for_radius(base, touch.radius, p["cells"])
@@ -88,7 +98,19 @@ def sphere_model(p: Values, touch: HertzImpact, v_n: float, v_t: float = 0.0, f:
     denser = _denser(points, mesh.mesh.cells, p)
     E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(
-        FreeBody(mesh, points, velocity, E, nu, rho, denser, friction=f, block=block, turning=f > 0)
+        FreeBody(
+            mesh,
+            points,
+            velocity,
+            E,
+            nu,
+            rho,
+            denser,
+            friction=f,
+            block=block,
+            turning=f > 0,
+            impedance=impedance,
+        )
     )
 
 

@@ -13,8 +13,9 @@ from random_scenes import METALS
 
 from fem_impact.outcome.keys import or_none
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Accuracy, Barrier, Impact, ProjectileSpec, Save, Scene, Surface
+from fem_impact.scene.types import Accuracy, Impact, ProjectileSpec, Save, Scene, Surface
 
 BOUND = {"solid": 2e-3, "modal": 1e-5}  # of e, mu and each share of E_0
 TITANIUM, COPPER = METALS[1], METALS[2]

@@ -1,5 +1,6 @@
 """Bad input: every mistake is one message with file, key, value and remedy, before any work."""
 
+import dataclasses
 import math
 
 import pytest
@@ -228,8 +229,8 @@ def test_python_objects_pass_the_same_checks():
     steel = materials()["rod-steel"]
     with pytest.raises(SceneError, match=r"tip_radius = \"10 mm\""):
         ProjectileSpec(0.24, 0.019, "B", 0.010, steel)
-    with pytest.raises(SceneError, match="v_n"):
-        Impact(math.pi / 4, 1.5, -1.5)
+    with pytest.raises(SceneError, match=r"impact\.v_n"):
+        dataclasses.replace(load("quick"), impact=Impact(math.pi / 4, 1.5, -1.5))
     with pytest.raises(SceneError, match="finite"):
         Material("mine", INF, 0.3, 7850.0, 1e8, 2e8)
 

@@ -12,11 +12,12 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.plan.plan import plan
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import MEASURED_SETS, Barrier, ProjectileSpec
+from fem_impact.scene.types import MEASURED_SETS, ProjectileSpec
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.solid.run import solve
 

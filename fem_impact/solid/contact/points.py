@@ -122,6 +122,20 @@ def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c, 
     return count
 
 
+@kernel
+def over_plane(nodes, plane, motion, c):  # type: ignore[no-untyped-def]
+    """Collect contacts of ``nodes`` (k, 3) with a plane of unknowns ``plane``; returns the number."""
+    x, count = motion.x, 0
+    for i in range(len(nodes)):
+        _join(c, count, 0, nodes[i], 1.0)
+        _join(c, count, 1, plane, -1.0)
+        for a in range(2, 5):
+            _join(c, count, a, plane, 0.0)
+        c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = 0.0, 0.0, 1.0
+        count += _enter(count, i, x[nodes[i, 2]] - x[plane[2]], 0.0, motion, c)
+    return count
+
+
 @inlined
 def _reach(rod, x, height):  # type: ignore[no-untyped-def]
     """Return the box (t, t, b, b) around all rod quads that come down to ``height``."""

@@ -1,0 +1,82 @@
+"""Bending of a wide plate under a blow: its impedance, Zener's number, and waves that come back from an edge.
+
+A point force F moves an infinite thin plate at F / Z, Z = 8 sqrt(D rho h), D = E h^3 / (12 (1 - nu^2)): the
+plate takes energy like a dashpot, for bending waves carry it away (drive-point mobility of an infinite plate,
+Cremer, Heckl & Petersson 2005, Structure-Borne Sound, doi:10.1007/b137728). A striker of mass m and Hertz
+stiffness k at speed v touches for about T = (m / (k sqrt(v)))^(2/5), and lambda = m / (Z T) says how much of
+its energy goes that way (Zener 1941, doi:10.1103/PhysRev.59.669; derived in the open in Mathematics 2021, 9,
+2222).
+"""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+from typing import TYPE_CHECKING
+
+from fem_impact.physics.contact import ContactBodies, approach, contact_estimate, effective_mass
+from fem_impact.physics.contact_law import contact_law
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+LOSS = 1.73  # 1 - e over lambda for small lambda, from s'' + (1 + lambda d/dt) s^1.5 = 0
+MAIN_LOBE = 1.5  # highest frequency of a half-sine pulse over 1 / its duration: the end of its main lobe
+
+
+def bending_stiffness(E: float, nu: float, thickness: float) -> float:
+    """Return D, N m, of a plate (Pa, -, m).
+
+    Examples
+    --------
+    >>> round(bending_stiffness(210e9, 0.3, 10e-3))
+    19231
+    """
+    return E * thickness**3 / (12 * (1 - nu**2))
+
+
+def plate_impedance(E: float, nu: float, rho: float, thickness: float) -> float:
+    """Return Z = 8 sqrt(D rho h), N s/m, of an infinite plate under a point force (Pa, -, kg/m3, m).
+
+    Examples
+    --------
+    >>> round(plate_impedance(210e9, 0.3, 7850.0, 10e-3))
+    9829
+    """
+    return 8 * sqrt(bending_stiffness(E, nu, thickness) * rho * thickness)
+
+
+def impedance_of(scene: Scene) -> float:
+    """Return Z, N s/m, of a scene's plate, which must have a thickness."""
+    m, h = scene.barrier.material, scene.barrier.thickness
+    assert h is not None, "a plate that bends has a thickness"
+    return plate_impedance(m.E, m.nu, m.rho, h)
+
+
+def zener_number(bodies: ContactBodies) -> float:
+    """Return lambda = m / (Z T) with the effective mass of the rod, 0 for a barrier that does not bend."""
+    if not bodies.scene.barrier.bends:
+        return 0.0
+    m, v = effective_mass(bodies), max(approach(bodies.scene), 1e-6)
+    T = (m / (contact_law(bodies).stiffness * sqrt(v))) ** 0.4
+    return float(m / (impedance_of(bodies.scene) * T))
+
+
+def contact_time(bodies: ContactBodies) -> float:
+    """Return about how long a plate that bends is touched, s.
+
+    That of a massive barrier times 1 + lambda, which is no less than Zener's equation gives up to lambda = 2.
+    """
+    return contact_estimate(bodies).duration * (1 + zener_number(bodies))
+
+
+def least_span(bodies: ContactBodies) -> float:
+    """Return the width, m, of a plate from whose edges no wave of the pulse comes back while it lasts.
+
+    The fastest bending waves of a pulse of duration tau are those of the frequency at the end of its main
+    lobe, omega = 3 pi / tau. They travel at the group speed 2 (D / (rho h))^(1/4) sqrt(omega) from the middle
+    to the edge and back.
+    """
+    m, h, tau = bodies.scene.barrier.material, bodies.scene.barrier.thickness, contact_time(bodies)
+    assert h is not None, "a plate that bends has a thickness"
+    D = bending_stiffness(m.E, m.nu, h)
+    return float(2 * (D / (m.rho * h)) ** 0.25 * sqrt(2 * pi * MAIN_LOBE / tau) * tau)

@@ -1,0 +1,61 @@
+"""Contact of the rod's nodes with the rigid plane of a barrier that is free to move."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import ClassVar
+
+from fem_impact.arrays import Array, Ints
+from fem_impact.solid.contact.book import MOVING, SWEEPS, ContactBook
+from fem_impact.solid.contact.impulses import solve
+from fem_impact.solid.contact.points import Points, PointState, book_work, make_points, over_plane
+from fem_impact.solid.state import State
+
+
+@dataclass(slots=True)
+class MovingPlane:
+    """Unilateral contact with Coulomb friction ``f`` on a plane that is a free barrier's footing.
+
+    Every impulse changes the velocity of the plane, so the nodes are solved together.
+
+    Attributes
+    ----------
+    nodes : (k, 3) unknowns of the rod's nodes; footing : (3,) unknowns of the plane
+    """
+
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ("friction", "closing")
+    every: ClassVar[int] = 1
+    moving: ClassVar[tuple[str, ...]] = ("points.memory", *MOVING)
+    nodes: Ints
+    footing: Ints
+    inverse_mass: Array
+    f: float
+    points: Points
+    book: ContactBook = field(default_factory=ContactBook)
+
+    @classmethod
+    def of(cls, nodes: Ints, footing: Ints, inverse_mass: Array, f: float) -> MovingPlane:
+        """Build with room for all nodes."""
+        return cls(nodes, footing, inverse_mass, f, make_points(len(nodes)))
+
+    def resolve(self, state: State) -> None:
+        """Apply this step's impulses and book the work."""
+        motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
+        c, record = self.points, self.book.step
+        record[:] = 0.0
+        count = over_plane(self.nodes, self.footing, motion, c)
+        if count:
+            record[SWEEPS] = solve(
+                count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
+            )
+        book_work(count, motion, c, record)
+        self.book.close_step(state.time)
+
+    def clearance(self, x: Array) -> float:
+        """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
+        return float(x[self.nodes[:, 2]].min() - x[self.footing[2]])
+
+    def energies(self, state: State) -> tuple[float, ...]:
+        """Return friction heat and closing loss."""
+        return self.book.friction, self.book.closing
