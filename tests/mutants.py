@@ -1,7 +1,7 @@
 """Faults that the tests must notice, each with a test that does.
 
-Run ``python tests/mutants.py`` to put each fault into a copy of the sources, run the test and print the table
-of README; ``python -m pytest -m slow tests/test_mutants.py`` does the same one by one.
+Run ``python tests/mutants.py docs/evidence/faults.md`` to put each fault into a copy of the sources, run its
+test and write the page; ``python -m pytest -m slow tests/test_mutants.py`` does the same one by one.
 """
 
 import shutil
@@ -10,6 +10,8 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+from fem_impact.commands.page import checked_page, write_page
 
 ROOT = Path(__file__).parents[1]
 COPIED = ("fem_impact", "meshes", "rigid", "tests", "pyproject.toml", "README.md")
@@ -272,18 +274,28 @@ def survives(mutant: Mutant, folder: Path) -> str:
     return "" if done.returncode == FAILED else done.stdout[-2000:] + done.stderr[-2000:]
 
 
+TITLE = "Faults that the tests notice"
+ABOUT = "Wrong formulas, put into a copy of the sources one by one, and the test that fails for each."
+
+
 def table() -> str:
     """Return the faults and the tests that notice them as a Markdown table."""
     rows = [f"| {m.fault} | `{m.test.partition('::')[2]}` |" for m in MUTANTS]
     return "\n".join(["| fault | noticed by |", "| --- | --- |", *rows])
 
 
-if __name__ == "__main__":
-    alive = []
+def main(page: Path) -> int:
+    """Try every fault; write the page if all were noticed, and return how many were not."""
+    alive = 0
     for one in MUTANTS:
         with TemporaryDirectory() as place:
             left = survives(one, Path(place))
         sys.stderr.write(f"{'SURVIVES' if left else 'dies    '} {one.fault}\n{left}")
-        alive += [one] if left else []
-    sys.stdout.write(table() + "\n")
-    sys.exit(len(alive))
+        alive += bool(left)
+    if not alive:
+        write_page(page, TITLE, ABOUT, f"python tests/mutants.py {page}", table())
+    return alive
+
+
+if __name__ == "__main__":
+    sys.exit(main(checked_page(sys.argv[1])))

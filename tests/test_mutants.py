@@ -1,4 +1,4 @@
-"""Every fault of the list is noticed by its test, and README shows the list."""
+"""Every fault of the list is noticed by its test, and the documentation shows the list."""
 
 from pathlib import Path
 
@@ -19,5 +19,5 @@ def test_a_fault_can_still_be_made_and_its_test_is_there(mutant):
     assert f"def {name}(" in (ROOT / path).read_text(encoding="utf-8")
 
 
-def test_the_readme_lists_the_faults():
-    assert table() in (Path(ROOT) / "README.md").read_text(encoding="utf-8")
+def test_the_page_lists_the_faults():
+    assert table() in (Path(ROOT) / "docs" / "evidence" / "faults.md").read_text(encoding="utf-8")

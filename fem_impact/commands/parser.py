@@ -45,7 +45,7 @@ class Options(argparse.Namespace):
     problem: str | None = None
     only: str = ""
     parameters: bool = False
-    readme: str = ""
+    page: str = ""
     quick: bool = False
     workers: int | None = None
     scheduler: str = ""
@@ -172,6 +172,7 @@ def _add_study(commands: Commands) -> None:
     parser.add_argument(
         "--estimate", action="store_true", help="say how long it takes on 1 to 1000 workers, and stop"
     )
+    _add_page(parser, "also")
     parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
@@ -280,7 +281,7 @@ def _add_verify(commands: Commands) -> None:
         "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
     )
     parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
-    parser.add_argument("--readme", metavar="FILE", help="run all problems and write the results into a page")
+    _add_page(parser, "run all problems and")
 
 
 def _add_stress(commands: Commands) -> None:
@@ -293,8 +294,15 @@ def _add_stress(commands: Commands) -> None:
     parser.add_argument(
         "--workers", type=_at_least_one, metavar="N", help="cases at a time (default: one a core)"
     )
-    parser.add_argument("--readme", metavar="FILE", help="run all cases and write the table into a page")
+    _add_page(parser, "run all cases and")
     parser.add_argument("--quiet", action="store_true", help="show no progress")
+
+
+def _add_page(parser: argparse.ArgumentParser, words: str) -> None:
+    help_text = (
+        f"{words} write the result as a page with date, machine and commit, such as docs/evidence/NAME.md"
+    )
+    parser.add_argument("--page", default="", metavar="FILE.md", help=help_text)
 
 
 def _add_scene_options(parser: argparse.ArgumentParser) -> None:

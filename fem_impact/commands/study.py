@@ -34,10 +34,11 @@ def study(options: Options) -> int:
         with directory_lock(out):
             return _report(options, out)
     request = Request(out, ids, options.quick)
+    page = _page(options)
     with directory_lock(out), closing(chosen_meter(options)) as meter, _workers(options) as executor:
         if options.estimate:
             return _estimate(options, request, meter, executor)
-        return _study(options, request, meter, executor)
+        return _study(options, request, meter, executor, page)
 
 
 def _report(options: Options, out: Path) -> int:
@@ -54,7 +55,9 @@ def _report(options: Options, out: Path) -> int:
     return 0
 
 
-def _study(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
+def _study(
+    options: Options, request: Request, meter: ProgressMeter, executor: Executor, page: Path | None
+) -> int:
     from fem_impact.study.catalogue import run_study
 
     result, notes = run_study(options.name, request, meter, executor), []
@@ -63,6 +66,10 @@ def _study(options: Options, request: Request, meter: ProgressMeter, executor: E
 
         notes = present(result.runs, request.out, meter)
     meter.close()
+    if page:
+        from fem_impact.commands.page import write_study_page
+
+        write_study_page(page, request.command(options.name), result.text, request.out)
     if options.json:
         print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
     else:
@@ -119,13 +126,22 @@ def _workers(options: Options) -> Iterator[Executor]:
 
 def _check_options(options: Options) -> None:
     """Refuse what the named study would not look at."""
-    if options.name == "report" and (options.quick or options.estimate or options.scheduler):
-        remedy = "Leave out --quick, --estimate and --scheduler."
+    if options.name == "report" and (options.quick or options.estimate or options.scheduler or options.page):
+        remedy = "Leave out --quick, --estimate, --scheduler and --page."
         raise UsageError("reads what others have computed.", key="study report", remedy=remedy)
     if options.ids and options.name not in ABOUT_SETS:
         problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(ABOUT_SETS)}."
         given = " ".join(options.ids)
         raise UsageError(problem, key="ID", value=given, remedy=f"Leave it out. {remedy}")
+
+
+def _page(options: Options) -> Path | None:
+    """Return the page to write, refused before any run where it cannot be written."""
+    if not options.page:
+        return None
+    from fem_impact.commands.page import checked_page
+
+    return checked_page(options.page)
 
 
 def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:

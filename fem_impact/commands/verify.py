@@ -9,27 +9,26 @@ from dataclasses import asdict
 from pathlib import Path
 
 from fem_impact.commands.common import checked_out, print_json
+from fem_impact.commands.page import checked_page, write_page
 from fem_impact.commands.parser import Options
 from fem_impact.errors import RunError, UsageError, did_you_mean
-from fem_impact.files.atomic import read_text, write_text
-from fem_impact.hard_cases.run import MARKS, Row, page, row_line, run_cases
+from fem_impact.hard_cases.run import Row, page, row_line, run_cases
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.jobs.executors import cores
-from fem_impact.outcome.record import utc_now
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 from fem_impact.verify import catalogue
-from fem_impact.verify.catalogue import PROBLEMS, problem, put_page
+from fem_impact.verify.catalogue import PROBLEMS, problem
 from fem_impact.verify.problem import Problem, Verification
 
 
 def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""
-    if options.parameters and (options.changes or options.readme):
-        raise UsageError("only lists.", key="--parameters", remedy="Leave out --set and --readme, or itself.")
+    if options.parameters and (options.changes or options.page):
+        raise UsageError("only lists.", key="--parameters", remedy="Leave out --set and --page, or itself.")
     if options.parameters:
         return _show_parameters(options)
-    if options.readme:
+    if options.page:
         return _write_page(options)
     changes = dict(_change(text) for text in options.changes)
     if changes and not options.problem:
@@ -50,16 +49,26 @@ def verify(options: Options) -> int:
     return 0 if all(verification.passed for verification in done) else RunError.exit_code
 
 
+VERIFICATION = (
+    "Verification",
+    "Each problem with a known answer, and of its checks the one nearest to its limit.",
+)
+HARD_CASES = (
+    "Hard cases",
+    "Scenes that are hard on the solver, on coarse meshes. Each must close its balances, be refused before "
+    "the run with its reason, or be detected during it.",
+)
+
+
 def _write_page(options: Options) -> int:
-    """Run all problems at their defaults and put the results between the marks of a file."""
+    """Run all problems at their defaults and write the page."""
     if options.problem or options.changes:
-        raise UsageError("takes all problems at their defaults.", key="--readme")
-    put_page(read_text(options.readme), "")  # refuses a file without marks before any run
-    done = []
+        raise UsageError("takes all problems at their defaults.", key="--page")
+    path, done = checked_page(options.page), []
     for name in PROBLEMS:
         done.append(problem(name).run())
         sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
-    write_text(options.readme, put_page(read_text(options.readme), catalogue.page(done, utc_now()[:10])))
+    write_page(path, *VERIFICATION, "fem-impact verify --page FILE", catalogue.page(done))
     if options.json:
         print_json([verification.document() for verification in done])
     return 0 if all(verification.passed for verification in done) else RunError.exit_code
@@ -117,13 +126,12 @@ def _text(verification: Verification) -> str:
 def stress(options: Options) -> int:
     """Run one hard case, or all of them; the exit code says whether all passed."""
     names = _chosen(options)
-    if options.readme:
-        put_page(read_text(options.readme), "", MARKS)  # refuses a file without marks before any run
+    path = checked_page(options.page) if options.page else None
     out = checked_out(options.out or Path("results") / "stress")
     rows = run_cases(names, out, _progress(options, len(names)), options.workers or cores())
-    text = page(rows, utc_now()[:10])
-    if options.readme:
-        write_text(options.readme, put_page(read_text(options.readme), text, MARKS))
+    text = page(rows)
+    if path:
+        write_page(path, *HARD_CASES, "fem-impact stress --page FILE", text)
     if options.json:
         print_json([asdict(row) for row in rows])
     else:
@@ -145,8 +153,8 @@ def _progress(options: Options, total: int) -> Callable[[Row], None]:
 def _chosen(options: Options) -> list[str]:
     if not options.only:
         return list(CASES)
-    if options.readme:
-        raise UsageError("takes all cases.", key="--readme", remedy="Leave --only out.")
+    if options.page:
+        raise UsageError("takes all cases.", key="--page", remedy="Leave --only out.")
     if options.only not in CASES:
         hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
         raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 ROW = "row.json"
 CHECKPOINT_INTERVAL = 10.0  # s of wall time
-MARKS = ("<!-- stress: written by `fem-impact stress --readme` -->", "<!-- end of the stress table -->")
 HEAD = ["scene", "what is hard", "verdict", "ledger / E_0", "elements", "steps", "CPU s"]
 
 
@@ -167,10 +166,10 @@ def _kept(case: HardCase, out: Path) -> Row | None:
         return None
 
 
-def page(rows: Sequence[Row], date: str) -> str:
-    """Return date and counts, the table, and a sentence for each case that did not simply close."""
+def page(rows: Sequence[Row]) -> str:
+    """Return counts, the table, and a sentence for each case that did not simply close."""
     passed, cpu = sum(row.passed for row in rows), sum(row.cpu_s for row in rows)
-    line = f"{date}: {passed} of {len(rows)} as they must be, {cpu / 60:.1f} minutes of CPU."
+    line = f"{passed} of {len(rows)} as they must be, {cpu / 60:.1f} minutes of CPU."
     notes = [f"- `{row.name}`: {row.reason}" for row in rows if row.reason]
     cells = []
     for row in rows:

@@ -29,7 +29,7 @@ GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
 """Assumed time of a job, s, until one of its fidelity was measured."""
 
 STEEPNESS = 3.0
-"""A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm (README)."""
+"""A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm."""
 
 
 def expected_costs(jobs: Iterable[Job], measured: Mapping[Kind, list[float]]) -> dict[str, float]:

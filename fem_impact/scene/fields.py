@@ -384,7 +384,7 @@ class Default:
 _ELEMENT = Default(
     "accuracy.element",
     "incompatible",
-    "chosen for this package: on t5b other elements change e by less than .001 (README)",
+    "chosen for this package: on t5b other elements change e by less than .001",
 )
 DEFAULTS: tuple[Default, ...] = (
     *(

@@ -6,7 +6,6 @@ means (`fem_impact.verify.reference`), with error, tolerance, verdict and cost.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 
@@ -62,7 +61,6 @@ def verify(name: str, changes: Mapping[str, float | str] | None = None) -> Verif
     return problem(name).run(changes)
 
 
-MARKS = ("<!-- verification: written by `fem-impact verify --readme` -->", "<!-- end of the verification -->")
 HEAD = ["problem", "passed", "nearest to its limit", "computed", "reference", "error", "allowed", "CPU s"]
 
 
@@ -88,29 +86,13 @@ def _row(found: Verification) -> list[str]:
     ]
 
 
-def page(done: Sequence[Verification], date: str) -> str:
-    """Return the page: date and cost, and a row for every problem."""
+def page(done: Sequence[Verification]) -> str:
+    """Return counts and cost, and a row for every problem."""
     every = [check for found in done for check in found.checks]
     checks = [check for check in every if check.judged]
     wall = sum(found.cost.wall_s for found in done)
     line = (
-        f"{date}, all parameters at their defaults: {sum(check.passed for check in checks)} of {len(checks)} "
+        f"All parameters at their defaults: {sum(check.passed for check in checks)} of {len(checks)} "
         f"checks passed, {len(every) - len(checks)} more are only shown, {wall / 60:.1f} minutes."
     )
     return f"{line}\n\n{Table.of(HEAD, map(_row, done)).markdown()}"
-
-
-def put_page(text: str, new: str, marks: tuple[str, str] = MARKS) -> str:
-    """Return ``text`` with the page between the marks replaced.
-
-    Raises
-    ------
-    UsageError
-        If the marks are missing.
-    """
-    between = re.compile(f"({re.escape(marks[0])}\n).*?({re.escape(marks[1])})", re.DOTALL)
-    if not between.search(text):
-        raise UsageError(
-            "has no place for the page.", key="--readme", remedy=f"Add the lines {marks[0]} and {marks[1]}."
-        )
-    return between.sub(lambda found: f"{found[1]}{new}\n{found[2]}", text)

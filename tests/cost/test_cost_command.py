@@ -1,7 +1,6 @@
-"""The command ``cost``, the run of a scene with a target, and the table of README."""
+"""The command ``cost``, and the run of a scene with a target."""
 
 import json
-import re
 from importlib import import_module
 from pathlib import Path
 
@@ -11,9 +10,6 @@ from outcome_maker import altered
 
 import fem_impact.run.simulate
 from fem_impact.cost.document import summary_markdown
-from fem_impact.plan.measured import summary
-
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
 
 
 @pytest.fixture
@@ -101,8 +97,3 @@ def test_a_scene_with_a_target_says_what_it_expects(cli, monkeypatch):
     assert "expected error of e and E_vib 15 %, time 0.01 s" in out
     assert "achieved error of e and E_vib not known: one run alone, time 0.02 s" in out
     assert "all runs together: e (tip's arms) 0.31, E_vib/E_0 0.02" in out
-
-
-def test_the_table_of_the_readme_is_the_stored_one():
-    found = re.search(r"<!-- cost -->\n(.*?)<!-- end of cost -->", README, re.DOTALL)
-    assert found[1] == summary_markdown(summary())

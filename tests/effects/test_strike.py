@@ -16,7 +16,7 @@ from fem_impact.plan.choose import everything, resolved
 from fem_impact.scene.shipped import load, replace_all
 
 ELASTIC = ("vibration", "barrier-elastic")
-# E_vib / E_0 of finite elements at the default mesh (README, Results; 21 November 2026)
+# E_vib / E_0 of finite elements at the default mesh (docs/evidence/sets.md; 21 November 2026)
 MEASURED = {
     "t2": 3.74e-2,
     "t3-machined": 4.18e-2,

@@ -1,4 +1,4 @@
-"""README's "Make it yours", an effect: its number and slot, and an item with an account of its own."""
+"""An effect as in docs/tutorials/extend.md: number and slot, and an item with its own account."""
 
 from dataclasses import dataclass, replace
 from math import exp, hypot

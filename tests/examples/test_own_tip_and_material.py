@@ -1,4 +1,4 @@
-"""The two examples of README's "Make it yours": a hemispherical tip and an aluminium rod."""
+"""The two examples of docs/tutorials/extend.md: a hemispherical tip and an aluminium rod."""
 
 import json
 import math

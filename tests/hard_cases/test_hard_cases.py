@@ -8,7 +8,7 @@ import pytest
 
 from fem_impact.errors import SceneError
 from fem_impact.hard_cases.judge import Balance, balance
-from fem_impact.hard_cases.run import MARKS, ROW, page, run_case
+from fem_impact.hard_cases.run import ROW, page, run_case
 from fem_impact.hard_cases.run import _model as model_of
 from fem_impact.hard_cases.scenes import CASES
 from fem_impact.options import RunOptions
@@ -173,17 +173,19 @@ def test_the_command_prints_a_table_and_keeps_its_rows(cli):
     assert json.loads(out)[0]["verdict"] == "refused"
 
 
-def test_an_unknown_case_and_a_page_without_marks_are_refused(cli, tmp_path):
+def test_an_unknown_case_and_a_page_of_something_else_are_refused(cli, tmp_path):
     code, _, err = cli("stress", "--only", "paineve")
     assert code == 2 and "Did you mean painleve?" in err
     (tmp_path / "page.md").write_text("nothing")
-    code, _, err = cli("stress", "--readme", "page.md")
-    assert code == 2 and MARKS[0] in err
+    code, _, err = cli("stress", "--page", "page.md")
+    assert code == 2 and "holds something else" in err
+    code, _, err = cli("stress", "--only", "six-elements", "--page", "new.md")
+    assert code == 2 and "takes all cases" in err
 
 
 def test_the_page_tells_what_failed(tmp_path):
     row = replace(run_case("six-elements", tmp_path), verdict="FAILED", passed=False, reason="why")
-    assert "**FAILED**" in page([row], "2026-01-01") and "- `six-elements`: why" in page([row], "2026-01-01")
+    assert "**FAILED**" in page([row]) and "- `six-elements`: why" in page([row])
 
 
 @pytest.mark.slow

@@ -1,16 +1,13 @@
-"""The page of results: what it says of a run, where it is put, and that README's is such a page."""
+"""The page of results: what it says of a run, what is refused, and that the one in docs/ is such a page."""
 
 import re
 from pathlib import Path
 
-import pytest
-
 from fem_impact.commands.main import main
-from fem_impact.errors import UsageError
-from fem_impact.verify.catalogue import HEAD, MARKS, PROBLEMS, page, put_page
+from fem_impact.verify.catalogue import HEAD, PROBLEMS, page
 from fem_impact.verify.problem import Check, ProblemCost, Verification
 
-README = Path(__file__).parents[2] / "README.md"
+PAGE = Path(__file__).parents[2] / "docs" / "evidence" / "verification.md"
 
 
 def found(name, *checks):
@@ -24,40 +21,32 @@ SHOWN = Check.shown("law", "1", 1e9, 1.0, "it does not hold here")
 
 
 def test_a_row_shows_the_check_nearest_to_its_limit():
-    text = page([found("a", EASY, CLOSE), found("b", EASY, CLOSE, WRONG, SHOWN)], "2026-01-02")
+    text = page([found("a", EASY, CLOSE), found("b", EASY, CLOSE, WRONG, SHOWN)])
     first, _, *rows = text.splitlines()
     told = "4 of 5 checks passed, 1 more are only shown, 1.0 minutes."
-    assert first == f"2026-01-02, all parameters at their defaults: {told}"
+    assert first == f"All parameters at their defaults: {told}"
     assert rows[2] == "| `a` | 2 of 2 | force | 109 N | 100 N | +9.0e-02 | 0.1 relative | 25 |"
     assert rows[3] == "| `b` | 2 of 3 | touches | 2 | 1 | +1.0e+00 | 0 absolute | 25 |"
 
 
-def test_the_page_goes_between_its_marks_and_nowhere_else():
-    text = f"before\n{MARKS[0]}\nold\nold\n{MARKS[1]}\nafter\n"
-    assert put_page(text, "new \\1") == f"before\n{MARKS[0]}\nnew \\1\n{MARKS[1]}\nafter\n"
-    with pytest.raises(UsageError, match="no place"):
-        put_page("before\nafter\n", "new")
-
-
-def test_the_command_refuses_a_file_without_a_place_before_any_work(tmp_path, capsys):
+def test_the_command_refuses_what_is_no_page_before_any_work(tmp_path):
     target = tmp_path / "page.md"
     target.write_text("nothing here\n")
-    assert main(["verify", "--readme", str(target)]) == 2
-    assert main(["verify", "modes", "--readme", str(target)]) == 2
-    assert main(["verify", "--readme", str(tmp_path / "none.md")]) == 5
+    assert main(["verify", "--page", str(target)]) == 2
+    assert main(["verify", "modes", "--page", str(target)]) == 2
+    assert main(["verify", "--page", str(tmp_path / "page.txt")]) == 2
+    assert main(["verify", "--page", str(tmp_path / "none" / "page.md")]) == 4
     assert target.read_text() == "nothing here\n"
 
 
-def test_the_readme_has_a_row_for_every_problem_in_the_form_of_the_command():
-    text = README.read_text(encoding="utf-8")
-    body = text.partition(MARKS[0] + "\n")[2].partition(MARKS[1])[0]
-    line, empty, head, rule, *rows = body.rstrip("\n").split("\n")
+def test_the_page_of_the_documentation_has_a_row_for_every_problem_in_the_form_of_the_command():
+    line, _, head, rule, *rows = PAGE.read_text(encoding="utf-8").rstrip("\n").split("\n")[6:]
     assert re.fullmatch(
-        r"20\d\d-\d\d-\d\d, all parameters at their defaults: (\d+) of \1 checks passed, "
+        r"All parameters at their defaults: (\d+) of \1 checks passed, "
         r"\d+ more are only shown, [\d.]+ minutes\.",
         line,
     )
-    assert empty == "" and rule.count("---") == len(HEAD)
+    assert rule.count("---") == len(HEAD)
     assert [cell.strip() for cell in head.strip("|").split("|")] == HEAD
     names = [re.match(r"\| `([\w-]+)` \| (\d+) of \2 \| ", row)[1] for row in rows]
     assert names == list(PROBLEMS)

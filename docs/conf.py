@@ -1,0 +1,33 @@
+"""How Sphinx builds the documentation: `sphinx-build -W docs docs/_build`."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "extensions"))
+
+project = "fem-impact"
+author = "the fem-impact authors"
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "program_tables",
+    "mathml",
+]
+myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 4
+exclude_patterns = ["_build", "examples", "extensions"]
+default_role = "code"  # docstrings write names in single backticks
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+autodoc_default_options = {"members": True, "show-inheritance": True}
+napoleon_google_docstring = False
+napoleon_use_ivar = True
+# attributes of docstrings are looked up by bare names such as e, which several classes have
+suppress_warnings = ["ref.python"]
+html_theme = "furo"
+html_title = "fem-impact"
+html_copy_source = False
+html_show_copyright = False
+html_math_renderer = "mathml"

@@ -1,0 +1,178 @@
+"""The directive `from-program`: parts of pages that are made from the program when they are built.
+
+A page holds ``{from-program} NAME``; NAME is a function of `PARTS`, which returns Markdown.
+"""
+
+import argparse
+from collections.abc import Iterator
+from typing import get_args
+
+from sphinx.util.docutils import SphinxDirective
+
+from fem_impact.commands.parser import REPORT, STUDIES, build_parser
+from fem_impact.cost.document import summary_markdown
+from fem_impact.effects.registry import EFFECTS
+from fem_impact.errors import EXIT_CODES
+from fem_impact.outcome.keys import markdown_table
+from fem_impact.outcome.record import KEYS
+from fem_impact.plan.measured import summary
+from fem_impact.scene import fields, library
+from fem_impact.scene.fields import Parameter
+from fem_impact.scene.units import DIMENSIONS
+from fem_impact.tables.table import Table
+from fem_impact.verify.catalogue import PROBLEMS, problem
+
+WIDTH = 100  # of the help of a command
+
+
+def scene_numbers() -> str:
+    """Every number of a scene, table by table."""
+    head = ("key", "meaning", "SI unit", "if left out", "allowed", "source of the default")
+    parts = []
+    for name, group in _groups():
+        rows = [(f"`{f.key}`", f.meaning, f.si_unit, _default(f, name), f.bounds, f.source) for f in group]
+        parts += [f"### {_PLACES.get(name, f'`[{name}]`')}", Table.of(head, rows).markdown()]
+    return "\n\n".join(parts)
+
+
+_PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "before the first table"}
+_OPTIONAL = ("top", "surface")  # a shipped surface brings its friction along
+
+
+def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
+    for name, value in vars(fields).items():
+        if isinstance(value, tuple) and value and all(isinstance(one, Parameter) for one in value):
+            yield name.strip("_").lower(), value
+
+
+def _default(field: Parameter, group: str) -> str:
+    if field.default is not None:
+        return f"{field.write(field.default)}"
+    return field.derived or ("not used" if group in _OPTIONAL else "must be given")
+
+
+def scene_choices() -> str:
+    """Keys that take one of a few words."""
+    choices = {
+        "barrier.boundary": fields.Boundary,
+        "accuracy.element": fields.Element,
+        "accuracy.yielding_element": fields.YieldingElement,
+        "accuracy.unresolved": fields.Unresolved,
+    }
+    rows = [(f"`{key}`", ", ".join(f"`{word}`" for word in get_args(kind))) for key, kind in choices.items()]
+    rows += [("`surface.state`", ", ".join(f"`{word}`" for word in [*library.surfaces(), "custom"]))]
+    return Table.of(("key", "one of"), rows, left=range(2)).markdown()
+
+
+def scene_units() -> str:
+    """Units that a scene may be written in."""
+    rows = [
+        (name, ", ".join(f"`{unit.symbol}`" for unit in dimension.units), f"`_{dimension.suffix}`")
+        for name, dimension in DIMENSIONS.items()
+    ]
+    return Table.of(("quantity", "units", "ending of the key in SI"), rows, left=range(3)).markdown()
+
+
+def materials() -> str:
+    """Shipped materials with their values."""
+    rows = [
+        (
+            f"`{name}`",
+            f"{m.E / 1e9:.4g}",
+            m.nu,
+            m.rho,
+            f"{m.yield_stress / 1e6:.4g}",
+            f"{m.ultimate_stress / 1e6:.4g}",
+        )
+        for name, m in library.materials().items()
+    ]
+    head = ("name", "E, GPa", "nu", "rho, kg/m3", "yield stress, MPa", "ultimate stress, MPa")
+    return Table.of(head, rows).markdown()
+
+
+def surfaces() -> str:
+    """Shipped states of the surface with friction and source."""
+    rows = [
+        (name, s.friction, f"{s.friction_low} to {s.friction_high}", s.source)
+        for name, s in library.surfaces().items()
+    ]
+    return Table.of(("state", "f", "interval", "source"), rows, left=(0, 3)).markdown()
+
+
+def effects() -> str:
+    """Every effect with the number that decides about it."""
+    rows = [(f"`{e.name}`", e.sentence, e.measure, f"{e.threshold:g}", e.source) for e in EFFECTS.values()]
+    head = ("effect", "what it adds", "number", "on above", "source of the threshold")
+    return Table.of(head, rows, left=(0, 1, 2, 4)).markdown()
+
+
+def problems() -> str:
+    """Every problem with a known answer."""
+    rows = [(f"`{name}`", problem(name).words) for name in PROBLEMS]
+    return Table.of(("problem", "what is compared"), rows, left=range(2)).markdown()
+
+
+def outcome_keys() -> str:
+    """Every key of outcome.json."""
+    return markdown_table(KEYS)
+
+
+def commands() -> str:
+    """Return the help of every command."""
+    parser = build_parser()
+    (several,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
+    parts = []
+    for name, command in several.choices.items():
+        command.formatter_class = _wide(command.formatter_class)
+        parts += [f"## {name}", f"```text\n{command.format_help().rstrip()}\n```"]
+    return "\n\n".join(parts)
+
+
+def _wide(base: type[argparse.HelpFormatter]) -> type[argparse.HelpFormatter]:
+    """Return a formatter of one width, whatever terminal builds the pages."""
+    return type(
+        "Wide",
+        (base,),
+        {"__init__": lambda self, prog, **more: base.__init__(self, prog, width=WIDTH, **more)},
+    )
+
+
+def studies() -> str:
+    """Every study."""
+    rows = [(f"`{name}`", words) for name, words in {**STUDIES, **REPORT}.items()]
+    return Table.of(("study", "what it is about"), rows, left=range(2)).markdown()
+
+
+def cost() -> str:
+    """Return what accuracy costs, from the stored measurements."""
+    return summary_markdown(summary())
+
+
+def exit_codes() -> str:
+    """Exit codes of the command."""
+    return Table.of(("exit code", "meaning"), EXIT_CODES.items(), left=range(2)).markdown()
+
+
+PARTS = {
+    make.__name__.replace("_", "-"): make
+    for make in (
+        *(scene_numbers, scene_choices, scene_units, materials, surfaces, effects, problems),
+        *(outcome_keys, commands, studies, cost, exit_codes),
+    )
+}
+
+
+class FromProgram(SphinxDirective):
+    """Insert a part of the reference."""
+
+    required_arguments = 1
+
+    def run(self):
+        """Return the nodes of the part."""
+        return self.parse_text_to_nodes(PARTS[self.arguments[0]](), allow_section_headings=True)
+
+
+def setup(app):
+    """Register the directive."""
+    app.add_directive("from-program", FromProgram)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,170 @@
+"""Pages are executed: scenes read, marked Python run, outputs compared, command lines understood."""
+
+import argparse
+import re
+import shlex
+import tomllib
+
+import pytest
+from page_blocks import PAGES, ROOT, blocks, marked, without_code
+
+import rigid
+from fem_impact.commands.parser import build_parser, read_line
+from fem_impact.scene.library import surfaces
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import to_dict
+
+QUICK = (
+    "fem-impact --version",
+    "fem-impact check my-rod.toml",
+    'fem-impact coefficients tests.csv --length "80 mm" --diameter "19 mm" --tip B --angle "45 deg"',
+    "fem-impact verify modes --parameters",
+    'fem-impact verify modes --set length="120 mm"',
+)
+OWN_SCENE, CAMERA = "docs/tutorials/own-projectile.md", "docs/how-to/camera-data.md"
+COMMAND_PARSERS = next(
+    action.choices for action in build_parser()._actions if isinstance(action, argparse._SubParsersAction)
+)
+
+
+def _merged(whole, part):
+    """Nested tables with those of a part laid over them."""
+    both = {name: _merged(whole[name], part[name]) for name in part if isinstance(part[name], dict)}
+    return whole | part | both
+
+
+@pytest.mark.parametrize("block", blocks("toml"), ids=str)
+def test_every_scene_is_valid(block):
+    stated = tomllib.loads(block.text)
+    whole = stated if "id" in stated else _merged(to_dict(load("t5b")), stated)
+    assert to_dict(read_dict(whole, block.page)) == to_dict(read_dict(whole))
+
+
+@pytest.mark.parametrize("block", blocks("python", "run", "python", "rigid-python"), ids=str)
+def test_python_that_is_marked_to_run_runs(block, capsys):
+    shapes = dict(rigid.SHAPES)
+    try:
+        exec(compile(block.text, block.page, "exec"), {})
+    finally:
+        rigid.SHAPES.clear()
+        rigid.SHAPES.update(shapes)
+    assert capsys.readouterr().out
+
+
+@pytest.mark.parametrize("block", blocks("python"), ids=str)
+def test_all_python_is_python(block):
+    compile(block.text, block.page, "exec")
+
+
+def test_pages_have_python_that_runs():
+    assert len(blocks("python", "run", "python", "rigid-python")) > 5
+
+
+LINES = [line for block in blocks("sh") for line in block.text.splitlines()]
+OWN = sorted({line for line in LINES if line.startswith("fem-impact ")})
+
+
+@pytest.mark.parametrize("line", OWN)
+def test_every_command_line_is_understood(line):
+    options = read_line(shlex.split(line, comments=True)[1:])
+    assert options.version or options.handler.startswith("fem_impact.commands.")
+
+
+@pytest.fixture
+def files(tmp_path):
+    """The files that pages tell to write."""
+    (tmp_path / "my-rod.toml").write_text(marked("scene", OWN_SCENE))
+    (tmp_path / "tests.csv").write_text(marked("file: tests.csv", CAMERA) + "\n")
+
+
+@pytest.mark.parametrize("line", QUICK)
+def test_quick_command_lines_do_what_they_say(line, cli, files):
+    assert line in OWN
+    code, out, _ = cli(*shlex.split(line)[1:])
+    assert (code, bool(out)) == (0, True)
+
+
+NUMBER = r"-?\d+\.?\d*(?:e[+-]\d+)?"
+OUTPUTS = [block for block in blocks("text") if block.marker.startswith("output: ")]
+
+
+@pytest.mark.parametrize("block", OUTPUTS, ids=str)
+def test_every_output_shown_is_that_of_its_command(block, cli, files):
+    """Words to the letter, numbers within what processors differ by."""
+    _, out, err = cli(*shlex.split(block.marker.removeprefix("output: "))[1:])
+    found = (out + err).rstrip()
+    squeezed = [re.sub(r" +", " ", re.sub(NUMBER, "#", text)) for text in (found, block.text)]
+    assert squeezed[0] == squeezed[1]
+    for a, b in zip(re.findall(NUMBER, found), re.findall(NUMBER, block.text), strict=True):
+        assert float(a) == pytest.approx(float(b), rel=0.02, abs=2e-3)
+
+
+def test_outputs_are_shown():
+    assert {block.page for block in OUTPUTS} >= {"README.md", OWN_SCENE}
+
+
+PROSE = "".join(map(without_code, PAGES.values()))
+
+
+@pytest.mark.parametrize("words", sorted(set(re.findall(r"`fem-impact (\w+ [^`]*-[^`]*)`", PROSE))))
+def test_options_named_in_the_text_exist(words):
+    command, *rest = words.split()
+    named = {word.strip("[]") for word in rest if word.startswith(("--", "[--"))}
+    assert named <= {name for action in COMMAND_PARSERS[command]._actions for name in action.option_strings}
+
+
+@pytest.mark.parametrize(
+    "place",
+    sorted(set(re.findall(r"`(?:python )?((?:fem_impact|tests|rigid|meshes|docs)/[\w./-]+\.\w+)`", PROSE))),
+)
+def test_every_file_named_is_there(place):
+    assert (ROOT / place).exists() or place.startswith("docs/_build/")
+
+
+def _anchors(path):
+    titles = re.findall(r"^#+ (.*)$", without_code(path.read_text(encoding="utf-8")), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", title.lower()).replace(" ", "-") for title in titles}
+
+
+LINKS = [
+    (page, target)
+    for page, text in PAGES.items()
+    for target in sorted(set(re.findall(r"\]\(([^)\s]+)\)", without_code(text))))
+    if "://" not in target
+]
+
+
+@pytest.mark.parametrize(("page", "target"), LINKS)
+def test_every_link_leads_somewhere(page, target):
+    place, _, anchor = target.partition("#")
+    path = (ROOT / page).parent / place if place else ROOT / page
+    assert path.exists()
+    assert not anchor or anchor in _anchors(path)
+
+
+def test_the_words_that_the_trouble_table_quotes_are_the_programs():
+    table = PAGES["docs/how-to/troubleshoot.md"].partition("| what you see |")[2].partition("\n\n")[0]
+    quoted = [words for row in table.splitlines()[2:] for words in re.findall("`([^`]+)`", row.split("|")[1])]
+    ours = [
+        words for words in quoted if "=" not in words and not words.startswith(("fem-impact:", "ensurepip"))
+    ]
+    sources = "".join(path.read_text() for path in (ROOT / "fem_impact").rglob("*.py"))
+    assert len(ours) > 6
+    assert [words for words in ours if words not in sources] == []
+
+
+def test_the_table_of_friction_is_the_data():
+    text = PAGES["docs/explanation/friction-and-heat.md"]
+    for state, surface in surfaces().items():
+        (row,) = re.findall(rf"^\| {state} \| ([^|]*) \| ([^|]*) \|", text, re.MULTILINE)
+        f, (low, high) = float(row[0]), map(float, row[1].split("-"))
+        assert (f, low, high) == (surface.friction, surface.friction_low, surface.friction_high)
+
+
+def test_every_key_at_the_top_of_a_scene_is_on_its_page():
+    from fem_impact.scene.read import _TOP
+
+    tables = {"projectile", "barrier", "surface", "impact", "save", "heating"}
+    text = PAGES["docs/reference/scene.md"].partition("## Numbers")[0]
+    assert set(re.findall(r"^\| `(\w+)` \|", text, re.MULTILINE)) == set(_TOP) - tables
