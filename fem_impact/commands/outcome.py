@@ -31,7 +31,7 @@ def print_outcome(outcome: Outcome, out: Path) -> None:
     lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]
-    lines += [_share("residual of the ledger", outcome.energy.residual)]
+    lines += [_share("not accounted for", outcome.energy.residual)]
     lines += ["", _share("friction + plate's top 0.1 mm", outcome.energy.skin)]
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import EXIT_CODES
@@ -26,6 +27,23 @@ STUDIES = {
 REPORT = {"report": "one page over all studies beside it"}
 FILMED = ("strain", "stress", "velocity", "plastic")  # what a film can show, the default first
 _RESULT = "directory that a run or a study wrote"
+_ROD = '\\\n      --length "80 mm" --diameter "19 mm" --angle "45 deg"'
+EXAMPLES = {
+    "run": ("fem-impact run quick", "fem-impact run t5b --fidelity modal --set impact.angle='30 deg'"),
+    "study": ("fem-impact study sets --quick", "fem-impact study gamma --estimate"),
+    "render": ("fem-impact render results/quick",),
+    "report": ("fem-impact report results/quick",),
+    "scenes": ("fem-impact scenes",),
+    "check": ("fem-impact check t5b --set accuracy.tip_size='0.5 mm'",),
+    "cost": ('fem-impact cost t5b --target "5 %" --budget "30 s" --of e,mu',),
+    "verify": ("fem-impact verify bar", 'fem-impact verify modes --set length="120 mm"'),
+    "stress": ("fem-impact stress --only angle-60",),
+    "audit": ("fem-impact audit --set t5b",),
+    "coefficients": (f"fem-impact coefficients tests.csv {_ROD}",),
+    "figure": ("fem-impact figure 7",),
+    "assess": (f'fem-impact assess --height "0.82 m" --surface machined {_ROD}',),
+}
+"""Command lines that the help of each command shows."""
 
 
 class Options(argparse.Namespace):
@@ -118,7 +136,13 @@ def read_line(argv: Sequence[str] | None) -> Options:
 
 def _command(commands: Commands, name: str, summary: str, handler: str) -> argparse.ArgumentParser:
     """Add one command with the options that all share."""
-    parser = commands.add_parser(name, help=summary, description=f"{summary[0].upper()}{summary[1:]}.")
+    parser = commands.add_parser(
+        name,
+        help=summary,
+        description=fill(f"{summary[0].upper()}{summary[1:]}.", 79),
+        epilog="\n  ".join(["example:" if len(EXAMPLES[name]) == 1 else "examples:", *EXAMPLES[name]]),
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
     parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
     parser.set_defaults(handler=handler)
     return parser
@@ -133,13 +157,14 @@ def _add_run(commands: Commands) -> None:
         "--fidelity",
         choices=FIDELITIES,
         default="",
-        help="rigid: impulses (at once); modal: free modes and a contact law (a second); solid (default)",
+        help="rigid: impulses (at once); modal: vibration modes and a contact law (a second); "
+        "solid: finite elements (default)",
     )
     parser.add_argument(
         "--budget",
         default="",
         metavar="TIME",
-        help="wall time for a scene that states its error and whose like was not measured (default: 2 min)",
+        help="wall time for a scene that states its error, if no similar scene was measured (default: 2 min)",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/SCENE)")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
@@ -160,9 +185,16 @@ def _add_study(commands: Commands) -> None:
         "compute many runs and draw conclusions from them",
         "fem_impact.commands.study:study",
     )
-    listed = "; ".join(f"{name}: {summary}" for name, summary in {**STUDIES, **REPORT}.items())
-    parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help=listed)
-    parser.add_argument("ids", nargs="*", metavar="ID", help="measured sets, where the study is about them")
+    every = {**STUDIES, **REPORT}.items()
+    listed = [fill(f"  {name:<12} {words}", 79, subsequent_indent=" " * 15) for name, words in every]
+    parser.epilog = "\n".join(["studies:", *listed, "", str(parser.epilog)])
+    parser.add_argument("name", choices=[*STUDIES, *REPORT], metavar="NAME", help="a study of those below")
+    parser.add_argument(
+        "ids",
+        nargs="*",
+        metavar="ID",
+        help="measured sets, such as t5b, for studies about them (default: all)",
+    )
     parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
     parser.add_argument(
@@ -242,7 +274,7 @@ def _add_check(commands: Commands) -> None:
 
 
 def _add_cost(commands: Commands) -> None:
-    summary = "show what accuracy costs in time: errors of all settings against the limit"
+    summary = "show what accuracy costs: error and computing time of every setting"
     parser = _command(commands, "cost", summary, "fem_impact.commands.cost:cost")
     _add_scene_options(parser)
     parser.add_argument(
@@ -285,7 +317,7 @@ def _add_verify(commands: Commands) -> None:
 
 
 def _add_stress(commands: Commands) -> None:
-    summary = "run hard cases and show that each closes its balances, is refused or detected"
+    summary = "run extreme scenes; each must close its energy balance, or be refused or stopped with a reason"
     parser = _command(commands, "stress", summary, "fem_impact.commands.verify:stress")
     parser.add_argument(
         "--only", default="", metavar="NAME", help="one case, such as angle-60 (default: all of them)"

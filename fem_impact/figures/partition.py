@@ -125,7 +125,8 @@ def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape
 
 def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size: float) -> None:
     unit = rows[0]["unit"]
-    axes.set_title(rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else ""), fontsize=size)
+    title = rows[0]["quantity"].replace(" in ", "\nin ")  # long names take two lines
+    axes.set_title(title + (f", {unit}" if unit not in ("", "-") else ""), fontsize=size)
     for row in rows:
         _line(axes, row, sets.index(row["set"]))
     axes.set_yticks(range(len(sets)), sets)

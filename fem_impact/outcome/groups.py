@@ -203,12 +203,15 @@ class Energy:
     plastic_rod: Num = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
     plastic_barrier: Num = key("E_plastic_barrier_over_E_0", "-", "Plastic work in the barrier" + SHARE, True)
     locked_rod: Num = key(
-        "E_locked_rod_over_E_0", "-", "Strain energy locked in by residual stress in the rod" + SHARE, True
+        "E_locked_rod_over_E_0",
+        "-",
+        "Elastic energy held by residual stress in the rod, no vibration" + SHARE,
+        True,
     )
     locked_barrier: Num = key(
         "E_locked_barrier_over_E_0",
         "-",
-        "Strain energy locked in by residual stress in the barrier" + SHARE,
+        "Elastic energy held by residual stress in the barrier, no vibration" + SHARE,
         True,
     )
     radiated: Num = key(
@@ -224,7 +227,7 @@ class Energy:
     closing: Num = key(
         "W_closing_over_E_0",
         "-",
-        "Loss at the closing of lumped contact nodes (vanishes with the mesh)" + SHARE,
+        "Numerical loss when contact starts at a node (vanishes with the mesh)" + SHARE,
         True,
     )
     damping: Num = key("W_damping_over_E_0", "-", "Work of material damping" + SHARE, True)
@@ -240,7 +243,7 @@ class Energy:
         "What gravity added to the other shares, the speed of the fall itself taken out" + SHARE,
         True,
     )
-    residual: float = key("residual_over_E_0", "-", "What the ledger fails to close by" + SHARE)
+    residual: float = key("residual_over_E_0", "-", "What the energy balance of all steps misses" + SHARE)
     added_mass: Num = key(
         "E_added_mass_over_E_0",
         "-",

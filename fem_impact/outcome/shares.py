@@ -53,12 +53,12 @@ SHARES = (
     _share("W_friction", "friction", "green", "figure", "comparison", "study"),
     _share("E_plastic_rod", "plastic rod", "purple", "figure", "comparison", "study"),
     _share("E_plastic_barrier", "plastic barrier", "vermilion", "figure", "comparison", "study"),
-    _share("E_locked_rod", "locked in rod", "sky", "figure", "comparison"),
-    _share("E_locked_barrier", "locked in barrier", "orange", "figure", "comparison"),
+    _share("E_locked_rod", "residual stress in rod", "sky", "figure", "comparison"),
+    _share("E_locked_barrier", "residual stress in barrier", "orange", "figure", "comparison"),
     _share("W_radiated", "radiated", "yellow", "figure", "comparison"),
     _share("W_plate", "bending of the plate", "yellow", "figure", "comparison"),
     _share("E_barrier", "motion of the barrier", "sand", "figure", "comparison"),
-    _share("W_closing", "contact closing", "grey", "figure"),
+    _share("W_closing", "numerical loss at contact", "grey", "figure"),
     _share("W_damping", "damping", "sand", "figure"),
     _share("E_contact", "held by the contact", "grey"),
     _share("W_gravity", "gravity", "grey"),
@@ -91,6 +91,6 @@ ACCOUNTS = (
     LedgerAccount("W_radiated_J", "radiated", "yellow"),
     LedgerAccount("W_plate_J", "bending of the plate", "yellow"),
     LedgerAccount("W_damping_J", "damping", "night"),
-    LedgerAccount("W_closing_J", "contact closing", "grey"),
+    LedgerAccount("W_closing_J", "numerical loss at contact", "grey"),
 )
 """Accounts of history.csv from bottom to top of the stacked figure, without gravity and the residual."""

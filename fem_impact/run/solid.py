@@ -46,7 +46,7 @@ if TYPE_CHECKING:
 
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
-ONE_MESH = "one mesh alone has no limit and no band: run the study, or a second tip size"
+ONE_MESH = "error unknown: run a second tip size, or `fem-impact cost`"
 
 
 def reduce(result: SolidResult) -> Outcome:

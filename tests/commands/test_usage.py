@@ -1,6 +1,11 @@
 """A wrong command line is exit code 2; what is understood and refused is 3."""
 
+import argparse
+import shlex
+
 import pytest
+
+from fem_impact.commands.parser import EXAMPLES, build_parser, read_line
 
 ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
 DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
@@ -54,3 +59,12 @@ def test_a_wrong_command_line_is_two(cli, line, complaint):
 )
 def test_what_is_understood_and_refused_is_three(cli, line):
     assert cli(*line)[0] == 3
+
+
+def test_the_help_of_every_command_shows_examples_that_are_understood():
+    (several,) = (a for a in build_parser()._actions if isinstance(a, argparse._SubParsersAction))
+    assert set(several.choices) == set(EXAMPLES)
+    for name, lines in EXAMPLES.items():
+        assert lines
+        assert all(f"\n  {line}" in several.choices[name].format_help() for line in lines)
+        assert all(read_line(shlex.split(line.replace("\\\n", ""))[1:]).handler for line in lines)

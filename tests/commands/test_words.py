@@ -32,9 +32,9 @@ def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
     sentences = " ".join(shares.split())
     assert "  restitution e (tip's arms)     not known: not in the stand-in\n" in motion
     assert sentences.count("not in the stand-in") == 1
-    assert "locked in rod; locked in barrier; radiated;" in sentences
+    assert "residual stress in rod; residual stress in barrier; radiated;" in sentences
     assert "  friction                          30.000 %\n" in shares
-    assert "  residual of the ledger             0.000 %\n" in shares
+    assert "  not accounted for                  0.000 %\n" in shares
     assert max(map(len, out.splitlines())) < 80
 
 

@@ -54,7 +54,7 @@ def test_python_that_is_marked_to_run_runs(block, capsys):
 
 @pytest.mark.parametrize("block", blocks("python"), ids=str)
 def test_all_python_is_python(block):
-    compile(block.text, block.page, "exec")
+    assert compile(block.text, block.page, "exec")
 
 
 def test_pages_have_python_that_runs():

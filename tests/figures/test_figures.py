@@ -77,7 +77,12 @@ def test_figures_of_a_study(tmp_path):
 
 @pytest.mark.parametrize("shape", ["wide", "narrow"])
 def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, shape):
-    names = ["locked in rod/E_0", "plastic barrier/E_0", "locked in barrier/E_0", "locked in barrier/E_0 "]
+    names = [
+        "residual stress in rod/E_0",
+        "plastic barrier/E_0",
+        "residual stress in barrier/E_0",
+        "residual stress in barrier/E_0 ",
+    ]
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))

@@ -101,8 +101,8 @@ def test_an_estimate_is_the_limit_of_two_meshes_or_the_run_itself():
 
 
 def test_shares_stand_in_the_places_that_list_them():
-    assert "contact closing" not in [share.label for share in shares("comparison")]
-    assert "contact closing" in [share.label for share in shares("figure")]
+    assert "numerical loss at contact" not in [share.label for share in shares("comparison")]
+    assert "numerical loss at contact" in [share.label for share in shares("figure")]
     assert [share.of(OUTCOME.energy) for share in SHARES[:2]] == [0.06, 0.0004]
     assert all(share.key.path[0] == "energy" for share in SHARES)
 
