@@ -31,18 +31,25 @@ def scene_numbers() -> str:
     parts = []
     for name, group in _groups():
         rows = [(f"`{f.key}`", f.meaning, f.si_unit, _default(f, name), f.bounds, f.source) for f in group]
-        parts += [f"### {_PLACES.get(name, f'`[{name}]`')}", Table.of(head, rows).markdown()]
+        parts += [f"### {_PLACES.get(name, f'`[{name}]`')}", Table.of(head, rows, left=range(6)).markdown()]
     return "\n\n".join(parts)
 
 
-_PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "before the first table"}
+_PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "Before the first table"}
+_PLACES |= {law: f'`rate` of a material, with `law = "{law}"`' for law in fields.RATES}
 _OPTIONAL = ("top", "surface")  # a shipped surface brings its friction along
 
 
 def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
-        if isinstance(value, tuple) and value and all(isinstance(one, Parameter) for one in value):
+        if _parameters(value):
             yield name.strip("_").lower(), value
+    for law, group in fields.RATES.items():
+        yield law, group
+
+
+def _parameters(value: object) -> bool:
+    return isinstance(value, tuple) and bool(value) and all(isinstance(one, Parameter) for one in value)
 
 
 def _default(field: Parameter, group: str) -> str:
@@ -54,6 +61,7 @@ def _default(field: Parameter, group: str) -> str:
 def scene_choices() -> str:
     """Keys that take one of a few words."""
     choices = {
+        "law of a material": fields.FlowLaw,
         "barrier.boundary": fields.Boundary,
         "accuracy.element": fields.Element,
         "accuracy.yielding_element": fields.YieldingElement,
