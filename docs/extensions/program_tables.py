@@ -44,8 +44,7 @@ def _groups() -> Iterator[tuple[str, tuple[Parameter, ...]]]:
     for name, value in vars(fields).items():
         if _parameters(value):
             yield name.strip("_").lower(), value
-    for law, group in fields.RATES.items():
-        yield law, group
+    yield from fields.RATES.items()
 
 
 def _parameters(value: object) -> bool:

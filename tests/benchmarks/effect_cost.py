@@ -1,10 +1,10 @@
 """Run time against the set of effects: a ladder on which each rung adds one, timed in contact.
 
 Run ``python tests/benchmarks/effect_cost.py [FOLDER]``: it times t5b at its default mesh in one process and
-one thread, prints the table, and writes it as ``effect-cost.csv`` with its chart ``effect-cost.svg``, into
-``fem_impact/effects/data`` unless a folder is given. README shows the chart and ``check`` takes its shares
-from the table. The bare rod stands first and last: an effect that is absent has no item, no array and no
-branch, so what those two differ by is noise, and nothing that a row does not name can cost more.
+one thread, prints the table, and writes it as ``effect-cost.csv`` with its chart ``effect-cost.svg`` into a
+folder; without one the table goes where ``check`` reads its shares, and the chart to the documentation. The
+bare rod stands first and last: an effect that is absent has no item, no array and no branch, so what those two
+differ by is noise, and nothing that a row does not name can cost more.
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ ADDED = (
     *("rate-hardening", "radiation", "large-rotation", "gravity", "material-damping", "contact-heating"),
 )
 COLUMNS = ("added", "step_us", "run_s_per_ms", "run_over_bare", "effects")
-FOLDER = Path(__file__).parents[2] / "fem_impact" / "effects" / "data"
+ROOT = Path(__file__).parents[2]
+TABLES, CHARTS = ROOT / "fem_impact" / "plan" / "data", ROOT / "docs" / "pictures"
 Row = tuple[str, float, float, float, str]
 
 
@@ -116,11 +117,11 @@ def draw(rows: Sequence[Row], path: Path) -> None:
         axes.set_xlabel(f"CPU time of 1 ms of motion, s ({SCENE}, default mesh, in contact)", color=QUIET)
 
 
-def main(folder: Path = FOLDER) -> None:
+def main(folder: Path | None = None) -> None:
     """Time, write, draw."""
     rows = measured()
-    draw(rows, folder / "effect-cost.svg")
-    write_text(folder / "effect-cost.csv", Table.of(COLUMNS, rows).csv())
+    draw(rows, (folder or CHARTS) / "effect-cost.svg")
+    write_text((folder or TABLES) / "effect-cost.csv", Table.of(COLUMNS, rows).csv())
 
 
 if __name__ == "__main__":
