@@ -42,8 +42,8 @@ def render(options: Options) -> int:
 
 def _span(options: Options) -> Span:
     """Return what the film shall show."""
-    from fem_impact.assess.drop import quantity
     from fem_impact.render.timeline import Span
+    from fem_impact.verdict.drop import quantity
 
     first, last, speed = (
         quantity(text, "time", key) if text else None

@@ -15,7 +15,8 @@ from fem_impact.report.html import Markup, bullets, paragraph, section, table
 from fem_impact.report.page import page, sources
 from fem_impact.scene import fields
 from fem_impact.scene.library import source_of
-from fem_impact.scene.types import Material, Scene
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
 from fem_impact.tables.table import Table
 from fem_impact.verdict.assess import Verdict

@@ -1,9 +1,9 @@
 """The motion of the barrier as a whole: of a free mass, or of a plate that bends.
 
 It has the unknowns of one node, the footing. On a free barrier the springs and dashpots around a meshed
-block, which stand for the rest of the barrier, act between block and footing, and a rigid plane is the footing:
-so the barrier has the momentum that the rod loses. A plate has its inertia in its impedance: its block or
-plane stays at rest in a frame that moves with the plate.
+block, which stand for the rest of the barrier, act between block and footing, and a rigid plane is the
+footing: so the barrier has the momentum that the rod loses. A plate has its inertia in its impedance: its
+block or plane stays at rest in a frame that moves with the plate.
 """
 
 from __future__ import annotations

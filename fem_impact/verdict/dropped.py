@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from math import atan2, degrees, hypot
+from math import hypot
 from typing import Any
 
 from fem_impact.errors import SceneError
-from fem_impact.plan.limits import FALL
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.impact import Impact
+from fem_impact.scene.impact import BESIDE, Impact
 from fem_impact.scene.library import materials, surface, surfaces
 from fem_impact.scene.types import ProjectileSpec, Scene
 from fem_impact.verdict.drop import DENSITY, DroppedRod
@@ -61,7 +60,6 @@ def _not_measured(scene: Scene) -> str:
             return f"they are about a {body} of {measured.name}, not of {mine.name}"
     if scene.surface not in known:
         return f"they are about {', '.join(s.state for s in known)} surfaces, not {scene.surface.state} ones"
-    beside = abs(degrees(atan2(-impact.v_t, -impact.v_n) - impact.angle))
-    if impact.omega or beside > FALL:
+    if impact.omega or abs(impact.beside) > BESIDE:
         return "their rods fell along their axis without spin"
     return ""

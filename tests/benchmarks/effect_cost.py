@@ -3,8 +3,8 @@
 Run ``python tests/benchmarks/effect_cost.py [FOLDER]``: it times t5b at its default mesh in one process and
 one thread, prints the table, and writes it as ``effect-cost.csv`` with its chart ``effect-cost.svg`` into a
 folder; without one the table goes where ``check`` reads its shares, and the chart to the documentation. The
-bare rod stands first and last: an effect that is absent has no item, no array and no branch, so what those two
-differ by is noise, and nothing that a row does not name can cost more.
+bare rod stands first and last: an effect that is absent has no item, no array and no branch, so what those
+two differ by is noise, and nothing that a row does not name can cost more.
 """
 
 from __future__ import annotations
