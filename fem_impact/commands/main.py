@@ -15,7 +15,7 @@ from importlib import import_module
 
 from fem_impact.commands.parser import Options, build_parser, read_line
 from fem_impact.commands.terminal import printable_streams
-from fem_impact.errors import FemImpactError, OutputPathError, RunError
+from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -55,24 +55,28 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
         sys.stdout.flush()
         return code
     except FemImpactError as error:
-        return _complain(str(error), error.exit_code)
+        return _complain(str(error), error.exit_code, options)
     except KeyboardInterrupt as stop:
-        return _complain(f"what was computed so far is kept. {stop}".strip(), 130)
+        return _complain(f"what was computed so far is kept. {stop}".strip(), 130, options)
     except MemoryError:
-        return _complain(
-            "out of memory. Use a larger accuracy.tip_size or fewer workers.", RunError.exit_code
-        )
+        remedy = "Use a larger accuracy.tip_size or fewer workers."
+        return _complain(f"out of memory. {remedy}", RunError.exit_code, options)
     except BrokenPipeError:
         # the reader of the output closed it (`| head`): end without a message
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
     except OSError as error:
-        return _complain(_disk_message(error), OutputPathError.exit_code)
+        return _complain(_disk_message(error), OutputPathError.exit_code, options)
 
 
-def _complain(message: str, code: int) -> int:
+def _complain(message: str, code: int, options: Options) -> int:
+    """Tell what went wrong on standard error; with ``--json`` also as a document on standard output."""
     kind = "interrupted" if code == 130 else "error"
     sys.stderr.write(f"fem-impact: {kind}: {message}\n")
+    if options.json:
+        from fem_impact.commands.common import print_json
+
+        print_json({"error": {"kind": EXIT_CODES[code], "exit_code": code, "message": message}})
     return code
 
 

@@ -41,7 +41,11 @@ EXAMPLES = {
     "audit": ("fem-impact audit --set t5b",),
     "coefficients": (f"fem-impact coefficients tests.csv {_ROD}",),
     "figure": ("fem-impact figure 7",),
-    "assess": (f'fem-impact assess --height "0.82 m" --surface machined {_ROD}',),
+    "sweep": ("fem-impact sweep t5b --vary impact.angle=15..60:5deg",),
+    "assess": (
+        "fem-impact assess t5b",
+        f'fem-impact assess --height "0.82 m" --surface machined {_ROD}',
+    ),
 }
 """Command lines that the help of each command shows."""
 
@@ -144,6 +148,7 @@ def _command(commands: Commands, name: str, summary: str, handler: str) -> argpa
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("--json", action="store_true", help="print one JSON document on standard output")
+    parser.add_argument("--quiet", action="store_true", help="show no progress")
     parser.set_defaults(handler=handler)
     return parser
 
@@ -175,7 +180,6 @@ def _add_run(commands: Commands) -> None:
         metavar="SECONDS",
         help="time between checkpoints (default: 30)",
     )
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_study(commands: Commands) -> None:
@@ -196,16 +200,11 @@ def _add_study(commands: Commands) -> None:
         help="measured sets, such as t5b, for studies about them (default: all)",
     )
     parser.add_argument("--quick", action="store_true", help="a small version, for a first look")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where to write (default: results/NAME)")
-    parser.add_argument(
-        "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
-    )
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask.distributed cluster to run on")
+    _add_many(parser)
     parser.add_argument(
         "--estimate", action="store_true", help="say how long it takes on 1 to 1000 workers, and stop"
     )
     _add_page(parser, "also")
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_sweep(commands: Commands) -> None:
@@ -229,7 +228,6 @@ def _add_many(parser: argparse.ArgumentParser) -> None:
         "--workers", type=_at_least_one, metavar="N", help="runs at a time (default: one a core)"
     )
     parser.add_argument("--scheduler", metavar="ADDRESS", help="of a dask.distributed cluster to run on")
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_render(commands: Commands) -> None:
@@ -258,7 +256,6 @@ def _add_render(commands: Commands) -> None:
     )
     size = "size of the film in pixels, multiples of 16 (default: 1280x720)"
     parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help=size)
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_report(commands: Commands) -> None:
@@ -299,7 +296,6 @@ def _add_cost(commands: Commands) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="where to write (default: results/cost/SCENE)"
     )
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_verify(commands: Commands) -> None:
@@ -327,7 +323,6 @@ def _add_stress(commands: Commands) -> None:
         "--workers", type=_at_least_one, metavar="N", help="cases at a time (default: one a core)"
     )
     _add_page(parser, "run all cases and")
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
 
 
 def _add_page(parser: argparse.ArgumentParser, words: str) -> None:
@@ -425,7 +420,6 @@ def _add_assess(commands: Commands, command: Command) -> None:
     parser.add_argument(
         "--out", type=Path, metavar="DIR", help="write a page to print and sign, and verdict.json"
     )
-    parser.add_argument("--quiet", action="store_true", help="show no progress")
     short = parser.add_argument_group("a dropped steel rod, instead of SCENE")
     _add_rod(short, required=False)
     short.add_argument("--height", help='drop height, such as "0.82 m"')

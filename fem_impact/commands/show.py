@@ -65,9 +65,27 @@ def report(options: Options) -> int:
     result = checked_result(options.result)
     from fem_impact.report.write import write_report
 
+    notes = _missing_film(result, options)
     path = write_report(result)
     if options.json:
-        print_json({"path": str(path)})
+        print_json({"path": str(path), "notes": notes})
     else:
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
         sys.stdout.write(f"report: {path}\n")
     return 0
+
+
+def _missing_film(result: Path, options: Options) -> list[str]:
+    """Make the film of a run that has fields and no film yet; return why there is none."""
+    from fem_impact.report.sections import has_film
+
+    if has_film(result) or not (result / "fields.vtkhdf").is_file():
+        return []
+    from fem_impact.render import film as films
+
+    if not options.quiet:
+        sys.stderr.write("drawing the film ...\n")
+    try:
+        return list(films.render(result).notes)
+    except (MissingLibraryError, ResultError) as error:
+        return [f"The page has no film: {error}"]

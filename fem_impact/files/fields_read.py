@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
@@ -16,6 +16,7 @@ from fem_impact.files.fields_check import check_finite, check_mesh, check_rows, 
 
 if TYPE_CHECKING:
     import h5py
+    import pyvista
 
 
 T = TypeVar("T")
@@ -56,6 +57,32 @@ class FieldFile:
     def cell_data(self, name: str, frame: int) -> np.ndarray:
         """Return ``(m,)`` or ``(m, k) float32`` cell data of one frame. Raises ResultError."""
         return self._rows("CellData", name, frame, self.cell_names)
+
+    def grid(self, frame: int) -> pyvista.UnstructuredGrid:
+        """Return the mesh of one frame as a PyVista grid, all stored fields on it.
+
+        Points stand where they are at that time, m; ``displacement`` leads from their places at the start.
+
+        Raises
+        ------
+        ResultError
+            There is no such frame, or the file is damaged.
+        """
+        import pyvista
+
+        moved = {name: self.point_data(name, frame) for name in self.point_names}
+        places = self.points + moved.get("displacement", 0.0)
+        grid = pyvista.UnstructuredGrid({pyvista.CellType.HEXAHEDRON: self.cells}, places)
+        grid.point_data.update(moved)
+        grid.cell_data.update({name: self.cell_data(name, frame) for name in self.cell_names})
+        grid.cell_data.update(dict(self.static))
+        grid.field_data["time_s"] = [self.times[frame]]
+        return grid
+
+    def grids(self) -> Iterator[tuple[float, pyvista.UnstructuredGrid]]:
+        """Yield the time, s, and the `grid` of every frame. Raises ResultError."""
+        for frame, time in enumerate(self.times.tolist()):
+            yield time, self.grid(frame)
 
     def _rows(self, kind: str, name: str, frame: int, names: tuple[str, ...]) -> np.ndarray:
         if name not in names:

@@ -62,7 +62,7 @@ class Overlay:
     def _scale(self, pen: Any) -> None:
         """Draw a length of 1, 2 or 5 times a power of ten, at most a third of the view."""
         length = 1e-6 * nice_factor(self.place.width / 3 / self.view.pixels / 1e-6)
-        left, low = self.place.left + 12, self.place.top + self.place.height - 12
+        left, low = self.place.left + 12, self.place.top + 34
         right = left + length * self.view.pixels
         pen.line([(left, low), (right, low)], fill=INK, width=3)
         write_at(pen, np.array([left, low - 18.0]), f"{length * 1e3:g} mm", INK)

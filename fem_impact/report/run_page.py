@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import replace
 from functools import partial
 from html import escape
 from pathlib import Path
 
+from fem_impact.errors import RunError, SceneError
 from fem_impact.figures.partition import partition_figure
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text
@@ -29,7 +32,9 @@ from fem_impact.report.sections import (
     unknown,
     waves_section,
 )
-from fem_impact.tables.table import Cell, Table
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_toml
+from fem_impact.tables.table import Cell, Table, number
 
 
 def _keys(*path: str) -> list[Key]:
@@ -61,26 +66,47 @@ def run_page(folder: Path) -> str:
         outcome.json is missing or damaged.
     """
     outcome = Outcome.read(folder / "outcome.json")
+    rigid = rigid_theory(outcome, folder)
     body = (
-        _cards(outcome),
-        notices([outcome], strangers(outcome, folder)),
-        section("Where the energy went", _partition(outcome, folder), key_table(outcome, ENERGY)),
-        effects_section(outcome),
-        history_figures(outcome, folder),
-        section("Contacts", contacts_table(outcome)),
-        waves_section(folder),
+        _cards(outcome, rigid),
         film_section(folder),
+        notices([outcome], strangers(outcome, folder)),
+        section(
+            "Where the energy went", _partition(outcome, folder), _folded(outcome, "shares", ENERGY, rigid)
+        ),
+        section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
+        waves_section(folder),
+        history_figures(outcome, folder),
+        section("Contacts", details("Times and impulses", contacts_table(outcome))),
         section("Heat of the contact", _heat(outcome)),
-        section("Motion", key_table(outcome, MOTION)),
-        section("Coefficients and losses with three sets of arms", _arms(outcome)),
+        section("Coefficients and losses", details("With three sets of arms", _arms(outcome))),
+        effects_section(outcome),
         unknown([outcome]),
         section("Range of validity", bullets(outcome.validity.outside)),
-        section("Cost", key_table(outcome, _keys("cost"))),
+        section("Cost", details("Time, memory and elements", key_table(outcome, _keys("cost")))),
         sources([*outcome.provenance.effects, *(["film"] if has_film(folder) else [])]),
         section("Record", _scene_text(folder), all_keys(outcome)),
     )
     origin = outcome.provenance
     return page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
+
+
+def rigid_theory(outcome: Outcome, folder: Path) -> Outcome | None:
+    """Return what rigid theory predicts for the scene of a run; None where it is the run, or cannot tell."""
+    path = folder / "scene.toml"
+    if outcome.provenance.fidelity == "rigid" or not path.is_file():
+        return None
+    try:
+        scene = read_toml(path)
+        stated = replace(scene, accuracy=replace(scene.accuracy, target=None))
+        return simulate(stated, "rigid")
+    except (SceneError, RunError):
+        return None
+
+
+def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | None) -> Markup:
+    beside = " beside rigid theory" if rigid else ""
+    return details(f"All {what}{beside}", key_table(outcome, keys, rigid=rigid))
 
 
 def _partition(outcome: Outcome, folder: Path) -> Markup:
@@ -100,23 +126,25 @@ def _heat(outcome: Outcome) -> Markup:
     return join([key_table(outcome, HEAT), bound, bullets(ASSUMPTIONS)])
 
 
-def _cards(outcome: Outcome) -> Markup:
+def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
     # only a measured set has arms of the paper
     measured = not isinstance(outcome.restitution.paper.e, Unknown)
     restitution = ("e, paper's arms", "e_paper", "") if measured else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
-    cards = [_card(outcome, label, KEY_TABLE[name], unit) for label, name, unit in shown]
+    cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
     residual = f"{outcome.energy.residual:.1e}"
     last = card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
     inner = join([*cards, _vibration_card(outcome), last])
     return Markup(f'<div class="cards">{inner.text}</div>')
 
 
-def _card(outcome: Outcome, label: str, key: Key, unit: str) -> Markup:
-    """Return a number with its band, or why it has none."""
+def _card(outcome: Outcome, rigid: Outcome | None, label: str, key: Key, unit: str) -> Markup:
+    """Return a number with its band, or why it has none, and what rigid theory predicts."""
     bands = outcome.validity.mesh_band
     missing = bands.reason if isinstance(bands, Unknown) else ""
-    return card(label, estimated(outcome, key) + unit, missing)
+    predicted = None if rigid is None else or_none(key.of(rigid))
+    theory = "" if predicted is None else f"rigid theory: {number(predicted)}{unit}"
+    return card(label, estimated(outcome, key) + unit, ". ".join(note for note in (theory, missing) if note))
 
 
 def _vibration_card(outcome: Outcome) -> Markup:

@@ -31,7 +31,7 @@ from fem_impact.report.page import FILMS, film, picture
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
 from fem_impact.tables.history import read_history
-from fem_impact.tables.table import Cell, Missing, Table
+from fem_impact.tables.table import Cell, Missing, Table, number
 
 
 def strangers(outcome: Outcome, folder: Path) -> list[str]:
@@ -133,18 +133,29 @@ def has_film(folder: Path) -> bool:
     return any((folder / name).is_file() for name in FILMS)
 
 
-def key_table(outcome: Outcome, keys: Iterable[Key], caption: str = "") -> Markup:
+def key_table(
+    outcome: Outcome, keys: Iterable[Key], caption: str = "", rigid: Outcome | None = None
+) -> Markup:
     """Return a table of meaning, value and unit of keys; of two meshes the limit and its band.
 
-    Keys that are not known are left out: `unknown` lists them.
+    Keys that are not known are left out: `unknown` lists them. With ``rigid``, what rigid theory predicts
+    stands beside each value.
     """
     shown = [key for key in keys if not isinstance(key.of(outcome), Unknown)]
     meanings = [key.meaning.replace(", as a fraction of E_0.", ".") for key in shown]
     rows = [
-        (f"{meaning} `{key.name}`", estimated(outcome, key), _unit(key))
+        (f"{meaning} `{key.name}`", estimated(outcome, key), *_predicted(rigid, key), _unit(key))
         for key, meaning in zip(shown, meanings, strict=True)
     ]
-    return table(Table.of(("quantity", "value", "unit"), rows, left=(0, 2)), caption)
+    head = ("quantity", "value", *(["rigid theory"] if rigid else []), "unit")
+    return table(Table.of(head, rows, left=(0, len(head) - 1)), caption)
+
+
+def _predicted(rigid: Outcome | None, key: Key) -> list[Cell]:
+    if rigid is None:
+        return []
+    value = key.of(rigid)
+    return [Missing(value.reason) if isinstance(value, Unknown) else number(or_none(value))]
 
 
 def card(name: str, value: str, note: str = "") -> Markup:
@@ -180,7 +191,8 @@ def unknown(rows: Sequence[Outcome]) -> Markup:
     ]
     shown = lines if len(rows) > 1 else [line[:2] for line in lines]
     head = ("key", "why it is not known", "runs")[: len(shown[0]) if shown else 2]
-    return section("What is not known", table(Table.of(head, shown, left=range(len(head)))))
+    listed = table(Table.of(head, shown, left=range(len(head))))
+    return section("What is not known", details("Keys and reasons", listed) if shown else Markup(""))
 
 
 def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -> list[str]:
@@ -241,7 +253,8 @@ def effects_section(outcome: Outcome) -> Markup:
         "An effect is needed when its number is above its threshold. The changes are about what leaving it "
         "out does. The run time is the share of its own parts; that of friction and rates is estimated."
     )
-    return section("Effects", table(Table.of(HEAD, rows, left=range(3)), caption))
+    folded = details("What the model has, and why", table(Table.of(HEAD, rows, left=range(3)), caption))
+    return section("Effects", folded if rows else Markup(""))
 
 
 def _row(choice: EffectChoice) -> list[Cell]:

@@ -19,6 +19,7 @@ from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.state import State
 from fem_impact.tables.growing import HistoryWriter
 
+QUIET = 20e-6  # s without contact before the free flight is evaluated: waves cross the block a few times
 GROWTH = 1e-2  # of E_0, growth of the total energy at which a run stops as unstable
 
 TAKEN = {"friction", "closing", "radiated", "damping"}
@@ -125,7 +126,7 @@ class Frames:
 
 @dataclass(slots=True)
 class ProgressObserver:
-    """Observer that reports progress towards ``end``, s, the latest time at which the run may end."""
+    """Observer that reports progress towards ``end``, s, when rod and barrier are expected to be apart."""
 
     moving: ClassVar[tuple[str, ...]] = ()
     show: Callable[[Progress], None]
@@ -138,18 +139,27 @@ class ProgressObserver:
 
     def observe(self, state: State) -> bool:
         """Report the progress."""
-        eta = self._eta(state.time)
+        end = self._end(state.time)
+        eta = self._eta(state.time, end)
         nodes = int(self.model.book.step[ACTIVE])
         contact = f"{nodes} nodes touch" if nodes else "no contact"
-        self.show(Progress(state.time, self.end, state.step, self.watch.drift, contact, eta, self.note))
+        self.show(
+            Progress(state.time, max(end, state.time), state.step, self.watch.drift, contact, eta, self.note)
+        )
         return False
 
-    def _eta(self, time: float) -> float | None:
-        """Return the wall time, s, to the latest end; None in the first 2 % of the run."""
+    def _end(self, time: float) -> float:
+        """Return the time, s, at which the contact is expected to be over; after a contact it ends soon."""
+        book = self.model.book
+        over = bool(book.intervals) and not book.touching
+        return book.last_touch + QUIET if over else self.end
+
+    def _eta(self, time: float, end: float) -> float | None:
+        """Return the wall time, s, to the expected end; None in the first 2 % and where it has passed."""
         # a resumed run does not begin at time 0
         self.begun = self.begun or (clock.monotonic(), time)
         spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
-        return spent * (self.end - time) / done if done > 0.02 * self.end else None
+        return spent * (end - time) / done if done > 0.02 * self.end and time < end else None
 
 
 @dataclass(slots=True)

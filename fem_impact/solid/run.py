@@ -138,7 +138,7 @@ def _progress_observer(
     plan: Plan, model: Model, watchers: Watchers, show: Callable[[Progress], None]
 ) -> ProgressObserver:
     """Return the observer that reports progress; report a first compilation at once."""
-    end = plan.max_time
+    end = plan.size.steps * plan.size.step
     if not compiled_before():
         show(compiling(end, 20))
     return ProgressObserver(show, watchers.watch, model, end, plan.scene.id)

@@ -14,11 +14,11 @@ from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.footing import risen, speed_of
 from fem_impact.solid.model import Model
+from fem_impact.solid.observers import QUIET
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
 SAMPLE = 2e-6  # s, interval at which the free flight is evaluated
-QUIET = 20e-6  # s without contact before the flight is evaluated: waves cross the block a few times
 
 
 @dataclass(slots=True)

@@ -148,3 +148,15 @@ def test_a_reader_that_leaves_makes_no_noise():
     line = f"{sys.executable} -m fem_impact scenes | true"
     done = subprocess.run(["bash", "-c", line], capture_output=True, text=True, check=True)
     assert done.stderr == ""
+
+
+def test_a_report_makes_the_film_that_is_missing(cli, stand):
+    Path("here").mkdir()
+    for file in ("outcome.json", "fields.vtkhdf"):
+        Path("here", file).write_text("{}")
+    told = json.loads(cli("report", "here", "--json", "--quiet")[1])
+    assert told["notes"] == ["install libegl1"]
+    assert [name for name, _ in stand.calls] == ["render", "write_report"]
+    Path("here", "film.webp").write_text("a film")
+    cli("report", "here")
+    assert [name for name, _ in stand.calls] == ["render", "write_report", "write_report"]

@@ -1,6 +1,7 @@
 """A wrong command line is exit code 2; what is understood and refused is 3."""
 
 import argparse
+import json
 import shlex
 
 import pytest
@@ -68,3 +69,10 @@ def test_the_help_of_every_command_shows_examples_that_are_understood():
         assert lines
         assert all(f"\n  {line}" in several.choices[name].format_help() for line in lines)
         assert all(read_line(shlex.split(line.replace("\\\n", ""))[1:]).handler for line in lines)
+
+
+def test_an_error_under_json_is_json_as_well(cli):
+    code, out, err = cli("check", "t5bb", "--json")
+    told = json.loads(out)["error"]
+    assert (told["exit_code"], code) == (code, 2)
+    assert "Did you mean t5b?" in told["message"] and told["message"] in err

@@ -281,3 +281,16 @@ def test_forged_data_of_a_frame_are_refused(tmp_path, harm, reason):
         harm(file["VTKHDF"])
     with pytest.raises(ResultError, match=reason):
         read_fields(fields.path).point_data("displacement", 1)
+
+
+def test_every_frame_is_a_pyvista_grid_at_its_time(tmp_path):
+    fields = read_fields(result_maker.write_fields(tmp_path / "f.vtkhdf", frames=3, across=4, along=4).path)
+    listed = list(fields.grids())
+    assert [time for time, _ in listed] == fields.times.tolist()
+    time, grid = listed[2]
+    assert grid.n_cells == len(fields.cells) and grid.field_data["time_s"][0] == time
+    assert np.allclose(grid.points, fields.points + fields.point_data("displacement", 2))
+    assert set(grid.cell_data.keys()) == {"body", "mises", "plastic_strain"}
+    assert np.array_equal(grid.cell_data["mises"], fields.cell_data("mises", 2))
+    with pytest.raises(ResultError, match="frame 3 is asked for"):
+        fields.grid(3)

@@ -15,6 +15,7 @@ from fem_impact.report.sections import effects_section
 from fem_impact.report.study_data import read_study
 from fem_impact.report.study_page import draw_study
 from fem_impact.report.write import write_report
+from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import digest, to_toml
 from fem_impact.tables.table import Marked, Table, number
@@ -96,6 +97,27 @@ def test_film_is_embedded_when_there_is_one(run):
     assert "video" in reader.tags
     assert any(address.startswith("data:video/mp4;base64,") for address in reader.addresses)
     assert "PyVista" in words
+
+
+def test_rigid_theory_stands_beside_the_numbers(run):
+    assert "rigid theory" not in read(write_report(run))[1]
+    scene = load("t5b")
+    result_maker.write_result(run, scene_digest=digest(scene))
+    (run / "scene.toml").write_text(to_toml(scene))
+    words = read(write_report(run))[1]
+    predicted = simulate(scene, "rigid")
+    assert f"rigid theory: {number(predicted.restitution.paper.e)}" in words
+    assert f"rigid theory: {number(predicted.motion.Omega)} rad/s" in words
+    assert "All shares beside rigid theory" in words
+
+
+def test_the_waves_have_a_diagram_with_data(run):
+    assert "Waves along the rod" not in read(write_report(run))[1]
+    result_maker.write_waves(run / "waves.h5")
+    assert "Waves along the rod" in read(write_report(run))[1]
+    assert (run / "figures" / "waves.csv").is_file()
+    (run / "waves.h5").write_bytes(b"no waves")
+    assert "No diagram of the waves" in read(write_report(run))[1]
 
 
 def test_everything_from_outside_is_escaped(run):
