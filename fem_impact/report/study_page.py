@@ -62,7 +62,9 @@ def study_page(folder: Path, again: bool = True) -> str:
         section("Cost", _costs(rows)),
         sources([*study.sources, *(["film"] if filmed else [])]),
     )
-    return page(study.title, "Study", "", _footer(study), body)
+    quick = "--quick" in study.command.split()
+    title = f"{study.title} (quick look: {study.runs} runs, not a result)" if quick else study.title
+    return page(title, "Study", "", _footer(study), body)
 
 
 def _cards(study: Study) -> Markup:

@@ -234,6 +234,12 @@ def test_a_study_drawn_beforehand_is_only_drawn_again_if_asked(study):
     assert all(file.stat().st_mtime_ns > before for file, before in zip(own, drawn, strict=True))
 
 
+def test_a_quick_look_says_that_it_is_no_result(study):
+    assert "not a result" not in read(write_report(study))[1]
+    edit(study, command="fem-impact study sets --quick")
+    assert "Model beside measurement (quick look: 2 runs, not a result)" in read(write_report(study))[1]
+
+
 def test_study_report_names_failures_and_assumptions(study):
     edit(
         study,
