@@ -9,10 +9,13 @@ import numpy as np
 
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
-from fem_impact.study.criterion_measure import linear_rods, rods_of
+from fem_impact.study import criterion_solid
+from fem_impact.study.criterion_measure import linear_rods, modal_restitution, rods_of
 from fem_impact.study.criterion_report import HERTZ, YIELDING, study_report
+from fem_impact.study.criterion_solid import restitution, solid_rods, without
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.rods import BODY, PAPER_RODS, STATES, TIP, Drop, length_of
+from fem_impact.study.gamma_points import expected_time
+from fem_impact.study.rods import BODY, PAPER_RODS, TIP, Drop, length_of
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -29,9 +32,8 @@ FAMILIES = {
     HERTZ[0]: Drop(0.1, tip_radius=TIP),
     HERTZ[1]: Drop(0.1),
     YIELDING: Drop(0.1, yields=True),
-    "yielding, machined": Drop(0.1, yields=True, friction=STATES["machined"]),
 }
-"""Kinds of contact by name, each as a drop whose length, diameter and angle are then varied."""
+"""Kinds of contact by the modal fidelity, each as a drop whose length, diameter and angle are then varied."""
 
 
 def drops(family: Drop, quick: bool) -> list[Drop]:
@@ -54,10 +56,16 @@ def blind_drops(quick: bool) -> list[Drop]:
 
 
 def plan(request: Request, results: Results) -> list[Job]:
+    """Return the jobs by finite elements, the longest first, and those by modes."""
+    solid = sorted(criterion_solid.jobs(request.quick), key=expected_time, reverse=True)
+    return [*solid, *modal_jobs(request.quick)]
+
+
+def modal_jobs(quick: bool) -> list[Job]:
     """Return the modal job of every drop, and of the same drop with a rod that cannot vibrate."""
-    vibrating = [drop for family in FAMILIES.values() for drop in drops(family, request.quick)]
+    vibrating = [drop for family in FAMILIES.values() for drop in drops(family, quick)]
     stiff = [replace(drop, vibrates=False) for drop in vibrating]
-    chosen = {d.name: d for d in (*vibrating, *stiff, *blind_drops(request.quick))}
+    chosen = {d.name: d for d in (*vibrating, *stiff, *blind_drops(quick))}
     return [Job(name, drop.scene(), "modal") for name, drop in chosen.items()]
 
 
@@ -66,4 +74,20 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     quick = request.quick
     families = {name: rods_of(drops(family, quick), results) for name, family in FAMILIES.items()}
     families["linear spring"] = linear_rods(drops(FAMILIES[HERTZ[1]], quick))
-    return publish(study_report(families, blind_drops(quick), results), request, results)
+    found = {name: solid_rods(of, quick, results) for name, of in criterion_solid.families(quick).items()}
+    families |= {name: rods for name, rods in found.items() if rods}
+    confirmed = criterion_solid.elastic_ends(quick)
+    ends = [(drop, *_ends(drop, quick, results)) for drop in confirmed]
+    return publish(study_report(families, tuple(found), ends, blind_drops(quick), results), request, results)
+
+
+def _ends(drop: Drop, quick: bool, results: Results) -> tuple[float | None, float | None]:
+    """Return the change of e by vibration of an elastic drop by finite elements and by modes."""
+    factor, stiff = (criterion_solid.QUICK if quick else criterion_solid.FULL).own, without(drop)
+    solid = (restitution(drop, factor, results), restitution(stiff, factor, results))
+    modal = (modal_restitution(drop, results), modal_restitution(stiff, results))
+    return _change(*solid), _change(*modal)
+
+
+def _change(e: float | None, e_rigid: float | None) -> float | None:
+    return None if e is None or e_rigid is None else e - e_rigid

@@ -18,7 +18,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.plan.plan import plan
-from fem_impact.reference.free_modes import bending_period
 from fem_impact.reference.hertz import SPAN
 from fem_impact.reference.oblique import ObliqueRod, oblique_rod
 from fem_impact.study.point_mass import contact_time, spring_drop
@@ -46,6 +45,8 @@ class Rod:
     whole : float
         T1 over the contact time of the rod's whole mass, falling at full speed onto the contact of 45
         degrees. The effective mass of an inclined contact is less: m* = m / (1 + d_c^2/k^2).
+    bands : (n,)
+        Half-widths of e - e_rigid by the mesh; 0 without a mesh.
     """
 
     drop: Drop
@@ -54,11 +55,22 @@ class Rod:
     e_rigid: Array
     groups: Array
     whole: float
+    bands: Array
 
     @property
     def error(self) -> float:
         """Largest change of e by vibration over the angles."""
         return float(np.abs(self.e - self.e_rigid).max())
+
+    @property
+    def error_low(self) -> float:
+        """Largest change of e that the bands leave sure."""
+        return float((np.abs(self.e - self.e_rigid) - self.bands).max())
+
+    @property
+    def error_high(self) -> float:
+        """Largest change of e that the bands allow."""
+        return float((np.abs(self.e - self.e_rigid) + self.bands).max())
 
     @property
     def spread(self) -> float:
@@ -74,6 +86,8 @@ class Rod:
 Rods = list[Rod]
 Measure = Callable[[Rod], float]
 error_of, spread_of = attrgetter("error"), attrgetter("spread")
+error_low, error_high = attrgetter("error_low"), attrgetter("error_high")
+gamma_of, group_of = attrgetter("drop.gamma"), attrgetter("group")
 
 
 def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
@@ -93,13 +107,27 @@ def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
         ]
         if done:
             drop = done[0][0]
-            T1, level = first_period(drop), replace(drop, angle=45.0).scene()
             angles, e, e_rigid, groups = np.array(
-                [(d.angle, e, e_rigid, T1 / touches[0].duration) for d, e, e_rigid, touches in done]
+                [
+                    (d.angle, e, e_rigid, d.first_period / touches[0].duration)
+                    for d, e, e_rigid, touches in done
+                ]
             ).T
-            tau = contact_time(contact_law(plan(level, "modal").bodies), projectile(level).mass, drop.speed)
-            rods.append(Rod(drop, angles, e, e_rigid, groups, T1 / tau))
+            rods.append(Rod(drop, angles, e, e_rigid, groups, whole_ratio(drop), np.zeros(len(e))))
     return rods
+
+
+def whole_ratio(drop: Drop) -> float:
+    """Return T1/tau with tau of the rod's whole mass on the contact of 45 degrees (`Rod.whole`)."""
+    level = replace(drop, angle=45.0).scene()
+    law, mass = contact_law(plan(level, "modal").bodies), projectile(level).mass
+    return drop.first_period / contact_time(law, mass, drop.speed)
+
+
+def modal_restitution(drop: Drop, results: Results) -> float | None:
+    """Return e of a drop by modes, None where its run failed."""
+    run = results.get(drop.name)
+    return known(run.restitution.edge.e) if isinstance(run, Outcome) else None
 
 
 def linear_rods(drops: Iterable[Drop]) -> Rods:
@@ -112,11 +140,11 @@ def linear_rods(drops: Iterable[Drop]) -> Rods:
     rods = []
     for _, group in groupby(drops, lambda drop: (drop.diameter, drop.length)):
         same = list(group)
-        bodies, T1 = [slender(drop) for drop in same], first_period(same[0])
+        bodies, T1 = [slender(drop) for drop in same], same[0].first_period
         e = np.array([spring_drop(body, k).restitution for body in bodies])
         groups = np.array([T1 / (pi * sqrt(_effective(body) / k)) for body in bodies])
         angles, whole = np.array([drop.angle for drop in same]), T1 / (pi * sqrt(bodies[0].mass / k))
-        rods.append(Rod(same[0], angles, e, np.ones(len(same)), groups, whole))
+        rods.append(Rod(same[0], angles, e, np.ones(len(e)), groups, whole, np.zeros(len(e))))
     return rods
 
 
@@ -146,12 +174,6 @@ def slender(drop: Drop) -> ObliqueRod:
     )
 
 
-def first_period(drop: Drop) -> float:
-    """Return the first bending period of a rod, s."""
-    steel = drop.scene().projectile.material
-    return bending_period(steel.E, steel.nu, steel.rho, drop.length, drop.diameter / 2)
-
-
 def blind_ratio(drop: Drop) -> float:
     """Return mu*, the ratio of tangential to normal force that does not excite the first bending mode."""
     rod = slender(drop)
@@ -164,8 +186,13 @@ def of_body(rods: Rods) -> Rods:
 
 
 def gamma_at(rods: Rods, diameter: float, level: float, measure: Measure = error_of) -> float | None:
-    """Return the slenderness at which rods of a diameter first pass a level, by linear interpolation."""
-    same = sorted((r.drop.gamma, measure(r)) for r in rods if r.drop.diameter == diameter)
+    """Return the slenderness at which rods of a diameter first pass a level."""
+    return place_at([r for r in rods if r.drop.diameter == diameter], level, gamma_of, measure)
+
+
+def place_at(rods: Rods, level: float, place: Measure, measure: Measure = error_of) -> float | None:
+    """Return where, in slenderness or T1/tau, a measure first passes a level, by linear interpolation."""
+    same = sorted((place(r), measure(r)) for r in rods)
     for (low, below), (high, above) in pairwise(same):
         if below < level <= above:
             return low + (high - low) * (level - below) / (above - below)

@@ -17,14 +17,19 @@ from fem_impact.study.criterion_measure import (
     Measure,
     Rods,
     blind_ratio,
+    error_high,
+    error_low,
     error_of,
     exponent,
     gamma_at,
+    gamma_of,
+    group_of,
     of_body,
+    place_at,
     spread_of,
 )
 from fem_impact.study.document import Picture, Sheet, StudyReport
-from fem_impact.study.rods import BODY, DROP_NOTES, PAPER_RODS, Drop
+from fem_impact.study.rods import BODY, DROP_NOTES, MODAL_NOTE, PAPER_RODS, Drop
 from fem_impact.study.static_give import give_picture, give_sentences, give_sheet, gives_of
 from fem_impact.tables.table import Cell, Table
 from rigid import LIMIT
@@ -35,12 +40,17 @@ KNOWN = ((0.67, 0.75, 0.83, 0.90, 0.98), (0.98, 0.95, 0.89, 0.84, 0.79))
 
 JUDGED = 0.05  # error of e that the verdict on the limit of Eq 29 allows
 HERTZ = ("Hertz, one tip radius", "Hertz, tip in proportion")
-YIELDING = "yielding, frictionless"
+YIELDING = "yielding, frictionless, modes"
 GROUP, WHOLE = attrgetter("group"), attrgetter("whole")  # T1/tau in both meanings of tau
 Families = Mapping[str, Rods]
 """Rods by the name of their family."""
+Ends = Sequence[tuple[Drop, float | None, float | None]]
+"""Elastic drops with the change of e by vibration, by finite elements and by modes."""
 ASSUMPTIONS = (
     *DROP_NOTES,
+    MODAL_NOTE,
+    "Yielding, contaminated and machined: finite elements on two meshes; the band is that of the difference "
+    "of e with and without vibration. All other families: modes, without a band.",
     "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
     "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
     "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "
@@ -50,11 +60,22 @@ ASSUMPTIONS = (
 )
 
 
-def study_report(families: Families, blind: Sequence[Drop], results: Results) -> StudyReport:
-    """Return the study from the rods of each family and the drops over friction."""
+def study_report(
+    families: Families, solid: Sequence[str], ends: Ends, blind: Sequence[Drop], results: Results
+) -> StudyReport:
+    """Return the study from the rods of each family and the drops over friction.
+
+    ``solid`` names the families by finite elements, also those without a finished rod; ``ends`` are elastic
+    drops by finite elements.
+    """
     gives = gives_of(families[YIELDING])
     sentences = {
-        "onset": [*_origin(families), *_verdicts(families)],
+        "onset": [
+            *_onsets(families, solid),
+            *_origin(families, solid),
+            *_verdicts(families),
+            *_confirmed(ends),
+        ],
         "angles": _invariance(families),
         "static-give": give_sentences(gives),
         "master": [*_group(families), *_known(families)],
@@ -88,7 +109,9 @@ def _onset(families: Families) -> Picture:
     series = []
     for at, (name, rods) in enumerate(families.items()):
         same = of_body(rods)
-        series.append(Series(name, [r.drop.gamma for r in same], [r.error for r in same], "line", at))
+        gamma, error = [r.drop.gamma for r in same], [r.error for r in same]
+        band = [r.error_high - r.error for r in same] if any(r.bands.any() for r in same) else None
+        series.append(Series(name, gamma, error, "line" if band is None else "joined", at, band))
     marks = (Mark(LIMIT, "limit of Eq 29"),)
     label = "largest error of e by rigid theory"
     panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, LEVELS)
@@ -133,10 +156,62 @@ def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> Ar
     return np.reshape(pairs, (-1, 2)).T
 
 
-def _origin(families: Families) -> list[str]:
-    """Return, per family, where the error passes each level and the exponent of l over d."""
+def _onsets(families: Families, solid: Sequence[str]) -> list[str]:
+    """Return, per family by finite elements, where the error passes each level, with the band of that."""
+    sentences = []
+    for name in solid:
+        rods = families.get(name, [])
+        passed = [f"{level:.0%} {where}" for level in LEVELS if (where := _where(rods, level))]
+        tops = [
+            f"{r.error:.3f} ± {r.error_high - r.error:.3f} at gamma {r.drop.gamma:.0f}"
+            for r in rods[:1] + rods[-1:]
+        ]
+        told = "; ".join(passed) if passed else "no level within the map"
+        sentences.append(
+            f"{name}, by finite elements: vibration changes e by {told}; it is {' and '.join(tops)}."
+            if rods
+            else f"{name}, by finite elements: no rod was computed (see what failed)."
+        )
+    return sentences
+
+
+def _where(rods: Rods, level: float) -> str:
+    """Return gamma and T1/tau at which the error passes a level, each with the ends of its band."""
+    gamma = place_at(rods, level, gamma_of)
+    if gamma is None:
+        return "already for the shortest rod" if rods and rods[0].error >= level else ""
+    told = [f"beyond gamma {gamma:.1f}{_ends_of(rods, level, gamma_of)}"]
+    group = place_at(rods, level, group_of)
+    return " ".join([*told, *([f"or T1/tau {group:.2f}{_ends_of(rods, level, group_of)}"] if group else [])])
+
+
+def _ends_of(rods: Rods, level: float, place: Measure) -> str:
+    """Return between which places the bands of the mesh leave the onset; open where they reach no place."""
+    early, late = (place_at(rods, level, place, measure) for measure in (error_high, error_low))
+    first, last = (
+        "the first rod" if early is None else f"{early:.3g}",
+        "beyond the last" if late is None else f"{late:.3g}",
+    )
+    return f" ({first} to {last})"
+
+
+def _confirmed(ends: Ends) -> list[str]:
+    """Return how far modes lie from finite elements on elastic drops, in the change of e by vibration."""
+    both = [(d, fem, modal) for d, fem, modal in ends if fem is not None and modal is not None]
+    told = ", ".join(f"{fem:+.3f} for {modal:+.3f} at gamma {d.gamma:.0f}" for d, fem, modal in both)
+    return (
+        [f"Elastic, frictionless, 45 degrees: vibration changes e by finite elements by {told} by modes."]
+        if both
+        else []
+    )
+
+
+def _origin(families: Families, solid: Sequence[str]) -> list[str]:
+    """Return, per family by modes, where the error passes each level and the exponent of l over d."""
     sentences = []
     for name, rods in families.items():
+        if name in solid:
+            continue
         powers = [(level, exponent(rods, level)) for level in LEVELS]
         exponents = ", ".join(f"{p:.2f} at {level:.0%}" for level, p in powers if p is not None)
         sentences.append(
@@ -241,10 +316,11 @@ def _levels(families: Families) -> Sheet:
     measures: dict[str, Measure] = {"error of e": error_of, "spread of e": spread_of}
     rows: list[list[Cell]] = []
     for name, rods in families.items():
-        thin, *_, thick = sorted({r.drop.diameter for r in rods})
+        diameters = sorted({r.drop.diameter for r in rods})
+        thin, thick = (diameters[0], diameters[-1]) if len(diameters) > 1 else (None, None)
         for title, measure in measures.items():
             for level in LEVELS:
-                onset = [gamma_at(rods, d, level, measure) for d in (thin, BODY, thick)]
+                onset = [gamma_at(rods, d, level, measure) if d else None for d in (thin, BODY, thick)]
                 rows.append([name, title, level, *onset, exponent(rods, level, measure)])
     head = ("contact", "measure", "level", "gamma_thinnest", "gamma_19_mm", "gamma_thickest", "exponent")
     caption = "Slenderness at which error or spread of e over the angles passes a level, and the exponent"
@@ -265,10 +341,10 @@ def _rods(families: Families) -> Sheet:
 def _curves(families: Families) -> Sheet:
     """Return e at every angle of every rod."""
     rows: list[list[Cell]] = [
-        [name, r.drop.gamma, r.drop.diameter, float(a), float(e), float(stiff), float(group)]
+        [name, r.drop.gamma, r.drop.diameter, float(a), float(e), float(stiff), float(band), float(group)]
         for name, rods in families.items()
         for r in rods
-        for a, e, stiff, group in zip(r.angles, r.e, r.e_rigid, r.groups, strict=True)
+        for a, e, stiff, band, group in zip(r.angles, r.e, r.e_rigid, r.bands, r.groups, strict=True)
     ]
-    head = ("contact", "gamma", "diameter_m", "angle_deg", "e", "e_rigid", "T1_over_tau")
+    head = ("contact", "gamma", "diameter_m", "angle_deg", "e", "e_rigid", "band_of_change", "T1_over_tau")
     return Sheet("curves", "Every rod and angle", Table.of(head, rows), shown=False)

@@ -77,18 +77,20 @@ def where_it_peaks(curves: Curves, yields: bool) -> str:
     if not after:
         return f"{said}, the longest rod."
     low, last = min(after, key=_value), after[-1]
+    if _value(top) - _value(low) <= (top.band(VIBRATION) or 0.0) + (low.band(VIBRATION) or 0.0):
+        return f"{said}; beyond it stays within the bands (least {share(low)} at gamma {low.drop.gamma:.0f})."
     again = f" At gamma {last.drop.gamma:.0f} it is {share(last)}." if last is not low else ""
     return f"{said}; it falls {_fall(top, low)}{again}"
 
 
 def _fall(top: Point, low: Point) -> str:
     """Return how far vibration falls, and which part of that later contacts make."""
-    left = low.own if low.first is None else low.first
-    back, fall = (left or 0.0) - (low.own or 0.0), (top.own or 0.0) - (low.own or 0.0)
+    first, fall = low.own if low.first is None else low.first, _value(top) - _value(low)
+    back = (first or 0.0) - (low.own or 0.0)
     mostly = "later contacts give energy back" if back > fall / 2 else "the first contact itself leaves less"
     return (
         f"to {share(low)} at gamma {low.drop.gamma:.0f}, mostly because {mostly}: the first contact leaves "
-        f"{100 * (left or 0.0):.2g} % there, {'later contacts change that by ' if back else 'no later one '}"
+        f"{100 * (first or 0.0):.2g} % there, {'later contacts change that by ' if back else 'no later one '}"
         + (f"{-100 * back:+.2g} % of E_0." if back else "follows.")
     )
 

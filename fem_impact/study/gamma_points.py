@@ -110,9 +110,9 @@ class Member:
 
     def jobs(self, factor: float) -> list[Job]:
         """Return the jobs, one a place, on a mesh with elements ``factor`` times the scene's own."""
-        scene = _resized(self.scene, factor)
+        scene, name = _resized(self.scene, factor), f"{self.name}-x{factor:g}"
         return [
-            Job(f"{self.name}-x{factor:g}" + (f"-at-{place:g}" if place else ""), shifted(scene, place))
+            Job(f"{name}-at-{place:g}", shifted(scene, place)) if place else Job(name, scene)
             for place in self.places
         ]
 
@@ -179,7 +179,7 @@ def expected_time(job: Job) -> float:
 
 @cache
 def _planned_time(scene: Scene) -> float:
-    return plan(scene).size.time
+    return plan(scene, "modal").size.time
 
 
 @cache

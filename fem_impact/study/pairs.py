@@ -25,7 +25,7 @@ def resized(scene: Scene, factor: float) -> Scene:
 
     A contact that larger elements do not resolve is reported all the same: it counts for the band alone.
     """
-    zones = plan(scene).zones
+    zones = plan(scene, "modal").zones
     sizes = {"tip_size": zones.tip_size, "barrier_size": zones.barrier_size}
     changes: dict[str, str | int] = {
         f"accuracy.{key}": f"{factor * size * 1e3:g} mm" for key, size in sizes.items()

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
+from fem_impact.jobs.job import Failure
 from fem_impact.modal.impact import solve
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import contact_law, restitution
@@ -14,20 +15,39 @@ from fem_impact.plan.plan import plan as planned
 from fem_impact.progress import NullMeter
 from fem_impact.reference.hertz import SPAN
 from fem_impact.study import document, static_give
-from fem_impact.study.criterion import FAMILIES, conclude, drops, plan
+from fem_impact.study.criterion import FAMILIES, conclude, drops, modal_jobs, plan
 from fem_impact.study.criterion_measure import (
     Rod,
     blind_ratio,
+    error_high,
+    error_low,
+    error_of,
     exponent,
     gamma_at,
+    gamma_of,
+    place_at,
     rods_of,
     slender,
     spread_of,
 )
+from fem_impact.study.criterion_report import HERTZ, _onsets
+from fem_impact.study.criterion_solid import (
+    FULL,
+    elastic_ends,
+    families,
+    member,
+    solid_rods,
+    without,
+)
+from fem_impact.study.criterion_solid import jobs as solid_jobs
 from fem_impact.study.document import Request
+from fem_impact.study.gamma_points import expected_time
 from fem_impact.study.point_mass import contact_time, spring_drop
-from fem_impact.study.rods import PAPER_RODS, Drop, length_of
+from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of
 from fem_impact.study.static_give import static_restitution
+from rigid import LIMIT
+
+TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.0}
 
 
 def law_of(drop):
@@ -69,10 +89,11 @@ def test_a_soft_contact_leaves_a_rod_rigid_and_a_short_touch_conserves_energy(an
     assert kept + stiff.vibration == pytest.approx(1.0, abs=1e-9)
 
 
-def a_rod(gamma, diameter, error):
+def a_rod(gamma, diameter, error, band=0.0):
     drop = Drop(length_of(gamma, diameter), diameter=diameter)
     e = np.array([1.0, 1.0 - error, 1.0])
-    return Rod(drop, np.array([1.0, 40.0, 80.0]), e, np.ones(3), np.array([0.5, 0.7, 0.6]), 0.4)
+    bands = np.array([0.0, band, 0.0])
+    return Rod(drop, np.array([1.0, 40.0, 80.0]), e, np.ones(3), np.array([0.5, 0.7, 0.6]), 0.4, bands)
 
 
 def test_onsets_and_exponents_of_known_curves():
@@ -134,9 +155,8 @@ def test_the_bending_blind_direction_of_the_papers_rods():
 def fake(job):
     """e falls with length and angle where the rod can vibrate; contacts last 100 us."""
     lost = 8 * job.scene.projectile.length**2 if "vibration" in job.scene.effects else 0.0
-    touch = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.0}
     e = 1.0 - lost * np.sin(job.scene.impact.angle)
-    return outcome(e_edge=float(e), contacts=[touch], E_vib_over_E_0=(job.scene.surface.friction - 0.5) ** 2)
+    return outcome(e_edge=float(e), contacts=[TOUCH], E_vib_over_E_0=(job.scene.surface.friction - 0.5) ** 2)
 
 
 @pytest.fixture
@@ -158,15 +178,71 @@ def test_the_study_judges_the_criterion(results, tmp_path, monkeypatch):
     monkeypatch.setattr(document, "_draw", lambda picture, _: drawn.update({picture.name: picture}))
     found = conclude(Request(tmp_path, quick=True), results, NullMeter())
     assert "Hertz, tip in proportion: with 5% allowed, gamma <= 26.45 is unsafe" in found.text
+    assert "yielding, machined, by finite elements: vibration changes e by" in found.text
+    assert "Elastic, frictionless, 45 degrees: vibration changes e by finite elements by" in found.text
     assert "vibrate least at f = 0.50" in found.text
     assert "is no loss to vibration" in found.text
     assert set(drawn) == {"angles", "onset", "static-give", "master", "blind-direction"}
     levels = (tmp_path / "levels.csv").read_text().splitlines()
-    assert len(levels) == 1 + 2 * 3 * (len(FAMILIES) + 1)
+    assert len(levels) == 1 + 2 * 3 * (len(FAMILIES) + len(families(True)) + 1)
 
 
-def test_every_drop_has_a_rigid_twin_on_the_same_contact(tmp_path):
-    jobs = {job.name for job in plan(Request(tmp_path), {})}
+def test_every_drop_has_a_rigid_twin_on_the_same_contact():
+    jobs = {job.name for job in modal_jobs(False)}
     every = [d for family in FAMILIES.values() for d in drops(family, False)]
     assert {d.name for d in every} | {replace(d, vibrates=False).name for d in every} <= jobs
     assert max(d.angle for d in every) == 80.0
+
+
+def test_the_yielding_rods_are_those_that_were_promised():
+    drops_of = families(False)
+    assert set(drops_of) == {"yielding, contaminated", "yielding, machined"}
+    for name, of in drops_of.items():
+        assert {round(d.gamma, 9) for d in of} == {10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0}
+        assert len({d.angle for d in of}) == 6 and len(of) == 42
+        assert {d.friction for d in of} == {STATES[name.removeprefix("yielding, ")]}
+    assert {d.name for d in elastic_ends(False)} <= {d.name for d in drops(FAMILIES[HERTZ[1]], False)}
+    assert {d.name for d in elastic_ends(True)} <= {d.name for d in drops(FAMILIES[HERTZ[1]], True)}
+
+
+def test_the_yielding_rods_fit_their_time():
+    """Of the whole study every twelfth job, as each one's time takes a while to tell."""
+    times = [expected_time(job) for job in solid_jobs(False)[::12]]
+    assert 12 * sum(times) < 2 * 3600 * 2
+    assert sum(expected_time(job) for job in solid_jobs(True)) < 60 * 2
+
+
+def two_meshes(drop, e, e_rigid):
+    """Results of a drop and its rigid twin: e on the own and the second mesh."""
+    results = {}
+    for d, values in ((drop, e), (without(drop), e_rigid)):
+        for factor, value in zip((FULL.own, FULL.second), values, strict=True):
+            results[member(d).jobs(factor)[0].name] = outcome(e_edge=value, contacts=[TOUCH])
+    return results
+
+
+def test_a_mesh_that_shifts_both_rods_alike_leaves_no_band():
+    drop = families(False)["yielding, machined"][0]
+    (rod,) = solid_rods([drop], False, two_meshes(drop, (0.40, 0.38), (0.30, 0.28)))
+    assert rod.error == pytest.approx(0.10) and rod.error_high == pytest.approx(rod.error_low)
+    assert rod.e[0] > 0.40 and rod.group == pytest.approx(drop.first_period / 1e-4)
+    (rod,) = solid_rods([drop], False, two_meshes(drop, (0.40, 0.38), (0.30, 0.30)))
+    half = 0.5 * 0.02 / (2**0.75 - 1)
+    assert (rod.error, rod.error_high) == pytest.approx((0.10 + half, 0.10 + 2 * half))
+
+
+def test_an_angle_whose_run_failed_is_left_out():
+    low, high = families(False)["yielding, machined"][:2]
+    results = two_meshes(low, (0.4, 0.4), (0.3, 0.3)) | two_meshes(high, (0.5, 0.5), (0.3, 0.3))
+    results[member(high).jobs(FULL.second)[0].name] = Failure("x", "folded")
+    (rod,) = solid_rods([low, high], False, results)
+    assert rod.angles.tolist() == [low.angle]
+
+
+def test_the_onset_has_the_ends_of_its_band():
+    rods = [a_rod(gamma, 0.019, 0.01 * (gamma - 10.0), 0.02) for gamma in (10.0, 20.0, 30.0)]
+    assert [place_at(rods, 0.1, gamma_of, m) for m in (error_high, error_of, error_low)] == pytest.approx(
+        [18.0, 20.0, 22.0]
+    )
+    (sentence,) = _onsets({"one": rods}, ["one"])
+    assert "10% beyond gamma 20.0 (18 to 22)" in sentence

@@ -196,6 +196,13 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
     said = conclude(request, computed(request, given_back), NullMeter()).text
     assert "mostly because later contacts give energy back" in said
 
+    def hardly(name, run):
+        shares = {"x2": 0.0205, "x4": 0.0165}
+        return altered(run, E_vib_over_E_0=shares[name[-2:]]) if fallen in name and "-x" in name else run
+
+    said = conclude(request, computed(request, hardly), NullMeter()).text
+    assert "largest at gamma 57" in said and "beyond it stays within the bands" in said
+
 
 def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
