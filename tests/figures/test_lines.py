@@ -66,3 +66,20 @@ def test_names_stand_at_the_ticks_and_in_the_data(drawn, tmp_path):
     data = read_csv(tmp_path / "lines.csv")
     assert data.texts("x") == ["f", "angle", "f", "angle"]
     assert data.numbers("y").tolist() == [1.0, 2.0, 3.0, 4.0]
+
+
+def test_areas_are_stacked_in_order(drawn):
+    areas = [Series(label, [0.0, 1.0], [1.0, 2.0], "area", "blue") for label in ("rigid", "vibration")]
+    axes = drawn([Panel("shares", "gamma", "%", tuple(areas))]).axes[0]
+    spans = [area.get_datalim(axes.transData).extents[[1, 3]].tolist() for area in axes.collections]
+    assert spans == [[0.0, 2.0], [1.0, 4.0]]
+
+
+def test_a_band_is_drawn_about_its_point_and_stands_in_the_data(drawn, tmp_path):
+    values = Series("one", [1.0, 2.0, 3.0], [5.0, 6.0, float("nan")], "joined", 0, [0.5, float("nan"), 1.0])
+    axes = drawn([Panel("e", "gamma", "e", (values,))]).axes[0]
+    (container,) = axes.containers
+    (bars,) = container[2]
+    assert bars.get_segments()[0].tolist() == [[1.0, 4.5], [1.0, 5.5]]
+    data = read_csv(tmp_path / "lines.csv")
+    assert data.texts("band") == ["0.5", "", "1.0"] and data.texts("y") == ["5.0", "6.0", ""]
