@@ -27,6 +27,8 @@ napoleon_use_ivar = True
 # attributes of docstrings are looked up by bare names such as e, which several classes have
 suppress_warnings = ["ref.python"]
 html_theme = "furo"
+html_static_path = ["style"]
+html_css_files = ["tables.css"]
 html_title = "fem-impact"
 html_copy_source = False
 html_show_copyright = False
