@@ -16,6 +16,7 @@ from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.paper.drawn import Drawn
+    from fem_impact.scene.camera import Camera
     from rigid import Arms, Projectile
 
 
@@ -36,14 +37,14 @@ def audit(options: Options) -> int:
 
 def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
-    from fem_impact.verdict.camera import read_camera
+    from fem_impact.scene.camera import read_camera
     from fem_impact.verdict.own_data import own_coefficients
     from fem_impact.verdict.text import own_text
     from rigid import RigidError
 
     rod, alpha = rod_of(options), angle_of(options)
-    arms, source = _arms(options, rod, alpha)
     camera = read_camera(options.file)
+    arms, source = _arms(options, rod, alpha, camera)
     try:
         document = own_coefficients(camera, rod, alpha, arms, source)
     except RigidError as error:
@@ -83,7 +84,7 @@ def angle_of(options: Options) -> float:
     return alpha
 
 
-def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
+def _arms(options: Options, rod: Projectile, alpha: float, camera: Camera) -> tuple[Arms, str]:
     """Return the arms, m, and their source; ``--d-c`` and ``--d-d`` are given both or neither."""
     import numpy as np
 
@@ -91,6 +92,8 @@ def _arms(options: Options, rod: Projectile, alpha: float) -> tuple[Arms, str]:
     from rigid import Arms
 
     given = (options.d_c, options.d_d)
+    if given == (None, None) and camera.arms:
+        return Arms(*map(np.asarray, camera.arms)), "as the file states"
     if given == (None, None):
         return rod.arms(alpha), "lowest point of the tip's shape"
     if options.d_c is None or options.d_d is None:

@@ -32,6 +32,7 @@ from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.outcome.groups import EffectChoice
+    from fem_impact.outcome.record import Outcome
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
     from fem_impact.scene.material import Material
@@ -67,12 +68,36 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out)
+        _say_comparison(scene, outcome)
         _say_screening(scene, options)
     if outcome.validity.finished:
         return 0
     cause = outcome.validity.stopped_because
     sys.stderr.write(f"fem-impact: error: the run stopped early: {cause} Results: {out}\n")
     return RunError.exit_code
+
+
+def _say_comparison(scene: Scene, outcome: Outcome) -> None:
+    """Print the outcome beside the tests that its scene names."""
+    from fem_impact.run.tests import tests_of
+    from fem_impact.study.compare import compare
+
+    tests = tests_of(scene)
+    if tests is None:
+        return
+    head = ("", "model", "measured", "SD", "95 % of the mean", "")
+    rows = [
+        (
+            row["quantity"],
+            *(f"{row[key]:.4g}" for key in ("model", "measured_mean", "measured_sd")),
+            f"{row['measured_low']:.4g} to {row['measured_high']:.4g}",
+            row["verdict"],
+        )
+        for row in compare(outcome, tests)
+        if row["measured_mean"] is not None and row["model"] is not None
+    ]
+    told = f"beside {len(tests.motion['v_n'])} measured tests ({scene.measured}):"
+    sys.stdout.write(f"{told}\n{Table.of(head, rows, left=(0, 5)).terminal(indent='  ')}\n")
 
 
 def _say_screening(scene: Scene, options: Options) -> None:

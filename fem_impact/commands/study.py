@@ -25,7 +25,7 @@ ABOUT_SETS = ("sets", "validation", "convergence", "effects")
 def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
     _check_options(options)
-    ids = _checked_ids(options.ids)
+    ids = _checked_ids(options.ids, own=options.name == "sets")
     out = checked_out(options.out or Path("results") / options.name)
     from fem_impact.files.lock import directory_lock
     from fem_impact.study.document import Request
@@ -144,11 +144,24 @@ def _page(options: Options) -> Path | None:
     return checked_page(options.page)
 
 
-def _checked_ids(ids: Sequence[str]) -> tuple[str, ...]:
+def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:
+    """Return the ids of measured sets, with ``own`` also files of scenes that name own tests, each once."""
     from fem_impact.scene.types import MEASURED_SETS
 
     for name in ids:
-        if name not in MEASURED_SETS:
+        if own and name.endswith(".toml"):
+            _check_own(name)
+        elif name not in MEASURED_SETS:
             remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
             raise UsageError("is not a measured set.", key="ID", value=name, remedy=remedy)
     return tuple(dict.fromkeys(ids))
+
+
+def _check_own(name: str) -> None:
+    """Refuse a scene file without tests, or with some that cannot be read."""
+    from fem_impact.run.tests import tests_of
+    from fem_impact.scene.shipped import load
+
+    if tests_of(load(name)) is None:
+        remedy = 'Write measured = "my_tests.csv" in it.'
+        raise UsageError("states no measured tests.", key="ID", value=name, remedy=remedy)

@@ -14,7 +14,7 @@ from fem_impact.files.signed_json import signed
 from fem_impact.report.html import Markup, bullets, paragraph, section, table
 from fem_impact.report.page import page, sources
 from fem_impact.scene import fields
-from fem_impact.scene.library import source_of
+from fem_impact.scene.library import source_of, stated_keys
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
@@ -94,11 +94,11 @@ def _inputs(scene: Scene) -> Markup:
 
 
 def _material(body: str, steel: Material) -> list[tuple[str, str, str]]:
-    stated = [p for p in fields.MATERIAL if getattr(steel, p.key) is not None]
-    named = [(f"{body}, material", steel.name, STATED)]
+    named, keys = [(f"{body}, material", steel.name, STATED)], stated_keys(steel)
     return named + [
         (f"{body}, {p.key}", str(p.write(getattr(steel, p.key))), source_of(steel.name, p.key))
-        for p in stated
+        for p in fields.MATERIAL
+        if p.key in keys
     ]
 
 

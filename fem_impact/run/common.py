@@ -25,8 +25,8 @@ from fem_impact.physics.contact import ContactBodies, approach, arms, fall, proj
 from fem_impact.physics.contact_law import softer
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.plan.plan import Plan
+from fem_impact.run.tests import tests_of
 from fem_impact.scene.write import digest
-from rigid.experiments import measured_set
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -209,7 +209,8 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
     e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
     spin, alpha = m.k_squared * (m.Omega - omega), scene.impact.angle
     centre = (spin + d_d * (m.V_t - m.v_t)) / (m.V_n - m.v_n)
-    table = measured_set(scene.measured).arms if scene.measured else None
+    tests = tests_of(scene)
+    table = tests.arms if tests else None
     E_0 = float(rigid.kinetic_energy(m.v_n, m.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     return Restitution(
         mu=float(rigid.impulse_ratio(*before, m.V_n + fallen * cos(alpha), m.V_t + fallen * sin(alpha))),

@@ -44,6 +44,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         If the run cannot go on; what was computed stays in ``options.out``.
     """
     from fem_impact.plan.plan import plan
+    from fem_impact.run.tests import tests_of
 
     if scene.accuracy.target is not None:
         remedy = "Give a mesh, or call fem_impact.cost.to_target.simulate, which chooses one."
@@ -51,6 +52,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )
     planned = plan(scene, fidelity)
+    tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
         return _compute(planned, replace(options, resume=False))
     return _compute_in(options.out, planned, options)

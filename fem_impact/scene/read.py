@@ -17,6 +17,7 @@ from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.types import (
+    OWN,
     Accuracy,
     Heating,
     ProjectileSpec,
@@ -32,7 +33,14 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
-    return read_dict(_parse(_load(Path(path)), str(path)), str(path))
+    return read_dict(_beside(_parse(_load(Path(path)), str(path)), Path(path)), str(path))
+
+
+def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
+    """Return the tables with the file of own tests found from the place of the scene's file."""
+    name = data.get("measured")
+    own = isinstance(name, str) and name.endswith(OWN)
+    return data | {"measured": str((path.parent / str(name)).resolve())} if own else data
 
 
 def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -122,6 +130,11 @@ def read_scene(data: Table) -> Scene:
 def _check_measured(scene: Scene) -> None:
     """Refuse the name of a measured set beside another rod or angle, whose arms and results differ."""
     if scene.measured is None:
+        return
+    if scene.measured.endswith(OWN):
+        if not Path(scene.measured).is_file():
+            remedy = "Name a CSV file, from the place of the scene's file."
+            raise SceneError("there is no such file.", key="measured", value=scene.measured, remedy=remedy)
         return
     stated, rod = library.stated(scene.measured), scene.projectile
     other_tip = library.other_tip(scene.measured)

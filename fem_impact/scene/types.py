@@ -21,6 +21,9 @@ MEASURED_SETS = (
     *("t5a", "t5b", "t5c", "t5d", "t6-17", "t6-25", "t6-37", "t6-60"),
 )
 
+OWN = ".csv"
+"""End of a name in ``measured`` that is a file of the user's own tests, not a published set."""
+
 
 @dataclass(frozen=True, slots=True)
 class ProjectileSpec:
@@ -144,8 +147,8 @@ class Save:
 class Scene:
     """One impact, completely stated.
 
-    ``measured`` names the published set it repeats, if any; ``restitution`` (energetic, 0 to 1) is what the
-    rigid fidelity takes instead of Thornton's law.
+    ``measured`` names the published set it repeats, or the CSV file of a user's own tests, if any;
+    ``restitution`` (energetic, 0 to 1) is what the rigid fidelity takes instead of Thornton's law.
     ``effects`` is what was stated, with or without ``"auto"``; the plan tells what the model has.
     """
 
@@ -167,7 +170,7 @@ class Scene:
         check_text(self.title, "title")
         object.__setattr__(self, "effects", check_names(self.effects, "effects"))
         if self.measured is not None:
-            check_choice(self.measured, MEASURED_SETS, "measured")
+            _check_measured(self.measured)
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
         _check_approach(self)
@@ -209,6 +212,11 @@ def _check_skin(surface: Surface) -> None:
             key="skin_depth",
             remedy='Leave it out, or use state = "machined" or "custom".',
         )
+
+
+def _check_measured(name: object) -> None:
+    if not (isinstance(name, str) and name.endswith(OWN)):
+        check_choice(name, MEASURED_SETS, "measured")
 
 
 def _check_tip_name(tip: str) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
-from rigid.experiments import Statistic, measured_set
+from rigid.experiments import MeasuredSet, Statistic, measured_set
 
 Row = dict[str, Any]
 
@@ -83,14 +83,14 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
-def compare(outcome: Outcome) -> list[Row]:
-    """Return one row a quantity of the outcome of a measured set.
+def compare(outcome: Outcome, tests: MeasuredSet | None = None) -> list[Row]:
+    """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
     With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,
     model is the run's own value and band is None.
     """
     set_id, rows = outcome.provenance.scene_id, []
-    statistics = measured_set(set_id).statistics()
+    statistics = (tests or measured_set(set_id)).statistics()
     for quantity in (*MEASURED, *UNSEEN):
         key, (model, band) = quantity.key, outcome.estimate(quantity.key)
         computed = {"set": set_id, "quantity": quantity.name, "unit": key.unit, "model": or_none(model)}

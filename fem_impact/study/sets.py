@@ -16,6 +16,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
+from fem_impact.run.tests import tests_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.compare import COMPARED, Row, compare
@@ -41,12 +42,13 @@ QUICK_SETS = ("t3-machined", "t4", "t5b")
 HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
 
 
-def jobs_of(set_id: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set: "fine", "coarse" and, unless quick, more.
+def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
+    """Return the jobs of a set, or of a scene file with own tests: "fine", "coarse" and, unless quick, more.
 
     These are both meshes with the barrier's grid half a cell further, and "coarse" with each input changed.
     """
-    scene = load(set_id)
+    scene = load(name)
+    set_id = scene.id
     if quick:
         scene = replace_all(scene, QUICK)
     coarse_job = Job(f"{set_id}-coarse", resized(scene, COARSER), out=out / f"{set_id}-coarse")
@@ -75,16 +77,17 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
     """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
-    out, outcomes, changed = request.out, [], []
+    out, outcomes, comparison, changed = request.out, list[Outcome](), list[Row](), list[Row]()
     for name in chosen(request):
         runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
         if isinstance(runs["fine"], Outcome):
+            scene = load(name)
             limited = with_limits(at_places(runs, "fine"), at_places(runs, "coarse"))
-            limited.write(out / name / "outcome.json")
+            limited.write(out / scene.id / "outcome.json")
             outcomes.append(limited)
+            comparison += compare(limited, tests_of(scene))
         if not request.quick:
             changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
-    comparison = [row for outcome in outcomes for row in compare(outcome)]
     published = publish(sets_report(outcomes, comparison, changed), request, results)
     return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 

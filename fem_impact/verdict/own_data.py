@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.paper.audit import estimate_entry, finite, statistic_entry
-from fem_impact.verdict.camera import Camera
+from fem_impact.scene.camera import Camera
 from rigid import Arms, Projectile, bootstrap, critical_ratio, first_order, impulse_centre
 from rigid.arrays import Floats
 from rigid.experiments import derived_columns, statistic

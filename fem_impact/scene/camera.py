@@ -18,11 +18,13 @@ from fem_impact.scene.units import DIMENSIONS, Unit
 from rigid.arrays import Floats
 
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
+ARMS = {"d_c": "length", "d_d": "length"}
+"""Columns that may state the arms of the contact with which the tests are to be worked out."""
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 LARGEST = 1e6
 """Bound of the size of a velocity, m/s or rad/s."""
 
-_NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega)(?:_(\w+)|\s*[\[(](.+)[\])])?")
+_NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega|d_c|d_d)(?:_(\w+)|\s*[\[(](.+)[\])])?")
 Line = tuple[int, list[str]]
 """Number and cells of a line of the file."""
 
@@ -39,11 +41,14 @@ class Camera:
         Label of each test: its cell in a column ``test``, else its number.
     ignored : tuple of str
         Columns of the file that were not used.
+    arms : (d_c, d_d) or None
+        Arms of the contact point, m, where the file states them.
     """
 
     motion: Mapping[str, Floats]
     tests: tuple[str, ...]
     ignored: tuple[str, ...]
+    arms: tuple[float, float] | None
 
 
 def read_camera(path: str | Path) -> Camera:
@@ -54,7 +59,8 @@ def read_camera(path: str | Path) -> Camera:
     path : path
         UTF-8 CSV with a header. Columns are named ``v_n_m_per_s`` or ``v_n [m/s]``, and so on, in
         any unit of speed (m/s, mm/s, km/s) and of angular speed (rad/s, deg/s, rpm); capitals are the
-        motion after impact. A column ``test`` may label the rows.
+        motion after impact. A column ``test`` may label the rows, columns
+        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point.
 
     Raises
     ------
@@ -72,17 +78,19 @@ def read_camera(path: str | Path) -> Camera:
             raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
     if len(rows) < 2:
         raise ResultError(f"{path}: holds {len(rows)} tests; an uncertainty needs at least two.")
-    motion = {}
+    columns = {}
     for name, (at, unit) in places.items():
         cells_of = [(f"{path}: line {line}, column {names[at]}", cells[at].strip()) for line, cells in rows]
-        motion[name] = np.array([_number(place, text, unit) for place, text in cells_of])
+        columns[name] = np.array([_number(place, text, unit) for place, text in cells_of])
+    motion, arms = {name: columns[name] for name in KINDS}, _arms(columns, path)
     _check_motion(motion, rows, names, places, path)
     used = {names[at] for at, _ in places.values()}
     labels = [
         cells[names.index("test")].strip() if "test" in names else str(i)
         for i, (_, cells) in enumerate(rows, 1)
     ]
-    return Camera(motion, tuple(labels), tuple(name for name in names if name not in (*used, "test")))
+    ignored = tuple(name for name in names if name not in (*used, "test"))
+    return Camera(motion, tuple(labels), ignored, arms)
 
 
 def _lines(text: str, path: str | Path) -> Iterator[Line]:
@@ -116,7 +124,7 @@ def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit
 
 def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
     """Return the unit that the column's name states."""
-    kind = DIMENSIONS[KINDS[name]]
+    kind = DIMENSIONS[{**KINDS, **ARMS}[name]]
     if not text:
         remedy = f"Name it {name}_{kind.suffix} or {name} [{kind.units[0].symbol}]"
         raise ResultError(f"{path}: column {column!r} names no unit. {remedy} (units: {kind.symbols}).")
@@ -139,6 +147,17 @@ def _number(place: str, text: str, unit: Unit) -> float:
     if abs(value) > LARGEST:
         raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
+
+
+def _arms(columns: Mapping[str, Floats], path: str | Path) -> tuple[float, float] | None:
+    """Return the one pair of arms that the file states, None where it states none."""
+    stated = [set(columns[name].tolist()) for name in ARMS if name in columns]
+    if not stated:
+        return None
+    if len(stated) == 1 or any(len(values) > 1 for values in stated):
+        rule = "Give both d_c and d_d, each the same in all rows, or neither."
+        raise ResultError(f"{path}: the arms of the tests are not one pair. {rule}")
+    return stated[0].pop(), stated[1].pop()
 
 
 def _check_motion(
