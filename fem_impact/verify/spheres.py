@@ -50,7 +50,8 @@ def ball_mass(p: Values) -> float:
 
 def modulus(p: Values) -> float:
     """Return E* of the sphere with what it strikes, Pa."""
-    return contact_modulus(p["E"], p["nu"], p["E"] if p["block"] else inf, p["nu"])
+    E, nu = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu"))
+    return contact_modulus(p["E"], p["nu"], E if p["block"] else inf, nu)
 
 
 def plain_hertz(p: Values, v_n: float) -> HertzImpact:
@@ -94,7 +95,9 @@ def sphere_model(
     block = None
     if p["block"]:
         under = block_under(touch.radius, base, levels, v_t * touch.duration)
-        block = Block(under, base / 2**levels, p["E"], p["nu"], p["rho"])
+        # a block of the sphere's kind unless the values state another
+        own = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
+        block = Block(under, base / 2**levels, *own)
     denser = _denser(points, mesh.mesh.cells, p)
     E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(
