@@ -43,8 +43,9 @@ def coefficients(options: Options) -> int:
     from rigid import RigidError
 
     rod, alpha = rod_of(options), angle_of(options)
+    stated = _stated_arms(options)
     camera = read_camera(options.file)
-    arms, source = _arms(options, rod, alpha, camera)
+    arms, source = _arms(stated, rod, alpha, camera)
     try:
         document = own_coefficients(camera, rod, alpha, arms, source)
     except RigidError as error:
@@ -84,22 +85,33 @@ def angle_of(options: Options) -> float:
     return alpha
 
 
-def _arms(options: Options, rod: Projectile, alpha: float, camera: Camera) -> tuple[Arms, str]:
-    """Return the arms, m, and their source; ``--d-c`` and ``--d-d`` are given both or neither."""
+def _stated_arms(options: Options) -> Arms | None:
+    """Return the arms, m, of ``--d-c`` and ``--d-d``, which are given both or neither."""
     import numpy as np
 
     from fem_impact.verdict.drop import quantity
     from rigid import Arms
 
     given = (options.d_c, options.d_d)
-    if given == (None, None) and camera.arms:
-        return Arms(*map(np.asarray, camera.arms)), "as the file states"
     if given == (None, None):
-        return rod.arms(alpha), "lowest point of the tip's shape"
+        return None
     if options.d_c is None or options.d_d is None:
         raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
     d_c, d_d = (quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
-    return Arms(np.asarray(d_c), np.asarray(d_d)), "as stated"
+    return Arms(np.asarray(d_c), np.asarray(d_d))
+
+
+def _arms(stated: Arms | None, rod: Projectile, alpha: float, camera: Camera) -> tuple[Arms, str]:
+    """Return the arms, m, and their source: options, the file, or the shape of the tip."""
+    import numpy as np
+
+    from rigid import Arms
+
+    if stated is not None:
+        return stated, "as stated"
+    if camera.arms:
+        return Arms(*map(np.asarray, camera.arms)), "as the file states"
+    return rod.arms(alpha), "lowest point of the tip's shape"
 
 
 def _print(document: dict[str, Any], text: Callable[[dict[str, Any]], str], options: Options) -> None:

@@ -85,19 +85,18 @@ def _say_comparison(scene: Scene, outcome: Outcome) -> None:
     tests = tests_of(scene)
     if tests is None:
         return
-    head = ("", "model", "measured", "SD", "95 % of the mean", "")
+    head = ("", "model", "measured", "SD", "")
     rows = [
         (
             row["quantity"],
             *(f"{row[key]:.4g}" for key in ("model", "measured_mean", "measured_sd")),
-            f"{row['measured_low']:.4g} to {row['measured_high']:.4g}",
             row["verdict"],
         )
         for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     told = f"beside {len(tests.motion['v_n'])} measured tests ({scene.measured}):"
-    sys.stdout.write(f"{told}\n{Table.of(head, rows, left=(0, 5)).terminal(indent='  ')}\n")
+    sys.stdout.write(f"{told}\n{Table.of(head, rows, left=(0, 4)).terminal(indent='  ')}\n")
 
 
 def _say_screening(scene: Scene, options: Options) -> None:

@@ -96,8 +96,8 @@ def sphere_model(
     if p["block"]:
         under = block_under(touch.radius, base, levels, v_t * touch.duration)
         # a block of the sphere's kind unless the values state another
-        own = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
-        block = Block(under, base / 2**levels, *own)
+        E, nu, rho = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
+        block = Block(under, base / 2**levels, E, nu, rho)
     denser = _denser(points, mesh.mesh.cells, p)
     E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(
