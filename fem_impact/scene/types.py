@@ -192,8 +192,9 @@ def _check_approach(scene: Scene) -> None:
         key = parameter.key
         seen_speed = getattr(seen, key) - getattr(scene.barrier, key)
         if moving and not parameter.allows(seen_speed):
-            problem = f"is {parameter.write(seen_speed)} as seen from the barrier, which moves too."
-            raise SceneError(problem, key=f"impact.{key}", value=getattr(seen, key), remedy=parameter.remedy)
+            problem = f"is {seen_speed:.4g} m/s as seen from the barrier, which moves too."
+            value = f"{getattr(seen, key):.4g} m/s"
+            raise SceneError(problem, key=f"impact.{key}", value=value, remedy=parameter.remedy)
         try:
             parameter.checked(seen_speed)
         except SceneError as error:

@@ -95,9 +95,8 @@ class Separation:
         base = ground if self.model.in_plate_frame else 0.0  # of the barrier's positions
         carried = 0.0 if self.model.in_plate_frame else speed_of(footing, state.v)[0]
         margin = QUIET * float(np.abs(state.v[surface] - carried).max())
-        deep = t[
-            lowest - base <= max(ground - base, float(state.x[surface].max())) + margin + contact.rod.sag
-        ]
+        top = max(ground - base, float(state.x[surface].max()))
+        deep = t[lowest - base <= top + margin + contact.rod.sag]
         places = contact.rod.places
 
         def clearance(s: float) -> float:
