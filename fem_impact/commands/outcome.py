@@ -17,7 +17,11 @@ _MOTION = (
     ("V_t after", "V_t_m_per_s", "m/s"),
     ("Omega after", "Omega_rad_per_s", "rad/s"),
 )
-_IF_ON = ("damping", "contact", "gravity")
+_BARRIER = (
+    ("V_n of the barrier after", "V_bn_m_per_s", "m/s"),
+    ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
+)
+_IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
 
@@ -27,7 +31,9 @@ def print_outcome(outcome: Outcome, out: Path) -> None:
     # only a measured set has arms of the paper
     arms = ("paper's", "e_paper") if or_none(outcome.restitution.paper.e) is not None else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
-    lines += [_motion(outcome, *row) for row in (restitution, *_MOTION)]
+    barrier = outcome.barrier
+    moved = any((barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))
+    lines += [_motion(outcome, *row) for row in (restitution, *_MOTION, *(_BARRIER if moved else ()))]
     lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]

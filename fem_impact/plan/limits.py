@@ -63,7 +63,7 @@ def _section(scene: Scene) -> str:
 
 def _fall(scene: Scene) -> str:
     impact = scene.impact
-    if abs(impact.beside) <= BESIDE:
+    if abs(impact.beside) <= BESIDE or impact != scene.relative:
         return ""
     beside, angle = (math.degrees(a) for a in (abs(impact.beside), impact.angle))
     return (
