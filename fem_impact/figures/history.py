@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_impact.figures.style import PALETTE, QUIET, Shape, figure, percent, write_data
 from fem_impact.outcome.groups import ContactInterval
-from fem_impact.outcome.shares import ACCOUNTS
+from fem_impact.outcome.shares import ACCOUNTS, OF_SOME, LedgerAccount
 from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
@@ -91,10 +91,11 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
         A column is missing or holds no numbers.
     """
     path, time = Path(path), history.numbers("time_s")
-    shares = {account.column: history.numbers(account.column) / e_0 for account in ACCOUNTS}
+    accounts = [*ACCOUNTS, *(account for account in OF_SOME if account.column in history.names)]
+    shares = {account: history.numbers(account.column) / e_0 for account in accounts}
     gravity = history.numbers("E_gravity_J") / e_0
     worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
-    names = [column.removesuffix("_J") + "_over_E_0" for column in shares]
+    names = [account.column.removesuffix("_J") + "_over_E_0" for account in shares]
     columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
     write_data(path, columns, zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True))
     with figure(path, shape, 4.6 if shape == "wide" else 5.4) as drawn:
@@ -114,15 +115,15 @@ def ledger_figure(history: Table, e_0: float, path: str | Path, shape: Shape = "
     return path
 
 
-def _areas(axes: Axes, time: np.ndarray, shares: dict[str, np.ndarray]) -> None:
-    ends = {key: percent(float(share[-1])) if len(share) else "-" for key, share in shares.items()}
+def _areas(axes: Axes, time: np.ndarray, shares: dict[LedgerAccount, np.ndarray]) -> None:
+    ends = [percent(float(share[-1])) if len(share) else "-" for share in shares.values()]
     # at most 800 of the times are drawn; the CSV has all
     kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), 800)).astype(int))
     axes.stackplot(
         time[kept],
         [share[kept] for share in shares.values()],
-        labels=[f"{account.label}  {ends[account.column]}" for account in ACCOUNTS],
-        colors=[PALETTE[account.colour] for account in ACCOUNTS],
+        labels=[f"{account.label}  {end}" for account, end in zip(shares, ends, strict=True)],
+        colors=[PALETTE[account.colour] for account in shares],
         edgecolor="white",
         linewidth=0.4,
     )

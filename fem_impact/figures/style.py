@@ -30,8 +30,10 @@ PALETTE = {
     "grey": "#999999",
     "sand": "#F3CF8E",
     "night": "#1B3A57",
+    "brown": "#7A4B1E",
+    "olive": "#A3A847",
 }
-"""Colours of Okabe and Ito, and three more of other lightness."""
+"""Colours of Okabe and Ito, and five more of other lightness."""
 
 INK, QUIET = "#1f2328", "#6b7280"
 WIDTH = {"wide": 8.4, "narrow": 4.3}

@@ -56,8 +56,8 @@ SHARES = (
     _share("E_locked_rod", "residual stress in rod", "sky", "figure", "comparison"),
     _share("E_locked_barrier", "residual stress in barrier", "orange", "figure", "comparison"),
     _share("W_radiated", "radiated", "yellow", "figure", "comparison"),
-    _share("W_plate", "bending of the plate", "yellow", "figure", "comparison"),
-    _share("E_barrier", "motion of the barrier", "sand", "figure", "comparison"),
+    _share("W_plate", "bending of the plate", "brown", "figure"),
+    _share("E_barrier", "motion of the barrier", "olive", "figure"),
     _share("W_closing", "numerical loss at contact", "grey", "figure"),
     _share("W_damping", "damping", "sand", "figure"),
     _share("E_contact", "held by the contact", "grey"),
@@ -89,8 +89,10 @@ ACCOUNTS = (
     LedgerAccount("E_strain_barrier_J", "strain barrier", "orange"),
     LedgerAccount("E_kinetic_barrier_J", "kinetic barrier", "sand"),
     LedgerAccount("W_radiated_J", "radiated", "yellow"),
-    LedgerAccount("W_plate_J", "bending of the plate", "yellow"),
     LedgerAccount("W_damping_J", "damping", "night"),
     LedgerAccount("W_closing_J", "numerical loss at contact", "grey"),
 )
 """Accounts of history.csv from bottom to top of the stacked figure, without gravity and the residual."""
+
+OF_SOME = (LedgerAccount("W_plate_J", "bending of the plate", "brown"),)
+"""Accounts that history.csv has only of runs with their effect."""

@@ -19,8 +19,12 @@ from rigid.experiments import measured_set, set_ids
 SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "t3-cleaned")}
 
 
+OWN_BARRIERS = ("plate-10mm", "free-barrier-5kg", "moving-barrier", "spinning-rod")
+
+
 def test_the_thirteen_sets_and_others_are_shipped():
-    assert shipped() == (*MEASURED_SETS, "elastic-frictionless", "quick", "wave", "wave-45", *SECOND)
+    others = ("elastic-frictionless", "quick", "wave", "wave-45", *SECOND, *OWN_BARRIERS)
+    assert shipped() == (*MEASURED_SETS, *others)
     assert tuple(set_ids()) == MEASURED_SETS
     assert len(MEASURED_SETS) == 13
 
