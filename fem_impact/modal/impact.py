@@ -106,7 +106,21 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     wall, cpu = time.perf_counter(), time.process_time()
     end = drop(start, law, modes, rod.others, bounds, contacts)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    motion, tally = end.motion.rigid[:3], end.tally
+    return _result(plan, rod, law, end, E_0, contacts, bounds, (wall, cpu))
+
+
+def _result(
+    plan: Plan,
+    rod: ModalRod,
+    law: ContactLaw,
+    end: ModalEnd,
+    E_0: float,
+    contacts: Array,
+    bounds: Bounds,
+    took: tuple[float, float],
+) -> ModalResult:
+    """Return the result of a march that ``took`` wall and processor time, s."""
+    scene, motion, tally = plan.scene, end.motion.rigid[:3], end.tally
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
     # the contact gives back what it stores: the normal force by itself, the springs out of friction
     plastic, friction = plastic_work(law, tally[PEAK]), -tally[WORK_T] - end.held[1]
@@ -138,10 +152,10 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
         force=tally[HARDEST],
         finished=end.over,
         reason=_reason(rod, end, bounds),
-        step=dt,
+        step=bounds.step,
         steps=end.steps,
-        wall=wall,
-        cpu=cpu,
+        wall=took[0],
+        cpu=took[1],
     )
 
 

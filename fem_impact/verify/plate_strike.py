@@ -18,7 +18,7 @@ from fem_impact.verify.spheres import (
     sphere_model,
 )
 
-RESTITUTION, FORCE, TIME, ENERGY = 0.02, 0.03, 0.05, 1e-3  # the last, weak touch ends node by node
+RESTITUTION, FORCE, TIME, ENERGY = 0.02, 0.03, 0.03, 1e-3
 STRIKES = 3
 AFTER = 1.1  # contact times that are followed
 
@@ -79,6 +79,8 @@ PROBLEM = Problem(
         Parameter("least", "Zener's lambda of the thickest plate", "", 1e-3, 1.0, default=0.05),
         Parameter("most", "Zener's lambda of the thinnest plate", "", 1e-3, 2.0, default=1.0),
         *steel.elastic(210e9),
+        cells=4,
+        across=8,
     ),
     solve,
 )

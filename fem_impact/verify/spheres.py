@@ -32,14 +32,14 @@ from fem_impact.verify.setups import (
 CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
 
 
-def parameters(radius: float, *others: Parameter) -> tuple[Parameter, ...]:
+def parameters(radius: float, *others: Parameter, cells: int = 8, across: int = 16) -> tuple[Parameter, ...]:
     """Return the list: radius, the problem's own, mesh and barrier."""
     return (
         Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=radius),
         *others,
         Parameter("block", "1: a block like the sphere, 0: a rigid plane", "", 0, 1, default=1, whole=True),
-        Parameter("cells", "cells over the contact radius", "", 2, 20, default=8),
-        steel.across(16),
+        Parameter("cells", "cells over the contact radius", "", 2, 20, default=cells),
+        steel.across(across),
     )
 
 

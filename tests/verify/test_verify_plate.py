@@ -19,7 +19,7 @@ def test_a_sphere_on_plates_under_a_rigid_skin_obeys_zeners_equation():
 
 @pytest.mark.slow
 def test_a_sphere_on_plates_that_dent_obeys_zeners_equation():
-    held({"cells": 3, "across": 8})
+    assert len(held({})) == 12
 
 
 def test_plates_in_no_order_are_refused():
