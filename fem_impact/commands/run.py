@@ -207,7 +207,7 @@ def check(options: Options) -> int:
 
 
 def _listed(scene: Scene) -> dict[str, Any]:
-    speed = math.hypot(scene.impact.v_n, scene.impact.v_t)
+    speed = math.hypot(scene.relative.v_n, scene.relative.v_t)
     return {
         "id": scene.id,
         "title": scene.title,
