@@ -31,6 +31,7 @@ class Beside:
     """One scene computed by both models: T1/tau, the change of e by vibration, E_vib over E_0 of each."""
 
     name: str
+    scene: Scene
     ratio: float
     modal: float
     solid: float
@@ -46,7 +47,7 @@ class KnownError:
     ----------
     change_of_e, E_vib : of the change of e by vibration, and of E_vib over E_0
     compared : the scenes whose errors these are
-    alike : whether T1/tau of these scenes is near; else they are all there are
+    alike : whether these scenes have a near T1/tau and the same materials; else they are all there are
     """
 
     change_of_e: float
@@ -61,7 +62,8 @@ class KnownError:
         which = (
             f"scenes of like T1/tau ({scenes})"
             if self.alike
-            else f"all scenes that were computed both ways ({scenes}), none of which has a like T1/tau"
+            else f"all scenes that were computed both ways ({scenes}), none "
+            "of which has a like T1/tau and these materials"
         )
         return (
             f"Beside the finite elements the reduced model's change of e by vibration is off by up to "
@@ -72,7 +74,8 @@ class KnownError:
 def known_error(scene: Scene) -> KnownError:
     """Return how far the reduced model may be off for a scene."""
     ratio = screening(scene).ratio
-    near = [one for one in comparisons() if abs(log(one.ratio / ratio)) <= LIKE]
+    same = [one for one in comparisons() if _materials(one.scene) == _materials(scene)]
+    near = [one for one in same if abs(log(one.ratio / ratio)) <= LIKE]
     counted = near or comparisons()
     return KnownError(
         max(abs(one.modal - one.solid) for one in counted),
@@ -80,6 +83,12 @@ def known_error(scene: Scene) -> KnownError:
         tuple(one.name for one in counted),
         bool(near),
     )
+
+
+def _materials(scene: Scene) -> list[tuple[float, ...]]:
+    """Return what the reduced model takes of both materials."""
+    both = scene.projectile.material, scene.barrier.material
+    return [(m.E, m.nu, m.rho, m.yield_stress, m.ultimate_stress) for m in both]
 
 
 @cache
@@ -98,6 +107,7 @@ def _beside(name: str, scene: Scene, settings: list[dict[str, Any]]) -> Beside:
     twin = simulate(twins(scene)[1], "modal")
     return Beside(
         name,
+        scene,
         screening(scene).ratio,
         modal["e"] - known(twin.restitution.edge.e),
         coarse["e"] - stiff["e"],

@@ -96,7 +96,9 @@ def test_a_scene_unlike_all_gets_the_largest_error_of_all():
     assert not error.alike
     assert len(error.compared) == len(comparisons()) == 13
     assert error.change_of_e == max(abs(one.modal - one.solid) for one in comparisons())
-    assert "none of which has a like T1/tau" in error.sentence
+    assert "none of which has a like T1/tau and these materials" in error.sentence
+    other = known_error(replace_all(load("t5b"), {"projectile.material": "alumina"}))  # T1/tau is near
+    assert other == error
 
 
 def test_aluminium_is_not_answered_as_steel():
