@@ -9,6 +9,7 @@ from meshes.quality import Quality, quality, volume
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import sphere
+from meshes.turned import contact_radius, turned
 from meshes.zone import Zone
 
 __all__ = [
@@ -22,12 +23,14 @@ __all__ = [
     "RodMesh",
     "Zone",
     "block",
+    "contact_radius",
     "quality",
     "read",
     "refine",
     "rod",
     "sphere",
     "thin_skin_rise",
+    "turned",
     "volume",
     "with_thin_skin",
     "without_slices",

@@ -1,4 +1,4 @@
-"""The nose of a rod by itself, with points that belong to no cell in place of the slices."""
+"""The nose of a rod by itself, with points that belong to no cell in place of what lies behind."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ __all__ = ["without_slices"]
 
 
 def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:
-    """Return the rod without its slices; the interface stays as the only layer of ``body_nodes``.
+    """Return the rod without what lies behind its interface, which stays as the only layer of ``body_nodes``.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:
     """
     mesh = rod.mesh
     nose = np.ones(len(mesh.cells), dtype=bool)
-    nose[rod.body_cells] = False
+    nose[rod.rest_cells] = False
     kept = np.unique(mesh.cells[nose])
     new = np.full(len(mesh.points), -1, dtype=np.int64)
     new[kept] = np.arange(len(kept))
@@ -37,4 +37,13 @@ def without_slices(rod: RodMesh, points: FloatArray) -> RodMesh:
         faces=new[mesh.faces[outer]],
         face_tag=mesh.face_tag[outer],
     )
-    return replace(rod, mesh=cut, body_nodes=new[rod.body_nodes[:, :1]], body_cells=rod.body_cells[:, :0])
+    nothing = np.zeros((0, 0), dtype=np.int64)
+    layer = new[rod.interface]
+    return replace(
+        rod,
+        mesh=cut,
+        body_nodes=layer[:, None],
+        body_cells=nothing,
+        interface=layer,
+        rest_cells=nothing.ravel(),
+    )

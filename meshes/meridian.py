@@ -24,6 +24,8 @@ class Meridian:
     ----------
     line : (k, 2) float64, m
         Vertices; the last is where the cylinder begins, at the radius of the rod.
+    behind : (j, 2) float64, m, optional
+        Vertices of the surface behind the last one, where that is no cylinder.
 
     Raises
     ------
@@ -32,6 +34,7 @@ class Meridian:
     """
 
     line: FloatArray
+    behind: FloatArray | None = None
 
     def __post_init__(self) -> None:
         """Convert to an array, and refuse a line that bounds no tip."""
@@ -67,10 +70,14 @@ class Meridian:
         return np.asarray(np.arctan2(step[:, 1], step[:, 0]))
 
     def extended(self, height: float) -> "Meridian":
-        """Extend the line along the cylinder up to `height` (m)."""
+        """Extend the line along the cylinder, or the surface behind it, up to `height` (m)."""
         if height <= self.height:
             return self
-        return Meridian(np.concatenate([self.line, [[self.radius, height]]]))
+        if self.behind is None:
+            return Meridian(np.concatenate([self.line, [[self.radius, height]]]))
+        more = self.behind[self.behind[:, 1] < height]
+        end = np.interp(height, self.behind[:, 1], self.behind[:, 0])
+        return _Surface(np.concatenate([self.line, more, [[end, height]]]))
 
     def at(self, arc: FloatArray) -> FloatArray:
         """(..., 2) points at arc lengths (...), m."""
@@ -133,6 +140,15 @@ class Meridian:
         target = closest_on(self.line, np.stack([rho, points[:, 2]], axis=1))
         scale = np.where(rho > 0.0, target[:, 0] / np.where(rho > 0.0, rho, 1.0), 1.0)
         return np.stack([points[:, 0] * scale, points[:, 1] * scale, target[:, 1]], axis=1)
+
+
+class _Surface(Meridian):
+    """A meridian carried on behind the nose, where its radius may shrink again."""
+
+    __slots__ = ()
+
+    def __post_init__(self) -> None:
+        """Accept any line."""
 
 
 def closest_on(line: FloatArray, points: FloatArray) -> FloatArray:

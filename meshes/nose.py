@@ -43,7 +43,14 @@ class NoseMesh:
     side: FloatArray
 
 
-def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pitch: float) -> NoseMesh:
+def lay_nose(
+    meridian: Meridian,
+    height: float,
+    split: float,
+    half: Section,
+    pitch: float,
+    hole: tuple[float, float] = (0.0, 0.0),
+) -> NoseMesh:
     """Lay the nose grid.
 
     Parameters
@@ -57,22 +64,29 @@ def lay_nose(meridian: Meridian, height: float, split: float, half: Section, pit
         Section of the body.
     pitch : float, m
         Wanted height of the rows.
+    hole : (float, float), m
+        Radius of an open bore at the face and where the body begins; nodes inside it are on its surface.
     """
     curve = meridian.extended(height)
+    end = float(curve.line[-1, 0])  # radius where the body begins
     share = half.radius[: half.plug_nodes] / half.plug
+    if hole[0] > 0.0:
+        share = np.clip((share * half.plug - half.bore) / (half.plug - half.bore), 0.0, 1.0)
     layer = (1.0 - half.plug) * meridian.radius
+    layer_above = (1.0 - half.plug) * end
     corner = inner_corner(meridian, split, half.plug)
     deep = corner - curve.at(np.array(split))
     length = curve.arc[-1] - split
     rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
     side = curve.at(_along(split, curve.arc[-1], rows, pitch, curve.corners()))
     inside = float(np.clip(1.0 - pitch / split, FURTHEST_IN, half.inner + LEAN))
-    face = curve.at(split * np.interp(share, [0.0, half.inner, 1.0], [0.0, inside, 1.0]))
+    along = np.interp(share, [0.0, half.inner, 1.0], [0.0, inside, 1.0]) if hole[0] <= 0.0 else share
+    face = curve.at(hole[0] + (split - hole[0]) * along)
     pole = max(layer, float(corner[1]))
-    bottom = np.stack([corner[0] * share, pole + (corner[1] - pole) * share], axis=1)
+    bottom = np.stack([hole[0] + (corner[0] - hole[0]) * share, pole + (corner[1] - pole) * share], axis=1)
     fade = np.linspace(0.0, 1.0, rows + 1)
-    wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer, 0.0])
-    return NoseMesh(face, _filled(bottom, wall, share, height), side)
+    wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer_above, 0.0])
+    return NoseMesh(face, _filled(bottom, wall, share, height, hole), side)
 
 
 def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
@@ -83,7 +97,7 @@ def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
     curve = meridian.extended(meridian.height + meridian.radius)
     layer = (1.0 - plug) * meridian.radius
     end = curve.at(np.array(split))
-    rounding = float(np.hypot(curve.radius - end[0], end[1]))  # 0 for a sharp edge
+    rounding = float(np.hypot(meridian.radius - end[0], end[1]))  # 0 for a sharp edge
     depth = DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
     return np.asarray(end + depth * curve.inward(split, 0.5 * layer))
 
@@ -101,12 +115,14 @@ def _along(start: float, end: float, rows: int, pitch: float, corners: FloatArra
     return np.asarray(np.interp(np.arange(rows + 1), np.concatenate([[0], row, [rows]]), places))
 
 
-def _filled(bottom: FloatArray, wall: FloatArray, share: FloatArray, height: float) -> FloatArray:
-    """(rows + 1, p, 2) transfinite plug between its bottom, wall, axis and the plane of the body."""
+def _filled(
+    bottom: FloatArray, wall: FloatArray, share: FloatArray, height: float, hole: tuple[float, float]
+) -> FloatArray:
+    """(rows + 1, p, 2) transfinite plug between its bottom, wall, axis or hole and the plane of the body."""
     u = np.linspace(0.0, 1.0, len(wall))[:, None, None]
     s = share[None, :, None]
-    pole = np.array([0.0, bottom[np.argmin(share), 1]])
-    top = np.stack([share * wall[-1, 0], np.full(len(share), height)], axis=1)
-    axis = pole + u * (np.array([0.0, height]) - pole)
+    pole = np.array([hole[0], bottom[np.argmin(share), 1]])
+    top = np.stack([hole[1] + share * (wall[-1, 0] - hole[1]), np.full(len(share), height)], axis=1)
+    axis = pole + u * (np.array([hole[1], height]) - pole)
     straight = (1.0 - u) * ((1.0 - s) * pole + s * wall[0]) + u * top
     return np.asarray((1.0 - u) * bottom + u * top + (1.0 - s) * axis + s * wall[:, None] - straight)

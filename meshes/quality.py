@@ -42,7 +42,11 @@ _SIGN = np.prod(1 - 2 * CORNERS, axis=1)
 
 def scaled_jacobians(mesh: HexMesh) -> FloatArray:
     """(m, 8) volume spanned by the unit edge vectors at each corner: 1 when they are square to each other."""
-    x = mesh.points[mesh.cells]
+    return corner_jacobians(mesh.points[mesh.cells])
+
+
+def corner_jacobians(x: FloatArray) -> FloatArray:
+    """(m, 8) scaled Jacobians of cells with corners x (m, 8, 3)."""
     arms = x[:, _NEIGHBOURS] - x[:, :, None, :]
     arms /= np.linalg.norm(arms, axis=-1, keepdims=True)
     return np.asarray(_SIGN * np.linalg.det(arms))

@@ -32,6 +32,13 @@ class RodMesh:
     slice_length : float, m
     body_start : float, m
         z of the interface.
+    interface : (n_section,) int64
+        Nodes of the section behind which no cell is refined.
+    rest_cells : (k,) int64
+        Cells behind the interface.
+    on_surface : tuple of (low, high), m
+        Ranges of z in which the nodes of the skin lie on the exact surface, so that the flat faces of the
+        mesh cut some of the body off; elsewhere the section has the exact area.
     """
 
     mesh: HexMesh
@@ -39,6 +46,15 @@ class RodMesh:
     body_cells: IntArray
     slice_length: float
     body_start: float
+    interface: IntArray
+    rest_cells: IntArray
+    on_surface: tuple[tuple[float, float], ...]
+
+    @classmethod
+    def plain(cls, mesh: HexMesh) -> "RodMesh":
+        """Return a mesh as a body without slices, every cell of which may be refined."""
+        none = np.zeros(0, dtype=np.int64)
+        return cls(mesh, none.reshape(0, 1), none.reshape(0, 0), 0.0, 0.0, none, none, ())
 
 
 def rod(
@@ -93,7 +109,9 @@ def rod(
     body_cells = np.arange(len(cells)).reshape(count, -1).T
     body_nodes = np.arange(len(points)).reshape(count + 1, -1).T
     if nose:
-        points, cells = _with_nose(half, shape, start, split, pitch, points, cells)
+        grid = lay_nose(shape, start, split, half, pitch)
+        more, below = nose_cells(half, grid, len(points), np.arange(len(half.unit)))
+        points, cells = np.concatenate([points, more]), np.concatenate([cells, below])
     mesh = from_cells(points, cells, half_body_tags)
     require_positive(mesh)
     if zones:
@@ -101,7 +119,8 @@ def rod(
         full = shape.extended(length)
         mesh = refine(mesh, zones, full.snap, buffer=buffer, frozen=frozen)
         require_positive(mesh)
-    return RodMesh(mesh, body_nodes, body_cells, slab, start)
+    rest = np.arange(body_cells.size)
+    return RodMesh(mesh, body_nodes, body_cells, slab, start, body_nodes[:, 0], rest, ((-np.inf, start),))
 
 
 def _body_start(
@@ -140,31 +159,27 @@ def _body(half: Section, radius: float, start: float, slab: float, count: int) -
     return points, cells.reshape(-1, 8)
 
 
-def _with_nose(
-    half: Section,
-    shape: Meridian,
-    start: float,
-    split: float,
-    pitch: float,
-    points: FloatArray,
-    cells: IntArray,
+def nose_cells(
+    half: Section, grid: NoseMesh, first: int, layer: IntArray, hollow: bool = False
 ) -> tuple[FloatArray, IntArray]:
-    """Append the nose below the body; its last row is the body's first layer."""
+    """Nodes of a nose, numbered from `first` on, and its cells; its last row is the body's `layer`, (n,).
+
+    A hollow nose has no cells inside the bore of the section.
+    """
     inner = half.plug_nodes
-    grid = lay_nose(shape, start, split, half, pitch)
     rows = len(grid.side) - 1
-    first = len(points)
     below = first + np.arange(inner)
     plug = np.concatenate(
-        [first + inner * (1 + np.arange(rows))[:, None] + np.arange(inner), [np.arange(inner)]]
+        [first + inner * (1 + np.arange(rows))[:, None] + np.arange(inner), [layer[:inner]]]
     )
     rim = len(half.unit) - inner
     outer = first + inner * (rows + 1) + rim * np.arange(rows - 1)[:, None] + np.arange(rim)
-    side = np.concatenate([[below[-rim:]], outer, [inner + np.arange(rim)]])
+    side = np.concatenate([[below[-rim:]], outer, [layer[inner:]]])
     body = np.concatenate([plug, side], axis=1)
-    layers = [_between(below, plug[0], half.quads[: half.plug_quads])]
-    layers += [_between(body[k], body[k + 1], half.quads) for k in range(rows)]
-    return np.concatenate([points, _revolved(half, grid)]), np.concatenate([cells, *layers])
+    quads = half.quads[half.bore_quads if hollow else 0 :]
+    layers = [_between(below, plug[0], quads[: half.plug_quads - (len(half.quads) - len(quads))])]
+    layers += [_between(body[k], body[k + 1], quads) for k in range(rows)]
+    return _revolved(half, grid), np.concatenate(layers)
 
 
 def _between(low: IntArray, high: IntArray, quads: IntArray) -> IntArray:

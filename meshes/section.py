@@ -8,12 +8,14 @@ import numpy as np
 from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
 
-__all__ = ["Section", "core_and_rings", "section"]
+__all__ = ["Section", "bored_section", "core_and_rings", "section"]
 
 # Proportions with the longest stable step of nose and body together at 8 cells across, from a scan.
 CORE = 0.43
 BULGE = 0.25
 PLUG = 0.75
+# Radius of a bore over that of the body: a smaller one leaves slivers around it, a larger one in the wall
+SLIMMEST, WIDEST = 0.2, 0.95
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +34,10 @@ class Section:
         Inner radius, on the symmetry plane, of the ring inside that circle, over the circle's radius.
     plug_nodes, plug_quads : int
         Numbers of nodes in or on that circle and of cells inside it.
+    bore : float
+        Radius of the circle inside which cells are left out along a bore, 0 for a section without one.
+    bore_quads : int
+        Number of cells inside that circle; they come first.
     """
 
     unit: FloatArray
@@ -40,6 +46,8 @@ class Section:
     inner: float
     plug_nodes: int
     plug_quads: int
+    bore: float = 0.0
+    bore_quads: int = 0
 
     @property
     def swell(self) -> float:
@@ -92,6 +100,54 @@ def section(across: int) -> Section:
     return Section(unit, quads, plug, inner, len(unit) - outer - 1, len(quads) - outer)
 
 
+def bored_section(across: int, bore: float) -> Section:
+    """Make the half section with a circle of radius `bore`, over the outer radius, along which cells meet.
+
+    At least two rings of cells lie in the wall, so that its bending is followed; the outermost is that which
+    wraps a nose.
+
+    Raises
+    ------
+    MeshError
+        If `across` is odd or below 6, or the bore leaves too thin a wall or too small a core.
+    """
+    if not SLIMMEST <= bore <= WIDEST:
+        raise MeshError(
+            f"a bore of {bore:.3g} of the outer radius cannot be meshed: give {SLIMMEST} to {WIDEST} of it"
+        )
+    core, _ = core_and_rings(across)
+    wall = max(2, round(0.5 * across * (1.0 - bore)))
+    inner = max(1, round(0.5 * across * bore) - core // 2)
+    plug = 1.0 - (1.0 - bore) / wall
+    shrunk = CORE * min(1.0, bore / PLUG)
+    start = shrunk / CORE * _core(core)
+    circles = np.linspace(bore, 1.0, wall + 1)[:, None, None] * _circle(core)
+    weight = np.arange(1, inner)[:, None, None] / inner
+    rim = start[_rim(core)]
+    rings = [*(rim + weight * (circles[0] - rim)), *circles]
+    unit = np.concatenate([start, *rings])
+    quads = _quads(core, inner + wall)
+    outer = 2 * core
+    return Section(
+        unit,
+        quads,
+        plug,
+        1.0 - (plug - bore) / (wall - 1) / plug,
+        len(unit) - outer - 1,
+        len(quads) - outer,
+        bore,
+        core * (core // 2) + inner * outer,
+    )
+
+
+def _circle(n: int) -> FloatArray:
+    """(2 n + 1, 2) points of the half unit circle from +x to -x."""
+    angle = np.linspace(0.0, np.pi, 2 * n + 1)
+    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    circle[[0, -1], 1] = 0.0
+    return circle
+
+
 def _core(n: int) -> FloatArray:
     """((n + 1) (n / 2 + 1), 2) nodes of the core, x fastest: a mean of a square and a disc."""
     x, y = np.meshgrid(np.linspace(-1.0, 1.0, n + 1), np.linspace(0.0, 1.0, n // 2 + 1))
@@ -111,9 +167,7 @@ def _rim(n: int) -> IntArray:
 
 def _rings(n: int, rings: int, plug: float) -> FloatArray:
     """(rings (2 n + 1), 2) ring nodes, each ring from +x to -x; the last two are circles."""
-    angle = np.linspace(0.0, np.pi, 2 * n + 1)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
-    circle[[0, -1], 1] = 0.0
+    circle = _circle(n)
     start = _core(n)[_rim(n)]
     weight = np.arange(1, rings) / (rings - 1)
     inner = start + weight[:, None, None] * (plug * circle - start)

@@ -8,6 +8,7 @@ centre; v_n, v_t < 0 before impact; Omega is positive turning n towards t. SI un
 Equation numbers are those of Averill, Ingram, Holborn and Battersby (see ``experiments/data/README.md``).
 """
 
+from . import shapes
 from .arms import Arms, corner_arms
 from .centre import impulse_centre
 from .closure import closure_defect
@@ -23,8 +24,12 @@ from .path import End, SlidingPath, interval_ratio, painleve_threshold, sliding_
 from .pinned import pinned_loss
 from .projectile import Projectile
 from .slenderness import LIMIT, LIMIT_MM, behaves_rigidly, in_millimetres, slenderness
+from .turned import Turned
 from .uncertainty import Errors, Estimate, bootstrap, first_order
 from .worst import WorstCase, worst_case
+
+Body = Projectile | Turned
+"""What strikes a barrier."""
 
 __all__ = [
     "GRAVITY",
@@ -32,6 +37,7 @@ __all__ = [
     "LIMIT_MM",
     "SHAPES",
     "Arms",
+    "Body",
     "Coefficients",
     "DataError",
     "End",
@@ -48,6 +54,7 @@ __all__ = [
     "RigidError",
     "ShapeError",
     "SlidingPath",
+    "Turned",
     "WorstCase",
     "behaves_rigidly",
     "bootstrap",
@@ -68,6 +75,7 @@ __all__ = [
     "pinned_loss",
     "predicted_losses",
     "restitution",
+    "shapes",
     "slenderness",
     "sliding_path",
     "solve",

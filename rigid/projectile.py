@@ -94,6 +94,12 @@ class Projectile:
         """Slenderness coefficient (Eq 29), m^-0.3815."""
         return float(slenderness(self.length, self.diameter))
 
+    def moments_behind(self, start: float) -> tuple[float, float, float]:
+        """Mass (kg), centre (m from the tip), squared radius of gyration (m2) of what lies behind `start`."""
+        behind = self.length - start
+        mass = self.density * math.pi * self.diameter**2 / 4 * behind
+        return mass, start + behind / 2, behind**2 / 12 + self.diameter**2 / 16
+
     def meridian(self, n: int = 33) -> Floats:
         """Meridian of the tip as (rho, z) points, m, from (0, 0) to (R, z_side).
 
@@ -110,6 +116,45 @@ class Projectile:
         outside = ~((alpha >= 0) & (alpha < np.pi / 2))
         refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
         return self.nose.lowest(alpha)
+
+    @property
+    def face(self) -> float:
+        """Radius of the flat face at the tip, m; 0 where there is none."""
+        return self.nose.face
+
+    def tip_curvature(self, alpha: float) -> float:
+        """Radius of curvature, m, of the meridian at the lowest point; 0 on an edge."""
+        nose = self.nose
+        sharp = self.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
+        return 0.0 if sharp else self.tip_radius
+
+    def other_edges(self, alpha: float) -> list[tuple[str, float, float, float]]:
+        """Round edges that do not touch first but may touch later: name, (x, z) of the centre and radius, m.
+
+        In the plane of motion the rod is the hull of the arcs of its tip, the shoulders of its cone and its
+        tail.
+        """
+        nose, R = self.nose, self.diameter / 2
+        on_shoulder = nose.has_cone and alpha > nose.sweep
+        on_arc = not on_shoulder and (alpha > 0 or nose.face == 0)
+        shoulders = [x for x in (-R, R) if nose.has_cone and not (on_shoulder and x > 0)]
+        arcs = {-nose.face, nose.face} - ({nose.face} if on_arc else set())
+        return [
+            *(("tail", x, self.length, 0.0) for x in (-R, R)),
+            *(("shoulder", x, nose.z_side, 0.0) for x in shoulders),
+            *(("nose" if on_shoulder else "other edge", x, nose.r, nose.r) for x in sorted(arcs)),
+        ]
+
+    def radius(self, z: Floats) -> Floats:
+        """Outer radius, m, at heights `z`, m."""
+        outline = self.meridian()
+        return np.asarray(np.interp(z, outline[:, 1], outline[:, 0]))
+
+    def holds(self, rho: Floats, z: Floats) -> np.ndarray[tuple[int, ...], np.dtype[np.bool_]]:
+        """Whether points at radii `rho` and heights `z`, m, lie inside."""
+        outline = self.meridian()
+        surface = np.interp(rho, outline[:, 0], outline[:, 1], right=np.inf)
+        return np.asarray((z >= surface) & (z <= self.length))
 
     def arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the tip's lowest point about the mass centre of the turned rod."""

@@ -222,6 +222,7 @@ def _statement(planned: Plan) -> dict[str, Any]:
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
+        "body": _body_entry(scene),
         "sources": _sources(scene),
         "intervals": _intervals(scene),
         "flow_stress_Pa": _flow_stresses(planned),
@@ -231,6 +232,55 @@ def _statement(planned: Plan) -> dict[str, Any]:
         "warnings": list(planned.warnings),
         "size": None if scene.accuracy.target else _size_entry(planned.size),
     }
+
+
+def _body_entry(scene: Scene) -> dict[str, float]:
+    """Return what the theories need of the projectile, SI."""
+    from fem_impact.physics.beam import bending_period, stretching_period
+    from fem_impact.physics.contact import arms, principal_radii, projectile, touch_point
+
+    body, (d_c, d_d), (rho, z) = projectile(scene), arms(scene), touch_point(scene)
+    R1, R2 = principal_radii(scene)
+    return {
+        "mass_kg": body.mass,
+        "centre_m": body.z_c,
+        "inertia_kg_m2": body.mass * body.k2,
+        "k2_m2": body.k2,
+        "length_m": body.length,
+        "diameter_m": body.diameter,
+        "gamma": body.gamma,
+        "touch_z_m": z,
+        "touch_rho_m": rho,
+        "R1_m": R1,
+        "R2_m": R2,
+        "d_c_m": d_c,
+        "d_d_m": d_d,
+        "bending_period_s": bending_period(scene),
+        "stretching_period_s": stretching_period(scene),
+    }
+
+
+def _body_lines(body: dict[str, float]) -> Iterable[str]:
+    """Return the projectile's numbers in words."""
+    mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
+    return (
+        f"mass {body['mass_kg']:.4g} kg, centre {mm['centre_m']:.4g} mm from the tip, moment of inertia "
+        f"about it {body['inertia_kg_m2']:.4g} kg m2",
+        f"touches first {mm['touch_z_m']:.3g} mm from the tip, {mm['touch_rho_m']:.3g} mm off the axis, "
+        f"with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
+        f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
+        f"periods: bending T1 = {1e6 * body['bending_period_s']:.3g} us, longitudinal "
+        f"{1e6 * body['stretching_period_s']:.3g} us (beam and bar)",
+        f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
+    )
+
+
+def _drawing(scene: Scene) -> list[str]:
+    from fem_impact.figures.outline import drawn
+    from fem_impact.physics.contact import projectile, touch_point
+
+    joints = [part.to for part in scene.projectile.segments[:-1]]
+    return drawn(projectile(scene), touch_point(scene), joints)
 
 
 def _size_entry(size: RunSize) -> dict[str, float]:
@@ -305,6 +355,7 @@ def _readable(planned: Plan, statement: dict[str, Any]) -> str:
     lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
+    lines += ["", "Projectile", *_drawing(planned.scene), *_wrapped(_body_lines(statement["body"]))]
     lines += ["", "Effects"]
     lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])

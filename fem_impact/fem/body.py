@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 from math import sqrt
 from typing import Protocol
 
@@ -17,13 +18,13 @@ from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
-from fem_impact.fem.geometry import POINTS, Geometry, build_geometry, rest_mass
+from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
 from fem_impact.fem.mass_scaling import crossing_times, mass_factors, reference_time, scaled_rod
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
-from fem_impact.physics.contact import projectile
+from fem_impact.physics.contact import pressure_speed, projectile
 from fem_impact.plan.plan import Plan
 from fem_impact.scene.material import Material
 from meshes import OUTER, HexMesh, RodMesh
@@ -53,6 +54,7 @@ class MeshedBody:
     yields : (m,) bool, cells that may yield
     element, yielding : element types of the cells that cannot yield, and of those that may
     mass : (m, 8) lumped masses of each cell at its nodes, kg
+    others : materials of cells that are not of ``material``, each with the mask (m,) of its cells
     """
 
     name: str
@@ -64,6 +66,15 @@ class MeshedBody:
     element: Kind
     mass: Array
     yielding: Kind = "bbar"
+    others: tuple[tuple[Material, Bools], ...] = ()
+
+    @property
+    def parts(self) -> list[tuple[Elastic, Bools]]:
+        """Return each material with the mask (m,) of its cells."""
+        own = np.ones(len(self.mesh.cells), dtype=bool)
+        for _, cells in self.others:
+            own &= ~cells
+        return [(self.material, own), *self.others]
 
 
 def make_body(
@@ -86,15 +97,23 @@ def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> 
 
     Row 0 is the unknown with index ``shift`` in the flat vectors.
     """
-    T = tie_operator(body.mesh.tie, body.places - shift, size)
-    lame, cells = lame_constants(body.material.E, body.material.nu), body.mesh.cells
-    elastic = assemble(body.points, cells[chosen & ~body.yields], lame, body.element, T)
-    return elastic + assemble(body.points, cells[chosen & body.yields], lame, body.yielding, T)
+    T, cells = tie_operator(body.mesh.tie, body.places - shift, size), body.mesh.cells
+
+    def part(material: Elastic, here: Bools) -> sp.csr_matrix:
+        lame = lame_constants(material.E, material.nu)
+        elastic = assemble(body.points, cells[here & ~body.yields], lame, body.element, T)
+        return elastic + assemble(body.points, cells[here & body.yields], lame, body.yielding, T)
+
+    first, *rest = (part(material, chosen & here) for material, here in body.parts)
+    return sum(rest, first)
 
 
 def slices_of(body: MeshedBody, rod: RodMesh) -> SliceOperator:
     """Return the stiffness operator of the rod's slices, built from the first, which all others equal."""
-    m, first = body.material, body.mesh.cells[rod.body_cells[:, 0]]
+    if not rod.body_cells.size:
+        return SliceOperator.none()
+    m = next(material for material, here in body.parts if here[rod.body_cells[0, 0]])
+    first = body.mesh.cells[rod.body_cells[:, 0]]
     K = element_stiffness(body.points, first, lame_constants(m.E, m.nu), body.element)
     return SliceOperator.of_rod(rod, K)
 
@@ -152,11 +171,10 @@ class MeshedBodies:
 
     @cached_property
     def rest_mass(self) -> float:
-        """Return the mass, kg, of half the rigid cylinder behind the nose; 0 where the rod vibrates."""
+        """Return the mass, kg, of half the rigid body behind the nose; 0 where the rod vibrates."""
         if self.spec.vibrating:
             return 0.0
-        rod = self.scene.projectile
-        return rest_mass(self.geometry.rod.body_start, rod.length, rod.diameter, rod.material.rho)
+        return projectile(self.scene).moments_behind(self.geometry.rod.body_start)[0] / 2
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -172,24 +190,47 @@ class MeshedBodies:
         return nose
 
     @cached_property
+    def cut_off(self) -> Bools:
+        """Return the mask (m,) of the rod's cells where the nodes of the skin lie on the round surface."""
+        mesh = self.geometry.rod.mesh
+        z = mesh.points[mesh.cells, 2].mean(axis=1)
+        inside = [(z > low) & (z < high) for low, high in self.geometry.rod.on_surface]
+        return np.asarray(np.any(inside, axis=0))
+
+    @cached_property
     def true_rod(self) -> MeshedBody:
         """Return the meshed rod with its exact mass.
 
-        The mass that the flat faces of the mesh cut off the round skin is spread over the nose's cells.
+        The mass that the flat faces of the mesh cut off the round skin is spread over the cells there.
         """
         g, yields = self.geometry, self.geometry.may_yield["rod"] & (self.spec.rod_law is not None)
         steel, accuracy = self.materials["rod"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
+        rod = self._segmented(rod)
         missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
-        rod.mass[self.nose] *= 1 + missing / rod.mass[self.nose].sum()
+        cut = self.cut_off
+        rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
         return rod
+
+    def _segmented(self, rod: MeshedBody) -> MeshedBody:
+        """Return the rod with the materials of its segments behind the first."""
+        segments = self.scene.projectile.segments
+        z = rod.mesh.points[rod.mesh.cells, 2].mean(axis=1)
+        others = tuple(
+            (part.material, (z > before.to) & (z < part.to)) for before, part in pairwise(segments)
+        )
+        for material, here in others:
+            rod.mass[here] *= material.rho / rod.material.rho
+        return replace(rod, others=others)
 
     @cached_property
     def scaled_rod(self) -> tuple[MeshedBody, float]:
         """Return the rod with the masses of the run, and the mass scaling in force."""
         rod = self.true_rod
         crossing = crossing_times(rod.mesh, rod.points, self.materials["rod"])
+        for material, here in rod.others:
+            crossing[here] *= pressure_speed(self.materials["rod"]) / pressure_speed(material)
         reference = reference_time(self.plan.zones, self.materials)
         place, wanted = rod.points[rod.mesh.cells], self.scene.accuracy.mass_scaling
         mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted)
@@ -273,7 +314,10 @@ class MeshedBodies:
     @cached_property
     def drawn(self) -> MassPoints:
         """Return the mass points of the rod's slices."""
-        return MassPoints.of_rod(self.geometry.rod, self.rod.mass, self.rod.material.rho)
+        rod = self.scene.projectile
+        tail = rod.segments[-1].material if rod.segments else rod.material
+        bore = float(rod.body().inner_radius(np.array(rod.length))) if rod.bore else 0.0
+        return MassPoints.of_rod(self.geometry.rod, self.rod.mass, tail.rho, bore=bore)
 
     @cached_property
     def x(self) -> Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from math import cos, pi, sin, sqrt
+from math import cos, sin, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +15,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
+from rigid import Turned
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -62,7 +63,8 @@ def to_barrier_frame(alpha: float) -> Array:
 def tail_corners(scene: Scene) -> Array:
     """Return both corners (2, 3), m, of the rod's tail in the symmetry plane at the start; gap 0."""
     body = projectile(scene)
-    corners = np.array([[x * body.diameter / 2, 0.0, body.length] for x in (-1, 1)])
+    radius = float(body.radius(np.array(body.length)))
+    corners = np.array([[x * radius, 0.0, body.length] for x in (-1, 1)])
     return np.asarray((corners - lowest_point(scene)) @ to_barrier_frame(scene.impact.angle).T)
 
 
@@ -70,15 +72,16 @@ def build_geometry(
     scene: Scene, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
 ) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
-    body = projectile(scene)
     turn, lowest = to_barrier_frame(scene.impact.angle), lowest_point(scene)
     rod = _rod(scene, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
     if not vibrating:
-        rod = meshes.without_slices(rod, rest_points(rod.body_start, body.length, body.diameter))
+        _require_rest(rod)
+        rod = meshes.without_slices(rod, rest_points(scene, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
     _require_tip_first(points, zones.base)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
-    may_yield, barrier = {"rod": _round(rod.mesh, points, zones.reach, zones.half)}, None
+    may_yield = {"rod": _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(scene, rod.mesh)}
+    barrier = None
     if meshed_barrier:
         barrier = _block(scene, zones)
         may_yield["barrier"] = _round(barrier, barrier.points, zones.along, zones.half)
@@ -86,32 +89,43 @@ def build_geometry(
     return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield)
 
 
-def rest_points(start: float, length: float, diameter: float) -> Array:
-    """Return the two axis points (2, 3), m, that replace the cylinder behind the nose.
+def rest_points(scene: Scene, start: float) -> Array:
+    """Return the two axis points (2, 3), m, that replace what lies behind ``start``, m from the tip.
 
     They lie at its radius of gyration on either side of its centre.
     """
-    behind = length - start
-    radius = sqrt(behind**2 / 12 + diameter**2 / 16)
-    centre = start + behind / 2
-    return np.array([[0.0, 0.0, centre - radius], [0.0, 0.0, centre + radius]])
-
-
-def rest_mass(start: float, length: float, diameter: float, rho: float) -> float:
-    """Return the mass, kg, of half the cylinder behind the nose."""
-    return rho * pi * diameter**2 / 8 * (length - start)
+    _, centre, k2 = projectile(scene).moments_behind(start)
+    return np.array([[0.0, 0.0, centre - sqrt(k2)], [0.0, 0.0, centre + sqrt(k2)]])
 
 
 def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
-    body = projectile(scene)
+    body, across = projectile(scene), scene.accuracy.across
     try:
-        return meshes.rod(
-            body.meridian(), body.length, scene.accuracy.across, None, zones, contact=lowest, buffer=BUFFER
-        )
+        if isinstance(body, Turned):
+            return meshes.turned(
+                body.outline,
+                across,
+                zones,
+                bore=body.bore,
+                planes=[end for end, _ in body.density],
+                contact=lowest,
+                buffer=BUFFER,
+            )
+        return meshes.rod(body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER)
     except meshes.MeshError as error:
         remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy) from None
+
+
+def _require_rest(rod: RodMesh) -> None:
+    """Raise SceneError where cells are split up to the end of a body that cannot vibrate."""
+    if not len(rod.rest_cells):
+        raise SceneError(
+            "leaves nothing behind the fine zone of its contact that could move as one rigid body.",
+            key="projectile",
+            remedy='Let it vibrate: effects = ["auto", "vibration"].',
+        )
 
 
 def _require_tip_first(points: Array, base: float) -> None:
@@ -124,6 +138,13 @@ def _require_tip_first(points: Array, base: float) -> None:
             key="impact.angle",
             remedy="Give a smaller angle or a larger accuracy.across.",
         )
+
+
+def _first_segment(scene: Scene, mesh: HexMesh) -> Bools:
+    """Return the mask (m,) of the rod's cells in the segment that touches; the others stay elastic."""
+    segments = scene.projectile.segments
+    end = segments[0].to if segments else np.inf
+    return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)
 
 
 def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:

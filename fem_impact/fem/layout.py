@@ -104,12 +104,18 @@ class MassPoints:
 
     @classmethod
     def of_rod(
-        cls, rod: RodMesh, mass: Array, density: float, linear: tuple[int, int, int] = MIRRORED
+        cls,
+        rod: RodMesh,
+        mass: Array,
+        density: float,
+        linear: tuple[int, int, int] = MIRRORED,
+        bore: float = 0.0,
     ) -> MassPoints:
         """Return the mass points of a rod with row-sum masses ``mass`` (cells, 8), kg.
 
-        The section is taken as the circle of its area. A body without slices has no mass points inside.
-        ``linear`` says which section coordinate, x (0) or y (1), the motions along t, b, n are linear in.
+        The section is taken as the circle of its area, or as the ring around a ``bore`` of a radius, m. A
+        body without slices has no mass points inside. ``linear`` says which section coordinate, x (0) or y
+        (1), the motions along t, b, n are linear in.
         """
         if not rod.body_cells.size:
             return cls(np.zeros(0), np.zeros(0), np.ones(3), np.zeros(0))
@@ -119,7 +125,8 @@ class MassPoints:
         level = rod.mesh.points[tail][:, linear].T
         moment = (m * level**2).sum(axis=1)
         half_area = mass[cells].sum() / (density * rod.slice_length)
-        round_moment = m.sum() * half_area / (2 * pi)  # m R^2 / 4 with pi R^2 / 2 = half_area
+        # m (R^2 + r^2) / 4 with pi (R^2 - r^2) / 2 = half_area
+        round_moment = m.sum() * half_area / (2 * pi) + m.sum() * bore**2 / 2
         root = np.sqrt(moment)[:, None]
         lever, weight = (level / root).ravel(), (m * level / root).ravel()
         return cls(lever, weight, np.sqrt(round_moment / moment), np.zeros(rod.body_nodes.shape[1]))

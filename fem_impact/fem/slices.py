@@ -39,8 +39,15 @@ class SliceOperator:
         apply_slices(self.start, self.columns, self.below, self.own, self.above, ends, d, y)
 
     @classmethod
+    def none(cls) -> SliceOperator:
+        """Return the operator of a body without slices."""
+        empty = np.zeros(0)
+        start, columns = np.zeros(1, np.int64), np.zeros(0, np.int64)
+        return cls(start, columns, empty, empty, empty, empty, empty)
+
+    @classmethod
     def of_rod(cls, rod: RodMesh, K: Array) -> SliceOperator:
-        """Build from a rod's mesh and the element matrices (m, 24, 24) of its first slice."""
+        """Build from a rod's mesh with slices and the element matrices (m, 24, 24) of its first slice."""
         section = np.full(len(rod.mesh.points), -1)
         section[rod.body_nodes[:, :2].T] = np.arange(len(rod.body_nodes))
         first = rod.mesh.cells[rod.body_cells[:, 0]]

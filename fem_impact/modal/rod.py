@@ -16,7 +16,9 @@ from fem_impact.plan.plan import plan
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.types import Accuracy, ProjectileSpec, Scene, Surface
+from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Accuracy, Scene, Surface
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
@@ -53,11 +55,11 @@ def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
     body, alpha = projectile(scene), scene.impact.angle
     d_c, d_d = arms(scene)
     radius = principal_radii(scene)[0]
-    edges = _other_edges(scene)
+    edges = body.other_edges(alpha)
     places = np.array([touch_point(scene), *((x, z) for _, x, z, _ in edges)])
     omega, moved = _moved(scene, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
     along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
-    flat = alpha == 0 and body.nose.face > 0
+    flat = alpha == 0 and body.face > 0
     t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
     others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:], flat)
     names = tuple(edge[0] for edge in edges)
@@ -69,24 +71,6 @@ def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
 def _turned(alpha: float, x: Array, z: Array) -> tuple[Array, Array]:
     """Return (t, n) of vectors (x, z) in the rod frame."""
     return cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
-
-
-def _other_edges(scene: Scene) -> list[tuple[str, float, float, float]]:
-    """Return name, centre (x, z) in the rod frame, m, and radius, m, of each round edge that is not followed.
-
-    In the plane of motion the rod is the hull of the arcs of its tip, the shoulders of its cone and its tail.
-    """
-    body, alpha = projectile(scene), scene.impact.angle
-    nose, R = body.nose, body.diameter / 2
-    on_shoulder = nose.has_cone and alpha > nose.sweep
-    on_arc = not on_shoulder and (alpha > 0 or nose.face == 0)
-    shoulders = [x for x in (-R, R) if nose.has_cone and not (on_shoulder and x > 0)]
-    arcs = {-nose.face, nose.face} - ({nose.face} if on_arc else set())
-    return [
-        *(("tail", x, body.length, 0.0) for x in (-R, R)),
-        *(("shoulder", x, nose.z_side, 0.0) for x in shoulders),
-        *(("nose" if on_shoulder else "other edge", x, nose.r, nose.r) for x in sorted(arcs)),
-    ]
 
 
 def _moved(scene: Scene, places: Array) -> tuple[Array, Array]:
@@ -107,8 +91,12 @@ def _moved_place(scene: Scene, points: Array, shape: Array, x: float, z: float) 
 
 def _elastic(rod: ProjectileSpec) -> ProjectileSpec:
     """Return the rod without what its modes do not depend on, so that they are found again."""
-    steel = replace(rod.material, name="elastic", yield_stress=1e9, ultimate_stress=1e9)
-    return replace(rod, material=steel)
+
+    def elastic(metal: Material) -> Material:
+        return replace(metal, name="elastic", yield_stress=1e9, ultimate_stress=1e9)
+
+    segments = tuple(replace(part, material=elastic(part.material)) for part in rod.segments)
+    return replace(rod, material=elastic(rod.material), segments=segments)
 
 
 @lru_cache(maxsize=32)

@@ -14,12 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.arrays import Array
+from fem_impact.physics import stepped_beam
 from fem_impact.physics.contact import (
     ContactBodies,
     contact_estimate,
     projectile,
     section_frequency,
     shear_speed,
+    touch_point,
 )
 
 if TYPE_CHECKING:
@@ -45,10 +47,12 @@ class Beam(NamedTuple):
 
 
 def bending_frequencies(scene: Scene) -> Array:
-    """Return circular frequencies of free-free bending, rad/s, ascending.
+    """Return circular frequencies of free-free bending, rad/s, ascending; those of a profile by `beam_modes`.
 
     Timoshenko's dispersion at the wave numbers of the Euler-Bernoulli modes.
     """
+    if not scene.projectile.is_rod:
+        return stepped_beam.beam_modes(scene.projectile).bent
     return bending_dispersion(scene, ROOTS / scene.projectile.length)
 
 
@@ -77,7 +81,9 @@ def bending_period(scene: Scene) -> float:
 
 
 def stretching_period(scene: Scene) -> float:
-    """Return the first longitudinal period, s: 2 l / c0."""
+    """Return the first longitudinal period, s: 2 l / c0 of a rod."""
+    if not scene.projectile.is_rod:
+        return 2 * pi / float(stepped_beam.beam_modes(scene.projectile).stretched[0])
     return 2 * scene.projectile.length / bar_speed(scene)
 
 
@@ -87,6 +93,8 @@ def beam(scene: Scene) -> Beam:
     The end of a bending mode, of amplitude 2 for a unit mass, rotates by w' (1 - (w/b)^2 rho/(kappa G))
     (Timoshenko); its rotatory inertia is part of the modal mass.
     """
+    if not scene.projectile.is_rod:
+        return _stepped(scene)
     body, alpha, r = projectile(scene), scene.impact.angle, scene.projectile.diameter / 4
     rho, z = (float(part) for part in body.contact_point(alpha))
     rho = rho if alpha > 0 else 0.0  # an upright rod strikes with its whole face
@@ -97,6 +105,22 @@ def beam(scene: Scene) -> Beam:
     omega = np.concatenate([bent, 2 * pi * count / stretching_period(scene)])
     x = np.concatenate([height * (2 - turn * z), 0.0 * count])
     y = np.concatenate([height * turn * rho, sqrt(2 / body.mass) + 0.0 * count])
+    below = omega < section_frequency(scene)
+    along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
+    return Beam(omega[below], along_t[below], along_n[below])
+
+
+def _stepped(scene: Scene) -> Beam:
+    """Return the modes of a turned projectile at its contact point."""
+    modes, alpha = stepped_beam.beam_modes(scene.projectile), scene.impact.angle
+    rho, z = touch_point(scene)
+
+    def there(shapes: Array) -> Array:
+        return np.array([np.interp(z, modes.z, shape) for shape in shapes])
+
+    omega = np.concatenate([modes.bent, modes.stretched])
+    x = np.concatenate([there(modes.w), 0.0 * modes.stretched])
+    y = np.concatenate([-rho * there(modes.angle), there(modes.u)])
     below = omega < section_frequency(scene)
     along_t, along_n = cos(alpha) * x + sin(alpha) * y, cos(alpha) * y - sin(alpha) * x
     return Beam(omega[below], along_t[below], along_n[below])

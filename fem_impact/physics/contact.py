@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
     from fem_impact.scene.material import Material
+    from fem_impact.scene.projectile import ProjectileSpec
     from fem_impact.scene.types import Scene
-    from rigid import Projectile
+    from rigid import Body, Projectile
 
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
@@ -70,19 +71,23 @@ class ContactEstimate:
 def principal_radii(scene: Scene) -> tuple[float, float]:
     """Return (R1, R2), m, of the tip at its lowest point."""
     rod, alpha = projectile(scene), scene.impact.angle
-    (rho, _), nose = rod.contact_point(alpha), rod.nose
-    sharp = rod.tip_radius == 0 or (nose.has_cone and alpha > nose.sweep)
-    R1 = rod.diameter / 200 if sharp else rod.tip_radius
-    at_pole = FLATTEST if nose.face > 0 else R1
+    rho, _ = rod.contact_point(alpha)
+    R1 = rod.tip_curvature(alpha) or rod.diameter / 200
+    at_pole = FLATTEST if rod.face > 0 else R1
     around = float(rho) / sin(alpha) if alpha > 0 else at_pole
     return R1, min(max(around, R1), FLATTEST)
 
 
-def projectile(scene: Scene) -> Projectile:
+def projectile(scene: Scene) -> Body:
     """Return the rigid projectile of a scene."""
+    rod = scene.projectile
+    return plain_rod(rod) if rod.is_rod else rod.body()
+
+
+def plain_rod(rod: ProjectileSpec) -> Projectile:
+    """Return the rigid rod of one material with one of the tips."""
     from rigid import Projectile
 
-    rod = scene.projectile
     return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
 
 

@@ -25,10 +25,17 @@ facet: e was 1.4 instead of .8, and mu three times f.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from math import log2, sqrt
 
+import numpy as np
+
+import meshes
+from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_estimate
 from fem_impact.scene.fields import ACCURACY
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Scene
 
 LEAST = {"elastic": 1.6, "yielding": 2.0}  # below it e, mu and all shares are not given
 ADVISED = {"elastic": 4.0, "yielding": 5.0}  # e and mu within 2 and 5 %
@@ -49,6 +56,30 @@ def contact_radius(bodies: ContactBodies) -> float:
     return sqrt(size.a_t * size.a_b)
 
 
+def body_cell(scene: Scene) -> float:
+    """Return the edge, m, of the body's cells where it touches, before they are split.
+
+    As many lie over the diameter of a rod as ``accuracy.across`` says; over that of the nose or section that
+    touches if the projectile has a shape of its own.
+    """
+    rod = scene.projectile
+    width = (
+        rod.diameter if rod.is_rod else 2 * _contact_radius(rod, scene.impact.angle, scene.accuracy.across)
+    )
+    return width / scene.accuracy.across
+
+
+@lru_cache(maxsize=256)
+def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
+    """Return the radius, m, of the nose or section of a turned projectile that touches."""
+    body = rod.body()
+    place = np.array([float(part) for part in body.contact_point(angle)])
+    try:
+        return meshes.contact_radius(body.outline, place, across, body.bore)
+    except meshes.MeshError as error:
+        raise SceneError(f"cannot be meshed: {error}.", key="projectile") from None
+
+
 def levels_of(bodies: ContactBodies) -> tuple[int, int]:
     """Return how often the body's cells are split at the contact, for the rod and for a meshed barrier.
 
@@ -56,7 +87,7 @@ def levels_of(bodies: ContactBodies) -> tuple[int, int]:
     barrier's that of the rod.
     """
     scene = bodies.scene
-    base = scene.projectile.diameter / scene.accuracy.across
+    base = body_cell(scene)
     tip = scene.accuracy.tip_size or max(size_for(bodies, ADVISED[kind(bodies)]), FINEST)
     rod, barrier = (max(0, round(log2(base / size))) for size in (tip, scene.accuracy.barrier_size or tip))
     return rod, barrier
@@ -69,7 +100,7 @@ def contact_edge(bodies: ContactBodies) -> float:
     """
     rod, barrier = levels_of(bodies)
     level = barrier if barrier_conforms(bodies) else min(rod, barrier) if bodies.compliant else rod
-    return float(bodies.scene.projectile.diameter / bodies.scene.accuracy.across / 2**level)
+    return float(body_cell(bodies.scene) / 2**level)
 
 
 def expected_cells(bodies: ContactBodies) -> float:
@@ -83,7 +114,7 @@ def size_for(bodies: ContactBodies, cells: float, radius: float | None = None) -
     Halving comes as near to it as it can: the cells may be a factor of sqrt(2) larger or smaller.
     """
     scene = bodies.scene
-    widest = COARSEST * scene.projectile.diameter / scene.accuracy.across
+    widest = COARSEST * body_cell(scene)
     return min((contact_radius(bodies) if radius is None else radius) / (cells - RIM), widest)
 
 

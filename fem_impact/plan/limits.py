@@ -7,13 +7,22 @@ from collections.abc import Collection
 from dataclasses import replace
 
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import ContactBodies, approach, arms, contact_estimate
+from fem_impact.physics.contact import (
+    ContactBodies,
+    approach,
+    arms,
+    contact_estimate,
+    projectile,
+    touch_point,
+)
 from fem_impact.physics.plate import contact_time, least_span
 from fem_impact.scene import library
 from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
+from rigid import Turned
 
+FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019
@@ -29,6 +38,7 @@ def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     sentences = (
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
+        _segments(scene),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -54,11 +64,19 @@ def _outside(value: float, ends: tuple[float, float], name: str, dimension: str)
 
 def _section(scene: Scene) -> str:
     rod = scene.projectile
-    if math.isclose(rod.diameter, DIAMETER) and any(
-        rod.tip == tip and math.isclose(rod.tip_radius, radius) for tip, radius in TIPS
+    if (
+        rod.is_rod
+        and math.isclose(rod.diameter, DIAMETER)
+        and any(rod.tip == tip and math.isclose(rod.tip_radius, radius) for tip, radius in TIPS)
     ):
         return ""
     return "outside the measured range: measured were 19 mm rods with a 7 mm nose (A) or a 3 mm edge (B)"
+
+
+def _segments(scene: Scene) -> str:
+    if not scene.projectile.segments:
+        return ""
+    return "idealised: only the first segment of the projectile may yield; the others and joints stay elastic"
 
 
 def _fall(scene: Scene) -> str:
@@ -135,6 +153,29 @@ def require_plate(bodies: ContactBodies) -> None:
             key="barrier.span",
             value=f"{barrier.span * 1e3:.3g} mm",
             remedy=f"Give at least {least * 1e3:.3g} mm.",
+        )
+
+
+def require_point(bodies: ContactBodies) -> None:
+    """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
+    scene, body = bodies.scene, projectile(bodies.scene)
+    if not isinstance(body, Turned):
+        return
+    segments, touch = scene.projectile.segments, touch_point(scene)[1]
+    if segments and touch > segments[0].to:
+        raise SceneError(
+            f"ends before the place that touches first, {touch * 1e3:.3g} mm from the tip.",
+            key="projectile.segments[1].to",
+            value=f"{segments[0].to * 1e3:.3g} mm",
+            remedy="The first segment must touch: only its material may yield.",
+        )
+    size, (length, height) = contact_estimate(bodies), body.flank(scene.impact.angle)
+    if length > 2 * size.a_t and height < FLAT * size.depth:
+        raise SceneError(
+            f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
+            key="impact.angle",
+            value=f"{math.degrees(scene.impact.angle):.4g} deg",
+            remedy=f"Change it by {math.degrees(FLAT * size.depth / length):.2g} deg or more.",
         )
 
 

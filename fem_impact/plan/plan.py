@@ -12,7 +12,13 @@ from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.cells import coarse_tip
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.limits import require_approach, require_plate, require_shallow, validity
+from fem_impact.plan.limits import (
+    require_approach,
+    require_plate,
+    require_point,
+    require_shallow,
+    validity,
+)
 from fem_impact.plan.metals import unknowns
 from fem_impact.plan.size import RunSize, require_memory, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, require_layer, zones_of
@@ -85,6 +91,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     in_model = resolved(scene)
     bodies = bodies_of(in_model)
     require_plate(bodies)
+    require_point(bodies)
     slots, zones = ModelSpec(), zones_of(bodies)
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)

@@ -156,13 +156,19 @@ def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tupl
 
 def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
     """Return the elements of half the rod, without slices if it cannot vibrate."""
-    length = scene.projectile.length
-    boxes = zones.rod_boxes
-    layer = len(section(scene.accuracy.across).quads) / zones.base  # elements of a metre of the coarse rod
-    count = layer * (length if vibrating else min(_body_start(scene, zones, boxes), length))
+    boxes, end = zones.rod_boxes, scene.projectile.length
+    count = _coarse_elements(scene, end if vibrating else min(_body_start(scene, zones, boxes), end))
     for edge, lowest, highest in _split_boxes(zones.base, boxes):
         count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
     return count
+
+
+def _coarse_elements(scene: Scene, end: float) -> float:
+    """Return the elements of half the coarse body from its tip up to a height, m."""
+    rod, across = scene.projectile, scene.accuracy.across
+    z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
+    radius = rod.diameter / 2 if rod.is_rod else np.maximum(rod.body().radius(z), 0.05 * rod.diameter)
+    return float(len(section(across).quads) * end * np.mean(across / (2 * radius)))
 
 
 def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
@@ -192,9 +198,7 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
     rho_0, _, z_0 = lowest_point(scene)
     rho, z = np.hypot(x + rho_0, b), z + z_0
-    outline = body.meridian()
-    surface = np.interp(rho, outline[:, 0], outline[:, 1], right=np.inf)
-    inside = points[(z >= surface) & (z <= body.length)]
+    inside = points[body.holds(rho, z)]
     return inside, float(np.prod(high - low)) * len(inside) / len(points)
 
 

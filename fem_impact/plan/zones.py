@@ -19,7 +19,7 @@ from fem_impact.physics.contact import (
     sliding,
 )
 from fem_impact.physics.hardening import Skin
-from fem_impact.plan.cells import contact_radius, levels_of
+from fem_impact.plan.cells import body_cell, contact_radius, levels_of
 from fem_impact.scene.types import Scene
 from meshes import thin_skin_rise
 
@@ -108,7 +108,7 @@ class Zones:
 def zones_of(bodies: ContactBodies) -> Zones:
     """Return the fine zones of two bodies that touch."""
     scene, size = bodies.scene, contact_estimate(bodies)
-    base, rho = scene.projectile.diameter / scene.accuracy.across, float(lowest_point(scene)[0])
+    base, rho = body_cell(scene), float(lowest_point(scene)[0])
     levels, below = levels_of(bodies)
     reach = face_reach(bodies, rho)
     conforming = barrier_conforms(bodies)
@@ -197,7 +197,7 @@ def require_fine_zone(bodies: ContactBodies) -> None:
     """Refuse a tip without a fine zone where one is needed (SceneError)."""
     scene = bodies.scene
     if levels_of(bodies)[0] == 0 and (bodies.compliant or bodies.rod_yields):
-        base = scene.projectile.diameter / scene.accuracy.across
+        base = body_cell(scene)
         raise SceneError(
             "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
             key="accuracy.tip_size",

@@ -16,11 +16,21 @@ from fem_impact.scene.checks import check_choice, check_names
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.projectile import ProjectileSpec, Segment
+from fem_impact.scene.shapes import (
+    HEIGHT,
+    RADIUS,
+    TIPS,
+    NamedShape,
+    Profile,
+    read_points,
+    sizes_of,
+    stated_points,
+)
 from fem_impact.scene.types import (
     OWN,
     Accuracy,
     Heating,
-    ProjectileSpec,
     Save,
     Scene,
     Surface,
@@ -33,7 +43,9 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
-    return read_dict(_beside(_parse(_load(Path(path)), str(path)), Path(path)), str(path))
+    return read_dict(
+        _with_points(_beside(_parse(_load(Path(path)), str(path)), Path(path)), Path(path)), str(path)
+    )
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
@@ -41,6 +53,19 @@ def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
     name = data.get("measured")
     own = isinstance(name, str) and name.endswith(OWN)
     return data | {"measured": str((path.parent / str(name)).resolve())} if own else data
+
+
+def _with_points(data: dict[str, Any], place: Path) -> dict[str, Any]:
+    """Put the points of a profile's CSV file, which is named from the scene's directory, in its place."""
+    rod = data.get("projectile")
+    if not isinstance(rod, Mapping) or not isinstance(rod.get("profile"), str):
+        return data
+    try:
+        points = read_points(place.parent / rod["profile"])
+    except SceneError as error:
+        raise error.under("projectile", str(place)) from None
+    written = [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]
+    return data | {"projectile": {**rod, "profile": written}}
 
 
 def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
@@ -144,7 +169,7 @@ def _check_measured(scene: Scene) -> None:
     angle = parse_quantity(stated["impact"]["angle"], "angle", "impact.angle")
     pairs["impact.angle"] = (scene.impact.angle, angle)
     other = [key for key, (a, b) in pairs.items() if not isclose(a, b, rel_tol=1e-3)]
-    other += ["projectile.tip"] if rod.tip != measured_rod.tip else []
+    other += ["projectile.tip"] if rod.tip != measured_rod.tip or not rod.is_rod else []
     if other:
         raise SceneError(
             f"names a set that was measured with another {' and '.join(other)}.",
@@ -155,10 +180,66 @@ def _check_measured(scene: Scene) -> None:
 
 
 def _projectile(table: Table) -> ProjectileSpec:
+    """Read a rod with a tip, a named shape or a profile, each with a bore and segments or without."""
+    own = {
+        "bore": stated_points(table.get("bore", ()), "bore"),
+        "segments": _segments(table["segments"]) if "segments" in table else (),
+    }
+    known = {key: value for key, value in table.items() if key not in own}
+    if own["segments"]:
+        if "material" in known:
+            raise SceneError("stands beside segments, which have their own.", key="material")
+        known["material"] = table["segments"][0]["material"]
+    if "profile" in known:
+        return _of_profile(known, own)
+    return _named_shape(known, own) if "shape" in known else _rod(known, own)
+
+
+def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+    _check_keys(table, ("profile", "profile_smooth", "material"))
+    points = stated_points(table["profile"], "profile")
+    shape = Profile(points, table.get("profile_smooth", False))
+    return ProjectileSpec.turned(shape, _within(table, "material", _material), **own)
+
+
+def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+    """Read a shape by name; those that are rods with a published kind of tip become such rods."""
+    name = table["shape"]
+    sizes = _numbers(table, sizes_of(name), ("shape", "material"))
+    material = _within(table, "material", _material)
+    if name not in TIPS:
+        return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values())), material, **own)
+    radius = {"flat": 0.0, "hemisphere": sizes["diameter"] / 2}.get(name) or sizes.get("edge_radius", 0.0)
+    return ProjectileSpec(
+        sizes["length"], sizes["diameter"], "B" if radius else "plain", radius, material, **own
+    )
+
+
+def _segments(tables: Any) -> tuple[Segment, ...]:
+    if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
+        raise SceneError(
+            "must be a list of segments.",
+            key="segments",
+            remedy='Write segments = [{to = "50 mm", material = "rod-steel"}, {to = ..., material = ...}].',
+        )
+    return tuple(_segment(table, f"segments[{number}]") for number, table in enumerate(tables, 1))
+
+
+def _segment(table: Table, place: str) -> Segment:
+    try:
+        _check_keys(table, ("to", "material"))
+        return Segment(
+            parse_quantity(_needed(table, "to"), "length", "to"), _within(table, "material", _material)
+        )
+    except SceneError as error:
+        raise error.under(place) from None
+
+
+def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = _numbers(table, fields.PROJECTILE, ("tip", "material"), plain)
     return ProjectileSpec(
-        tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers
+        tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers, **own
     )
 
 

@@ -14,7 +14,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
 
 MEASURED_SETS = (
     *("t2", "t3-machined", "t3-contaminated", "t3-cleaned", "t4"),
@@ -23,29 +23,6 @@ MEASURED_SETS = (
 
 OWN = ".csv"
 """End of a name in ``measured`` that is a file of the user's own tests, not a published set."""
-
-
-@dataclass(frozen=True, slots=True)
-class ProjectileSpec:
-    """The rod: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge), plain or added."""
-
-    length: float
-    diameter: float
-    tip: str
-    tip_radius: float
-    material: Material
-
-    def __post_init__(self) -> None:
-        check_numbers(self, fields.PROJECTILE)
-        _check_tip_name(self.tip)
-        _check_tip(self)
-        if self.length < self.diameter:
-            raise SceneError(
-                f"is shorter than the diameter ({self.diameter * 1e3:.3g} mm); this is a study of rods.",
-                key="length",
-                value=f"{self.length * 1e3:.3g} mm",
-                remedy="Give a length of at least one diameter.",
-            )
 
 
 @dataclass(frozen=True, slots=True)
@@ -218,31 +195,6 @@ def _check_skin(surface: Surface) -> None:
 def _check_measured(name: object) -> None:
     if not (isinstance(name, str) and name.endswith(OWN)):
         check_choice(name, MEASURED_SETS, "measured")
-
-
-def _check_tip_name(tip: str) -> None:
-    if tip in ("A", "B", "plain"):
-        return  # the published ones need no import of the rigid package, which would slow every command
-    from fem_impact.scene.tips import tips
-
-    check_choice(tip, tuple(tips()), "tip")
-
-
-def _check_tip(rod: ProjectileSpec) -> None:
-    if rod.tip_radius > rod.diameter / 2:
-        raise SceneError(
-            f"is larger than the rod's radius ({rod.diameter * 500:.3g} mm).",
-            key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:.3g} mm",
-            remedy="Give a tip radius of at most half the diameter.",
-        )
-    if (rod.tip == "plain") != (rod.tip_radius == 0.0):
-        raise SceneError(
-            f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
-            key="tip_radius",
-            value=f"{rod.tip_radius * 1e3:.3g} mm",
-            remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
-        )
 
 
 def _check_tip_size(scene: Scene) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import inf
 from typing import Any
 
@@ -13,12 +13,13 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
 from fem_impact.scene.types import Accuracy, Scene
 
 
 def to_dict(scene: Scene) -> dict[str, Any]:
     """Return every value of the scene, defaults too, quantities with their units."""
-    rod = scene.projectile
     top: dict[str, Any] = {"id": scene.id, "title": scene.title, "effects": list(scene.effects)}
     if scene.measured is not None:
         top["measured"] = scene.measured
@@ -26,11 +27,7 @@ def to_dict(scene: Scene) -> dict[str, Any]:
         top["restitution"] = scene.restitution
     surface = {"state": scene.surface.state, "source": scene.surface.source}
     return top | {
-        "projectile": {
-            "tip": rod.tip,
-            **_written(rod, fields.PROJECTILE),
-            "material": _material(rod.material),
-        },
+        "projectile": _projectile(scene.projectile),
         "barrier": _barrier(scene.barrier),
         "surface": surface | _written(scene.surface, (*fields.SURFACE, *fields.SKIN)),
         "impact": _impact(scene.impact),
@@ -49,6 +46,30 @@ def digest(scene: Scene) -> str:
     """Return the SHA-256 of the scene's canonical JSON."""
     text = json.dumps(to_dict(scene), sort_keys=True, separators=(",", ":"), allow_nan=False)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
+    if rod.segments:
+        parts = [{"to": HEIGHT.write(part.to), "material": _material(part.material)} for part in rod.segments]
+        made: dict[str, Any] = {"segments": parts}
+    else:
+        made = {"material": _material(rod.material)}
+    bore = {"bore": _points(rod.bore)} if rod.bore else {}
+    return _shape(rod) | bore | made
+
+
+def _shape(rod: ProjectileSpec) -> dict[str, Any]:
+    shape = rod.shape
+    if isinstance(shape, NamedShape):
+        pairs = zip(sizes_of(shape.name), shape.sizes, strict=True)
+        return {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
+    if isinstance(shape, Profile):
+        return {"profile": _points(shape.points), "profile_smooth": shape.smooth}
+    return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
+
+
+def _points(points: Iterable[Point]) -> list[list[Any]]:
+    return [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]
 
 
 def _barrier(barrier: Barrier) -> dict[str, Any]:
@@ -106,6 +127,8 @@ def _lines(table: Mapping[str, Any], path: str) -> list[str]:
 
 def _value(value: Any) -> str:
     """Write one TOML value; a JSON string is also a TOML string, since scenes hold printable text only."""
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{key} = {_value(item)}' for key, item in value.items())}}}"
     if isinstance(value, list):
         return f"[{', '.join(_value(item) for item in value)}]"
     return json.dumps(value, ensure_ascii=False, allow_nan=False)

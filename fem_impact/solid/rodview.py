@@ -13,6 +13,7 @@ from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
+from fem_impact.scene.types import Scene
 from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -104,12 +105,25 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
-def mises(gradient: Array, u: Array, E: float, nu: float) -> Array:
-    """Return von Mises stress (m,), Pa, of element displacements u (m, 8, 3) at the centres."""
+def cell_shear(scene: Scene, z: Array, count: int) -> Array:
+    """Return the shear moduli (count,), Pa: of the rod's cells, at ``z`` (k,), m, then the barrier's."""
+    rod = scene.projectile
+    metals = [part.material for part in rod.segments] or [rod.material]
+    ends = np.array([part.to for part in rod.segments[:-1]])
+    shear = np.full(count, lame_constants(scene.barrier.material.E, scene.barrier.material.nu)[1])
+    shear[: len(z)] = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[np.searchsorted(ends, z)]
+    return shear
+
+
+def mises(gradient: Array, u: Array, shear: Array) -> Array:
+    """Return von Mises stress (m,), Pa, of element displacements u (m, 8, 3) at the centres.
+
+    ``shear`` (m,), Pa, is the shear modulus.
+    """
     H = np.einsum("mai,maj->mij", u, gradient)
     strain = 0.5 * (H + H.transpose(0, 2, 1))
     deviator = strain - np.trace(strain, axis1=1, axis2=2)[:, None, None] / 3 * np.eye(3)
-    return np.asarray(2 * lame_constants(E, nu)[1] * np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))))
+    return np.asarray(2 * shear * np.sqrt(1.5 * (deviator**2).sum(axis=(1, 2))))
 
 
 @dataclass(slots=True)
@@ -119,11 +133,12 @@ class FieldSampler:
     Attributes
     ----------
     points : (n, 3) reference positions, m; cells : (m, 8); body : (m,) 0 rod, 1 barrier
+    shear : (m,) shear modulus, Pa
     """
 
     model: Model
     view: RodState
-    elastic: list[tuple[float, float]]
+    shear: Array
     points: Array
     cells: Ints
     body: NDArray[np.int8]
@@ -131,8 +146,8 @@ class FieldSampler:
     gradient: Array
 
     @classmethod
-    def of(cls, model: Model, view: RodState, elastic: list[tuple[float, float]]) -> FieldSampler:
-        """Prepare; ``elastic`` holds (E, nu) of rod and barrier."""
+    def of(cls, model: Model, view: RodState, scene: Scene) -> FieldSampler:
+        """Prepare."""
         g = model.geometry
         points, cells, places = g.rod_points, g.rod.mesh.cells, model.layout.rod
         if g.barrier is not None:
@@ -140,7 +155,8 @@ class FieldSampler:
             points = np.concatenate([points, g.barrier.points])
             places = np.concatenate([places, model.layout.barrier])
         body = (np.arange(len(cells)) >= len(g.rod.mesh.cells)).astype(np.int8)
-        return cls(model, view, elastic, points, cells, body, places, centre_gradients(points, cells))
+        shear = cell_shear(scene, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), len(cells))
+        return cls(model, view, shear, points, cells, body, places, centre_gradients(points, cells))
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
         """Return point data and cell data of the present state."""
@@ -154,10 +170,7 @@ class FieldSampler:
         n = len(self.model.geometry.rod_points)
         local = x - self.points
         local[:n] = self._turned_back(state, x[:n]) - self.points[:n]
-        stress, strain = np.zeros(len(self.cells)), np.zeros(len(self.cells))
-        for number, (E, nu) in enumerate(self.elastic):
-            rows = self.body == number
-            stress[rows] = mises(self.gradient[rows], local[self.cells[rows]], E, nu)
+        stress, strain = mises(self.gradient, local[self.cells], self.shear), np.zeros(len(self.cells))
         for zone in self.model.zones:
             rows = self._yielding(zone.body)
             stress[rows], strain[rows] = zone.mises(), zone.plastic_strain()

@@ -159,8 +159,7 @@ def _heat_watch(model: Model) -> HeatWatch:
 
 def _frames(plan: Plan, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
     scene = plan.scene
-    bodies = [scene.projectile.material, scene.barrier.material]
-    fields = FieldSampler.of(model, view, [(m.E, m.nu) for m in bodies])
+    fields = FieldSampler.of(model, view, scene)
     body = {"body": fields.body}
     writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
     return Frames(fields, writer, *_schedule(plan))

@@ -9,7 +9,8 @@ from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE, Impact
 from fem_impact.scene.library import materials, surface, surfaces
-from fem_impact.scene.types import ProjectileSpec, Scene
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Scene
 from fem_impact.verdict.drop import DENSITY, DroppedRod
 from rigid import GRAVITY, Projectile
 

@@ -19,7 +19,6 @@ from fem_impact.fem.flight import RigidMotion, rigid_motion
 from fem_impact.fem.geometry import Geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
-from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import Hardening
@@ -87,12 +86,6 @@ class FreeBody:
     block: Block | None = None
     turning: bool = False
     impedance: float | None = None
-
-
-def unsliced(mesh: HexMesh) -> RodMesh:
-    """Return a mesh as a body without slices."""
-    nothing = np.zeros((0, 0), dtype=np.int64)
-    return RodMesh(mesh, nothing, nothing, 0.0, 0.0)
 
 
 def placed(points: Array, angle: float, gap: float) -> Array:
@@ -202,14 +195,9 @@ def _linear(
     n, free = layout.rod_size, layout.rod[~part.mesh.is_hanging]
     nose, whole = nose_and_whole(part, body.mesh, drawn, layout)
     frame = TurningFrame.at(x[:n], mass[:n], free) if body.turning else FixedFrame(x[:n].copy())
-    slices = slices_of(part, body.mesh) if body.mesh.body_cells.size else _no_slices()
+    slices = slices_of(part, body.mesh)
     rod = ElasticRod(slices, drawn, NodeProduct.of(nose, free), frame, layout, np.zeros(n), np.zeros(n))
     return rod, whole
-
-
-def _no_slices() -> SliceOperator:
-    none = np.zeros(0)
-    return SliceOperator(np.zeros(1, np.int64), np.zeros(0, np.int64), none, none, none, none, none)
 
 
 def _contact(

@@ -32,7 +32,7 @@ import numpy as np
 
 import rigid
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import projectile
+from fem_impact.physics.contact import plain_rod
 from fem_impact.plan.plan import plan
 from fem_impact.reference.oblique import ObliqueRebound
 from fem_impact.scene.fields import Parameter
@@ -140,7 +140,7 @@ def solve(p: Values) -> Solved:
     barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
     effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
-    drop = RodDrop(p, projectile(scene))
+    drop = RodDrop(p, plain_rod(scene.projectile))
     _allow(p, drop)
     result = run_solid(plan(scene))
     if result.model.book.touching:

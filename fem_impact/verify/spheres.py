@@ -17,7 +17,7 @@ from fem_impact.reference.waves import radiated_energy
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
-from fem_impact.verify.bodies import Block, FreeBody, body_model, placed, unsliced
+from fem_impact.verify.bodies import Block, FreeBody, body_model, placed
 from fem_impact.verify.discretisation import boundary_error, contact_error
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import (
@@ -88,7 +88,7 @@ def sphere_model(
     base = 2 * R / across
     levels = levels_for_radius(base, touch.radius, p["cells"])
     zone = contact_zone(touch.radius, touch.radius)
-    mesh = unsliced(meshes.sphere(R, across, [zone] * levels))
+    mesh = meshes.RodMesh.plain(meshes.sphere(R, across, [zone] * levels))
     points = placed(mesh.mesh.points, 0.0, 0.0)
     velocity = np.zeros_like(points)
     velocity[:, 0], velocity[:, 2] = -v_t, -v_n

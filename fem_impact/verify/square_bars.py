@@ -19,7 +19,7 @@ from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.verify import setups as steel
-from fem_impact.verify.bodies import FreeBody, body_model, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model
 from fem_impact.verify.problem import Check, Problem, Solved, Values
 from meshes import OUTER, SKIN, HexMesh
 
@@ -181,7 +181,9 @@ def _model(p: Values, kind: Kind) -> Model:
     held[mesh.points[:, 2] == 0.0, 2] = True
     velocity = np.zeros_like(mesh.points)
     velocity[:, 2] = -p["speed"]
-    body = FreeBody(unsliced(mesh), mesh.points, velocity, p["E"], p["nu"], p["rho"], kind=kind, held=held)
+    body = FreeBody(
+        meshes.RodMesh.plain(mesh), mesh.points, velocity, p["E"], p["nu"], p["rho"], kind=kind, held=held
+    )
     return replace(body_model(body), steps={"rod": _step(p)})
 
 

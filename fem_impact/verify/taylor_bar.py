@@ -35,7 +35,7 @@ from fem_impact.reference.taylor import Metal, taylor_bar
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
-from fem_impact.verify.bodies import FreeBody, body_model, placed, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model, placed
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.watch import Until, follow
 
@@ -78,7 +78,14 @@ def _model(p: Values) -> Model:
     )
     metal = p["E"], p["nu"], p["rho"]
     body = FreeBody(
-        unsliced(bar.mesh), points, velocity, *metal, kind="bbar", law=law, yields=yields, friction=0.0
+        meshes.RodMesh.plain(bar.mesh),
+        points,
+        velocity,
+        *metal,
+        kind="bbar",
+        law=law,
+        yields=yields,
+        friction=0.0,
     )
     model = body_model(body)
     return replace(model, steps={"rod": CAUTION * model.step})

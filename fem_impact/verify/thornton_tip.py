@@ -25,7 +25,7 @@ from fem_impact.reference.hertz import (
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
-from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import contact_zone
 from fem_impact.verify.spheres import ball_mass
@@ -62,7 +62,17 @@ def _model(p: Values, v: float, cells: float) -> Model:
     law = linear_hardening(p["yield_stress"], p["hardening"])
     yields = mesh.level == levels
     return body_model(
-        FreeBody(unsliced(mesh), points, velocity, p["E"], p["nu"], rho, law=law, yields=yields, friction=0.0)
+        FreeBody(
+            meshes.RodMesh.plain(mesh),
+            points,
+            velocity,
+            p["E"],
+            p["nu"],
+            rho,
+            law=law,
+            yields=yields,
+            friction=0.0,
+        )
     )
 
 

@@ -32,13 +32,14 @@ from math import cos, radians, sin, sqrt
 
 import numpy as np
 
+import meshes
 from fem_impact.reference.bricks import rebound
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
-from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.square_bars import (
     KINDS,
@@ -70,7 +71,9 @@ def _model(p: Values) -> Model:
     points, kind = placed(mesh.points, p["angle"], 0.0), KINDS[int(p["element"])]
     metal = p["E"], p["nu"], p["rho"]
     return body_model(
-        FreeBody(unsliced(mesh), points, velocity, *metal, kind=kind, friction=p["f"], turning=True)
+        FreeBody(
+            meshes.RodMesh.plain(mesh), points, velocity, *metal, kind=kind, friction=p["f"], turning=True
+        )
     )
 
 

@@ -24,7 +24,7 @@ from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight
 from fem_impact.physics.contact import projectile
 from fem_impact.solid.march import evaluate, march
-from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of, unsliced
+from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.verify.catalogue import problem
 from fem_impact.verify.rod_drop import Change, RodDrop
 from fem_impact.verify.setups import rod_scene
@@ -40,7 +40,9 @@ def models(p, stiffness):
     mesh = meshes.rod(rod.meridian(), p["length"], int(p["across"]), slice_length=2.5e-3).mesh
     points = placed(mesh.points, p["angle"], GAP)
     velocity = np.tile([-p["v_t"], 0.0, -p["v_n"]], (len(points), 1))
-    body = FreeBody(unsliced(mesh), points, velocity, p["E"], p["nu"], p["rho"], kind="full", turning=True)
+    body = FreeBody(
+        meshes.RodMesh.plain(mesh), points, velocity, p["E"], p["nu"], p["rho"], kind="full", turning=True
+    )
     hard = body_model(replace(body, friction=p["f"]))
     low = np.intersect1d(mesh.free_skin, np.flatnonzero(points[:, 2] < 2e-3))
     area = node_areas(mesh, np.isin(mesh.faces, low).all(axis=1))

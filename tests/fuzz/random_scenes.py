@@ -10,7 +10,8 @@ import numpy as np
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Accuracy, ProjectileSpec, Save, Scene, Surface
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Accuracy, Save, Scene, Surface
 
 METALS = (
     Material("aluminium", 70e9, 0.33, 2700.0, 270e6, 310e6),

@@ -12,9 +12,9 @@ from fem_impact.plan.plan import plan
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials
 from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.scene.types import ProjectileSpec
 from fem_impact.scene.write import to_dict, to_toml
 
 NAN, INF = float("nan"), float("inf")

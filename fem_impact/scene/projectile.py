@@ -1,0 +1,135 @@
+"""The projectile as stated: a rod with a tip, or a shape of its own, with its bore and segments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from fem_impact.errors import SceneError
+from fem_impact.scene import fields
+from fem_impact.scene.checks import check_choice, check_numbers
+from fem_impact.scene.material import Material
+from fem_impact.scene.shapes import (
+    NamedShape,
+    Point,
+    Profile,
+    RodTip,
+    checked_points,
+    outline_of,
+    turned_body,
+)
+
+if TYPE_CHECKING:
+    from rigid import Turned
+
+
+@dataclass(frozen=True, slots=True)
+class Segment:
+    """A part of a projectile along its axis: its end, m from the tip, and its material."""
+
+    to: float
+    material: Material
+
+
+@dataclass(frozen=True, slots=True)
+class ProjectileSpec:
+    """The projectile: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain.
+
+    A ``shape`` of its own takes the place of the tip, see `turned`; ``bore`` holds points (z, radius), m, of
+    the inner surface. ``segments`` follow each other from the tip; ``material`` is that of the first.
+    """
+
+    length: float
+    diameter: float
+    tip: str
+    tip_radius: float
+    material: Material
+    shape: NamedShape | Profile | None = None
+    bore: tuple[Point, ...] = ()
+    segments: tuple[Segment, ...] = ()
+
+    @classmethod
+    def turned(
+        cls,
+        shape: NamedShape | Profile,
+        material: Material,
+        bore: tuple[Point, ...] = (),
+        segments: tuple[Segment, ...] = (),
+    ) -> ProjectileSpec:
+        """Return a projectile of a shape of its own; length and largest diameter follow from it."""
+        line = outline_of(shape)
+        length, diameter = float(line[-1, 1]), 2.0 * float(line[:, 0].max())
+        return cls(length, diameter, "shape", 0.0, material, shape, bore, segments)
+
+    @property
+    def is_rod(self) -> bool:
+        """Return whether this is a solid rod of one material with one of the tips."""
+        return self.shape is None and not self.bore and not self.segments
+
+    def body(self) -> Turned:
+        """Return the rigid body of revolution."""
+        shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
+        parts = self.segments or (Segment(self.length, self.material),)
+        return turned_body(shape, self.bore, tuple((part.to, part.material.rho) for part in parts))
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.PROJECTILE)
+        if self.shape is None:
+            _check_tip_name(self.tip)
+            _check_tip(self)
+        if self.bore:
+            object.__setattr__(self, "bore", checked_points(self.bore, "bore"))
+        if self.segments:
+            _check_segments(self)
+        if not self.is_rod:
+            self.body()  # refuses what bounds no body
+        if self.shape is None and self.length < self.diameter:
+            raise SceneError(
+                f"is shorter than the diameter ({self.diameter * 1e3:.3g} mm); this is a study of rods.",
+                key="length",
+                value=f"{self.length * 1e3:.3g} mm",
+                remedy="Give a length of at least one diameter.",
+            )
+
+
+def _check_tip_name(tip: str) -> None:
+    if tip in ("A", "B", "plain"):
+        return  # the published ones need no import of the rigid package, which would slow every command
+    from fem_impact.scene.tips import tips
+
+    check_choice(tip, tuple(tips()), "tip")
+
+
+def _check_tip(rod: ProjectileSpec) -> None:
+    if rod.tip_radius > rod.diameter / 2:
+        raise SceneError(
+            f"is larger than the rod's radius ({rod.diameter * 500:.3g} mm).",
+            key="tip_radius",
+            value=f"{rod.tip_radius * 1e3:.3g} mm",
+            remedy="Give a tip radius of at most half the diameter.",
+        )
+    if (rod.tip == "plain") != (rod.tip_radius == 0.0):
+        raise SceneError(
+            f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
+            key="tip_radius",
+            value=f"{rod.tip_radius * 1e3:.3g} mm",
+            remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
+        )
+
+
+def _check_segments(rod: ProjectileSpec) -> None:
+    ends = [0.0, *(segment.to for segment in rod.segments)]
+    for number, (before, end) in enumerate(pairwise(ends), 1):
+        if not end > before:
+            raise SceneError(
+                "must end behind the one before it.", key=f"segments[{number}].to", value=f"{end * 1e3:g} mm"
+            )
+    if abs(ends[-1] - rod.length) > 1e-9 * rod.length:
+        raise SceneError(
+            f"must end at the tail, {rod.length * 1e3:.6g} mm from the tip.",
+            key=f"segments[{len(rod.segments)}].to",
+            value=f"{ends[-1] * 1e3:.6g} mm",
+        )
+    if rod.material != rod.segments[0].material:
+        raise SceneError("is not that of the first segment.", key="material", value=rod.material.name)

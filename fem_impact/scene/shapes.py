@@ -1,0 +1,251 @@
+"""Shapes of a projectile as stated: named ones with their sizes, and profiles of points."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import pairwise
+from math import pi
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.errors import SceneError
+from fem_impact.scene.checks import check_choice
+from fem_impact.scene.fields import Parameter
+from fem_impact.scene.units import parse_quantity
+
+if TYPE_CHECKING:
+    from fem_impact.arrays import Array
+    from rigid import Turned
+
+Point = tuple[float, float]
+TIPS = ("flat", "rounded-edge", "hemisphere")  # shapes that are rods with a tip of the published kinds
+MOST_POINTS = 2000
+HEIGHT = Parameter("z", "place on the axis, from the tip", "length", 0.0, 10.0)
+RADIUS = Parameter("r", "radius", "length", 0.0, 0.5)
+SIZES = (
+    Parameter("length", "length of the projectile, tip to tail", "length", 1e-3, 10.0),
+    Parameter("diameter", "largest diameter", "length", 1e-4, 1.0),
+    Parameter("edge_radius", "radius of the rounded edge", "length", 0.0, 0.5, low_open=True),
+    Parameter("nose_radius", "radius of the sphere at the tip", "length", 0.0, 0.5, low_open=True),
+    Parameter("face_diameter", "diameter of the flat face at the tip", "length", 0.0, 1.0, low_open=True),
+    Parameter(
+        "cone_angle", "angle between axis and cone", "angle", 0.0, pi / 2, low_open=True, high_open=True
+    ),
+    Parameter("calibre_radius", "radius of the ogive over the diameter", "", 0.5, 100.0, low_open=True),
+)
+# sizes that a shape needs, in the order in which they are written
+NEEDS = {
+    "flat": ("length", "diameter"),
+    "rounded-edge": ("length", "diameter", "edge_radius"),
+    "hemisphere": ("length", "diameter"),
+    "cone": ("length", "diameter", "cone_angle", "face_diameter"),
+    "sphere-cone": ("length", "diameter", "cone_angle", "nose_radius"),
+    "ogive": ("length", "diameter", "calibre_radius", "nose_radius"),
+    "ball": ("diameter",),
+}
+
+
+def sizes_of(shape: str) -> tuple[Parameter, ...]:
+    """Return the sizes that a named shape needs."""
+    check_choice(shape, tuple(NEEDS), "shape")
+    return tuple(next(size for size in SIZES if size.key == key) for key in NEEDS[shape])
+
+
+@dataclass(frozen=True, slots=True)
+class NamedShape:
+    """A shape by name with its sizes, SI, in the order of `NEEDS`."""
+
+    name: str
+    sizes: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        checked = (size.checked(v) for size, v in zip(sizes_of(self.name), self.sizes, strict=True))
+        object.__setattr__(self, "sizes", tuple(checked))
+
+    def outline(self) -> Array:
+        """Return vertices (k, 2), (rho, z), m, of the outer surface from the axis at the tip to the tail."""
+        from rigid import shapes
+
+        given = dict(zip(NEEDS[self.name], self.sizes, strict=True))
+        if self.name == "ball":
+            return shapes.ball(given["diameter"])
+        length, diameter = given["length"], given["diameter"]
+        if self.name == "ogive":
+            return shapes.ogive(length, diameter, given["calibre_radius"], given["nose_radius"])
+        tip = given.get("nose_radius", 0.0), given.get("face_diameter", 0.0)
+        return shapes.cone(length, diameter, given["cone_angle"], *tip)
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Points (z, r), m, of a surface of revolution; straight between them, or a smooth curve through them."""
+
+    points: tuple[Point, ...]
+    smooth: bool = False
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "points", checked_points(self.points))
+        if not isinstance(self.smooth, bool):
+            raise SceneError("must be true or false.", key="profile_smooth", value=self.smooth)
+        if self.points[0][0] != 0.0:
+            raise SceneError(
+                "must start at z = 0, the tip.", key="profile", value=f"z = {self.points[0][0] * 1e3:.4g} mm"
+            )
+        if self.points[-1][0] <= 0.0:
+            raise SceneError("has no length: its last z is 0.", key="profile")
+
+    def outline(self) -> Array:
+        """Return vertices (k, 2), (rho, z), m, of the outer surface from the axis at the tip to the tail."""
+        from rigid import shapes
+
+        line = _swapped(self.points)
+        line = shapes.smooth(line) if self.smooth else line
+        return line if line[0, 0] == 0.0 else _swapped(((0.0, 0.0), *((z, r) for r, z in line.tolist())))
+
+
+@dataclass(frozen=True, slots=True)
+class RodTip:
+    """A rod with a turned tip, m, as a shape that may have a bore and segments."""
+
+    length: float
+    diameter: float
+    tip: str
+    tip_radius: float
+
+    def outline(self) -> Array:
+        """Return vertices (k, 2), (rho, z), m, of the outer surface from the axis at the tip to the tail."""
+        import rigid
+
+        return rigid.shapes.of_nose(rigid.SHAPES[self.tip](self.diameter / 2, self.tip_radius), self.length)
+
+
+Shape = NamedShape | Profile | RodTip
+
+
+@lru_cache(maxsize=64)
+def outline_of(shape: Shape) -> Array:
+    """Return the outline of a shape, (k, 2), (rho, z), m.
+
+    Raises
+    ------
+    SceneError
+        If its sizes do not fit each other.
+    """
+    import rigid
+
+    try:
+        return shape.outline()
+    except rigid.ShapeError as error:
+        raise SceneError(f"is not a shape: {error}.", key="shape") from None
+
+
+@lru_cache(maxsize=64)
+def turned_body(shape: Shape, bore: tuple[Point, ...], density: tuple[Point, ...]) -> Turned:
+    """Return the rigid body of a shape with a bore and densities, kg/m3, up to their ends, m.
+
+    Raises
+    ------
+    SceneError
+        If they bound no body.
+    """
+    import rigid
+
+    try:
+        return rigid.Turned(outline_of(shape), density, _swapped(bore) if bore else None)
+    except rigid.ShapeError as error:
+        raise SceneError(
+            f"bounds no body: {error}.", key="bore" if "bore" in str(error) else "profile"
+        ) from None
+
+
+def _swapped(points: Iterable[Point]) -> Array:
+    import numpy as np
+
+    return np.array([(r, z) for z, r in points], dtype=np.float64)
+
+
+def checked_points(points: Any, key: str = "profile") -> tuple[Point, ...]:
+    """Return points (z, r), m, of a profile or bore, z never turning back.
+
+    Raises
+    ------
+    SceneError
+        Naming the row.
+    """
+    if not isinstance(points, (list, tuple)) or not 2 <= len(points) <= MOST_POINTS:
+        raise SceneError(
+            f"must be a list of 2 to {MOST_POINTS} points [z, radius].",
+            key=key,
+            value=points if isinstance(points, str) else None,
+            remedy=f'Write {key} = [["0 mm", "0 mm"], ["20 mm", "6 mm"]].',
+        )
+    rows = tuple(_pair(row, f"{key}[{number}]") for number, row in enumerate(points, 1))
+    for number, (before, after) in enumerate(pairwise(rows), 2):
+        if after[0] < before[0] or after == before:
+            raise SceneError(
+                "must lie behind the point before it: z grows from tip to tail.",
+                key=f"{key}[{number}]",
+                value=f"z = {after[0] * 1e3:.4g} mm after {before[0] * 1e3:.4g} mm",
+            )
+    return rows
+
+
+def _pair(row: Any, key: str) -> Point:
+    if not isinstance(row, (list, tuple)) or len(row) != 2:
+        raise SceneError("must be a pair [z, radius].", key=key, value=row)
+    try:
+        return float(HEIGHT.checked(row[0])), float(RADIUS.checked(row[1]))
+    except SceneError as error:
+        raise error.under(key) from None
+
+
+def stated_points(points: Any, key: str) -> Any:
+    """Return stated points in SI: each quantity with its unit; what is no list of pairs is left as it is."""
+    if not isinstance(points, (list, tuple)):
+        return points
+    return tuple(
+        tuple(parse_quantity(value, "length", f"{key}[{number}]") for value in row)
+        if isinstance(row, (list, tuple))
+        else row
+        for number, row in enumerate(points, 1)
+    )
+
+
+_HEADER = re.compile(r"\s*(z|r)\s*(?:[\[(_]\s*(m|mm|cm|um)\s*[\])]?)?\s*")
+
+
+def read_points(path: Path) -> tuple[Point, ...]:
+    """Read points (z, r), m, from a CSV file with columns z and r.
+
+    The header names the columns and their unit: ``z_mm,r_mm`` or ``z [mm], r [mm]``; without a unit they are
+    metres.
+
+    Raises
+    ------
+    SceneError
+        Naming file and line.
+    """
+    example = "The first line names them, such as z_mm,r_mm."
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()[: MOST_POINTS + 2]
+    except (OSError, ValueError) as error:
+        raise SceneError(f"cannot be read ({error}).", key="profile", value=str(path)) from None
+    rows = [row for row in csv.reader(lines) if any(cell.strip() for cell in row)]
+    names = [_HEADER.fullmatch(cell) for cell in rows[0]] if rows else []
+    found = {name[1]: (column, name[2] or "m") for column, name in enumerate(names) if name}
+    if set(found) != {"z", "r"}:
+        raise SceneError("has no columns z and r.", key="profile", value=str(path), remedy=example)
+    return tuple(
+        (_cell(row, *found["z"], f"{path} line {line}"), _cell(row, *found["r"], f"{path} line {line}"))
+        for line, row in enumerate(rows[1:], 2)
+    )
+
+
+def _cell(row: list[str], column: int, unit: str, where: str) -> float:
+    if column >= len(row):
+        raise SceneError("has too few columns.", key="profile", value=where)
+    return parse_quantity(f"{row[column].strip()} {unit}", "length", f"profile ({where})")

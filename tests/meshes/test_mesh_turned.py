@@ -1,0 +1,122 @@
+"""Meshes of bodies of revolution: no folded cell, the right volume, one closed surface."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import meshes
+from meshes import Zone
+from meshes.ends import POOR
+from meshes.hexmesh import SKIN
+from meshes.quality import quality
+from meshes.turned import WORST
+
+
+def sphere_tip(radius, turn=90.0):
+    angle = np.radians(np.linspace(0.0, turn, 91))
+    return np.stack([radius * np.sin(angle), radius * (1 - np.cos(angle))], axis=1)
+
+
+R = 9.5e-3
+BALL = np.concatenate([sphere_tip(R), np.array([0.0, 2 * R]) + sphere_tip(R)[-2::-1] * [1.0, -1.0]])
+SHAPES = {
+    "ball": BALL,
+    "hemisphere": np.concatenate([sphere_tip(R), [[R, 0.1]]]),
+    "sphere-cone": np.concatenate([sphere_tip(3e-3, 70.0), [[R, 0.02], [R, 0.1]]]),
+    "truncated cone": np.array([[0, 0], [4e-3, 0], [R, 0.02], [R, 0.1]]),
+    "flat": np.array([[0, 0], [R, 0], [R, 0.1]]),
+    "barrel": np.array([[0, 0], [6e-3, 0], [R, 0.05], [6e-3, 0.1]]),
+    "heavy tail": np.concatenate([sphere_tip(4e-3, 80.0), [[4e-3, 0.05], [R, 0.06], [R, 0.1]]]),
+}
+
+
+def volume_of(line):
+    r, z = line.T
+    return np.pi / 3 * ((r[1:] ** 2 + r[1:] * r[:-1] + r[:-1] ** 2) * np.diff(z)).sum()
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_shapes_make_fair_meshes_of_their_volume(name):
+    for across in (8, 12):
+        body = meshes.turned(SHAPES[name], across)
+        found = quality(body.mesh)
+        assert found.min_scaled_jacobian > 0.4
+        assert found.aspect < 6.0
+        # the flat faces of the mesh cut off the round surface: of a 16- or 24-sided polygon at most
+        assert 0.0 < 1 - 2 * found.volume / volume_of(SHAPES[name]) < (0.04 if across == 8 else 0.018)
+
+
+def test_a_refined_tip_lies_on_the_exact_surface():
+    line = SHAPES["sphere-cone"]
+    place = np.array([3e-3 * np.sin(0.7), 0.0, 3e-3 * (1 - np.cos(0.7))])
+    zone = Zone(place, np.eye(3), np.full(3, -5e-4), np.full(3, 5e-4))
+    body = meshes.turned(line, 8, [zone, zone])
+    free = body.mesh.free_skin
+    near = free[np.linalg.norm(body.mesh.points[free] - place, axis=1) < 6e-4]
+    rho, z = np.hypot(*body.mesh.points[near, :2].T), body.mesh.points[near, 2]
+    away = np.abs(np.hypot(rho, z - 3e-3) - 3e-3)
+    assert len(near) > 8
+    assert away.max() < 1e-6
+    assert quality(body.mesh).min_scaled_jacobian > 0.3
+
+
+def test_the_cylinder_behind_a_nose_is_made_of_equal_slices():
+    body = meshes.turned(SHAPES["sphere-cone"], 8)
+    layers = body.mesh.points[body.body_nodes]
+    step = np.diff(layers, axis=1)
+    assert np.abs(step - [0.0, 0.0, body.slice_length]).max() < 1e-12
+    assert body.body_cells.shape[1] == layers.shape[1] - 1 > 20
+    corners = body.mesh.cells[body.body_cells]
+    for k in range(body.body_cells.shape[1]):
+        assert np.isin(corners[:, k, :4], body.body_nodes[:, k]).all()
+        assert np.isin(corners[:, k, 4:], body.body_nodes[:, k + 1]).all()
+    assert not meshes.turned(SHAPES["barrel"], 8).body_cells.size
+
+
+def test_no_cell_straddles_a_plane():
+    z = 0.0321
+    body = meshes.turned(SHAPES["barrel"], 8, planes=[z])
+    heights = body.mesh.points[body.mesh.cells][:, :, 2]
+    assert not ((heights.min(axis=1) < z - 1e-9) & (heights.max(axis=1) > z + 1e-9)).any()
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (np.array([[0, 0], [R, 0.05], [R, 0.1]]), "too sharp"),
+        (np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [R, 0.0501], [R, 0.1]]), "steps from"),
+        (np.array([[0, 0], [R, 0], [R, 2e-3]]), "leaves no body|too sharp"),
+    ],
+)
+def test_what_hexahedra_cannot_fill_is_refused(line, told):
+    with pytest.raises(meshes.MeshError, match=told):
+        meshes.turned(line, 8)
+
+
+@st.composite
+def profiles(draw):
+    """Any profile: a flat or sharp tip, radii that jump by up to five, a flat or pointed tail."""
+    count = draw(st.integers(2, 7))
+    radii = draw(st.lists(st.floats(1e-3, 2e-2), min_size=count, max_size=count))
+    steps = draw(st.lists(st.floats(0.0, 5e-2), min_size=count - 1, max_size=count - 1))
+    z = np.concatenate([[0.0], np.cumsum(steps)])
+    line = np.column_stack([radii, z])
+    tail = [[0.0, z[-1] + draw(st.floats(0.0, 2e-2))]] if draw(st.booleans()) else []
+    line = np.concatenate([[[0.0, 0.0]], line, np.reshape(tail, (-1, 2))])
+    return line[np.concatenate([[True], np.hypot(*np.diff(line, axis=0).T) > 1e-9])]
+
+
+@settings(max_examples=60, deadline=None)
+@given(profiles(), st.sampled_from([6, 8, 12]))
+def test_a_random_profile_is_meshed_without_folds_or_refused(line, across):
+    try:
+        body = meshes.turned(line, across)
+    except meshes.MeshError:
+        return
+    assert quality(body.mesh).min_scaled_jacobian > min(WORST, POOR)
+    skin = body.mesh.points[body.mesh.faces_with(SKIN)]
+    # every face of the skin lies at the surface: within the sagitta of the polygon and the slices' pitch
+    assert np.hypot(skin[..., 0], skin[..., 1]).max() < 1.08 * line[:, 0].max()

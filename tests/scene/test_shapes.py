@@ -1,0 +1,156 @@
+"""Shapes as users state them: named ones, profiles, bores and segments, and what is refused."""
+
+from __future__ import annotations
+
+import tomllib
+from math import radians
+
+import numpy as np
+import pytest
+
+from fem_impact.errors import SceneError
+from fem_impact.plan.plan import plan
+from fem_impact.scene.read import read_dict, read_toml
+from fem_impact.scene.shipped import replace
+from fem_impact.scene.write import digest, to_toml
+
+OGIVE = {
+    "shape": "ogive",
+    "length": "100 mm",
+    "diameter": "19 mm",
+    "calibre_radius": 2.0,
+    "nose_radius": "3 mm",
+}
+CONE = {"shape": "sphere-cone", "length": "100 mm", "diameter": "19 mm"}
+CONE |= {"cone_angle": "20 deg", "nose_radius": "3 mm"}
+POINTS = [["0 mm", "0 mm"], ["1 mm", "4 mm"], ["5 mm", "7 mm"], ["60 mm", "9 mm"], ["80 mm", "6 mm"]]
+TWO = [{"to": "40 mm", "material": "rod-steel"}, {"to": "100 mm", "material": "plate-steel"}]
+
+
+def scene(projectile, angle="45 deg"):
+    if "segments" not in projectile:
+        projectile = {"material": "rod-steel", **projectile}
+    return {
+        "id": "own",
+        "projectile": projectile,
+        "barrier": {"material": "plate-steel"},
+        "surface": {"state": "machined"},
+        "impact": {"angle": angle, "v_n": "-1.5 m/s", "v_t": "-1 m/s"},
+    }
+
+
+@pytest.mark.parametrize(
+    "projectile",
+    [
+        OGIVE,
+        CONE,
+        {"shape": "ball", "diameter": "19 mm"},
+        {"shape": "cone", "length": "80 mm", "diameter": "19 mm", "cone_angle": "30 deg"}
+        | {"face_diameter": "6 mm"},
+        {"profile": POINTS},
+        {"profile": POINTS, "profile_smooth": True},
+        {**OGIVE, "bore": [["40 mm", "5 mm"], ["100 mm", "6 mm"]]},
+        {**OGIVE, "segments": TWO},
+        {"tip": "A", "length": "100 mm", "diameter": "19 mm", "tip_radius": "7 mm", "segments": TWO},
+    ],
+)
+def test_a_shape_reads_back_as_it_was_written(projectile):
+    made = read_dict(scene(projectile))
+    again = read_dict(tomllib.loads(to_toml(made)))
+    assert again == made
+    assert digest(again) == digest(made)
+    assert not made.projectile.is_rod
+
+
+@pytest.mark.parametrize(
+    ("shape", "tip", "radius"),
+    [
+        ({"shape": "flat"}, "plain", 0.0),
+        ({"shape": "hemisphere"}, "B", 9.5e-3),
+        ({"shape": "rounded-edge", "edge_radius": "3 mm"}, "B", 3e-3),
+    ],
+)
+def test_shapes_that_are_rods_are_the_rods_with_a_tip(shape, tip, radius):
+    rod = read_dict(scene({"length": "100 mm", "diameter": "19 mm", **shape})).projectile
+    assert rod.is_rod
+    assert (rod.tip, rod.tip_radius) == (tip, radius)
+
+
+def test_one_size_of_a_shape_can_be_changed():
+    made = replace(read_dict(scene(OGIVE)), "projectile.calibre_radius", 3.0)
+    assert made.projectile.shape.sizes[2] == 3.0
+
+
+def test_a_profile_is_read_from_a_table_beside_the_scene(tmp_path):
+    (tmp_path / "mine.csv").write_text("z [mm],r [mm]\n0,0\n1,4\n5,7\n60,9\n80,6\n")
+    text = to_toml(read_dict(scene({"profile": POINTS})))
+    head, tail = text.split("profile = ")
+    (tmp_path / "own.toml").write_text(f'{head}profile = "mine.csv"\n{tail.split(chr(10), 1)[1]}')
+    assert read_toml(tmp_path / "own.toml") == read_dict(scene({"profile": POINTS}))
+    (tmp_path / "mine.csv").write_text("z_m,r_m\n0,0\n0.02,x\n")
+    with pytest.raises(SceneError, match=r"mine\.csv line 3"):
+        read_toml(tmp_path / "own.toml")
+    (tmp_path / "mine.csv").write_text("a,b\n0,0\n")
+    with pytest.raises(SceneError, match="has no columns z and r"):
+        read_toml(tmp_path / "own.toml")
+    (tmp_path / "mine.csv").unlink()
+    with pytest.raises(SceneError, match="cannot be read"):
+        read_toml(tmp_path / "own.toml")
+
+
+@pytest.mark.parametrize(
+    ("projectile", "told"),
+    [
+        ({"shape": "egg", "length": "1 m"}, 'shape = "egg": is not a choice'),
+        ({**OGIVE, "nose_radius": "30 mm"}, "nose_radius must lie between 0 and 9.5 mm"),
+        ({**OGIVE, "calibre_radius": 0.5}, "calibre_radius = 0.5"),
+        ({**OGIVE, "length": "15 mm"}, r"the nose is .* long, the body only 15 mm"),
+        ({**CONE, "nose_radius": "11 mm"}, "leaves no cone"),
+        ({**CONE, "edge_radius": "11 mm"}, r"edge_radius.*not a known key"),
+        ({"profile": "x"}, "must be a list of 2 to 2000 points"),
+        ({"profile": [["0 mm", "0 mm"]]}, "must be a list of 2 to 2000 points"),
+        ({"profile": [["0 mm", "0 mm"], [20, 6]]}, r"profile\[2\]"),
+        ({"profile": [["0 mm", "1 mm"], ["20 mm"]]}, r"profile\[2\].*pair"),
+        ({"profile": [["0 mm", "1 mm"], ["20 mm", "2 mm"], ["10 mm", "2 mm"]]}, r"profile\[3\].*behind"),
+        ({"profile": [["5 mm", "1 mm"], ["20 mm", "2 mm"]]}, "must start at z = 0"),
+        ({"profile": POINTS, "profile_smooth": 1}, "must be true or false"),
+        ({**OGIVE, "bore": [["0 mm", "9.6 mm"], ["100 mm", "9.6 mm"]]}, "leaves no wall"),
+        ({**OGIVE, "bore": [["50 mm", "5 mm"], ["120 mm", "5 mm"]]}, "beyond the tail"),
+        ({**OGIVE, "segments": TWO[:1]}, "must end at the tail"),
+        ({**OGIVE, "segments": [TWO[1], TWO[0]]}, r"segments\[2\]\.to.*must end behind"),
+        ({**OGIVE, "segments": TWO, "material": "rod-steel"}, "stands beside segments"),
+        ({**OGIVE, "segments": "steel"}, "must be a list of segments"),
+        ({**OGIVE, "segments": [{"to": "100 mm"}]}, r"segments\[1\]\.material.*missing"),
+    ],
+)
+def test_a_bad_shape_is_refused_with_its_key(projectile, told):
+    with pytest.raises(SceneError, match=told) as caught:
+        read_dict(scene(projectile))
+    assert "projectile" in str(caught.value)
+
+
+def test_a_shape_does_not_repeat_a_measured_set():
+    rod = {"tip": "B", "length": "80 mm", "diameter": "19 mm", "tip_radius": "3 mm"}
+    assert read_dict({**scene(rod), "measured": "t5b"}).measured == "t5b"
+    with pytest.raises(SceneError, match=r"another projectile\.tip"):
+        read_dict({**scene({**rod, "bore": [["20 mm", "4 mm"], ["80 mm", "4 mm"]]}), "measured": "t5b"})
+
+
+def test_a_flank_that_lies_on_the_barrier_is_refused():
+    chamfer = {"profile": [["0 mm", "5 mm"], ["2 mm", "7 mm"], ["80 mm", "8 mm"]]}
+    with pytest.raises(SceneError, match=r"flank of 2\.83 mm along the barrier"):
+        plan(read_dict(scene(chamfer)), "modal")
+    assert plan(read_dict(scene(chamfer, "30 deg")), "modal")
+
+
+def test_the_radius_at_the_contact_is_that_of_the_point_that_touches():
+    from fem_impact.physics.contact import principal_radii
+
+    for angle in (10.0, 40.0, 60.0):
+        assert principal_radii(read_dict(scene(CONE, f"{angle} deg"))) == pytest.approx(
+            (3e-3, 3e-3), rel=2e-3
+        )
+    # beyond the cone's slope its shoulder comes down: an edge
+    R1, R2 = principal_radii(read_dict(scene(CONE, "75 deg")))
+    assert R1 == pytest.approx(0.019 / 200)
+    assert R2 == pytest.approx(9.5e-3 / np.sin(radians(75.0)))
