@@ -8,7 +8,7 @@ from functools import partial
 from html import escape
 from pathlib import Path
 
-from fem_impact.errors import RunError, SceneError
+from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.figures.partition import partition_figure
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text
@@ -32,8 +32,10 @@ from fem_impact.report.sections import (
     unknown,
     waves_section,
 )
+from fem_impact.report.verdict_page import screening_box
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_toml
+from fem_impact.scene.types import Scene
 from fem_impact.tables.table import Cell, Table, number
 
 
@@ -66,8 +68,10 @@ def run_page(folder: Path) -> str:
         outcome.json is missing or damaged.
     """
     outcome = Outcome.read(folder / "outcome.json")
-    rigid = rigid_theory(outcome, folder)
+    scene = _stated(folder)
+    rigid = rigid_theory(outcome, scene)
     body = (
+        *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
         _cards(outcome, rigid),
         film_section(folder),
         notices([outcome], strangers(outcome, folder)),
@@ -91,13 +95,19 @@ def run_page(folder: Path) -> str:
     return page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
 
 
-def rigid_theory(outcome: Outcome, folder: Path) -> Outcome | None:
+def _stated(folder: Path) -> Scene | None:
+    """Return the scene of a run; None where its file is missing or not a scene."""
+    try:
+        return read_toml(folder / "scene.toml")
+    except (SceneError, UsageError):
+        return None
+
+
+def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
     """Return what rigid theory predicts for the scene of a run; None where it is the run, or cannot tell."""
-    path = folder / "scene.toml"
-    if outcome.provenance.fidelity == "rigid" or not path.is_file():
+    if outcome.provenance.fidelity == "rigid" or scene is None:
         return None
     try:
-        scene = read_toml(path)
         stated = replace(scene, accuracy=replace(scene.accuracy, target=None))
         return simulate(stated, "rigid")
     except (SceneError, RunError):
