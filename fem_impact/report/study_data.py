@@ -21,7 +21,8 @@ from fem_impact.tables.csv import COMPARISON
 Record = Mapping[str, Any]
 TEXTS = ("study", "title", "command")
 SENTENCES = ("findings", "assumptions", "sources")
-NUMBERS = ("model", "band", "measured_mean", "measured_sd", "measured_low", "measured_high", "n")
+NUMBERS = ("model", "measured_mean", "measured_low", "measured_high")
+WIDTHS = ("band", "measured_sd", "n")  # numbers that are never below zero
 
 
 def _list(items: Mapping[str, Any]) -> dict[str, Any]:
@@ -33,6 +34,7 @@ def _record(**properties: Mapping[str, Any]) -> dict[str, Any]:
 
 
 _TEXT, _NUMBER = {"type": "string"}, {"type": ["number", "null"]}
+_WIDTH = {**_NUMBER, "minimum": 0}
 _FILE = {"type": "string", "pattern": r"^[A-Za-z0-9][\w.-]*$"}  # it becomes part of a path
 RECORDS: Mapping[str, dict[str, Any]] = {
     "conclusions": _record(name=_TEXT, sentence=_TEXT),
@@ -44,7 +46,9 @@ RECORDS: Mapping[str, dict[str, Any]] = {
         rows=_list(_list({"type": ["string", "number", "boolean", "null"]})),
     ),
     "failures": _record(scene_id=_TEXT, error=_TEXT),
-    "comparison": _record(**{name: _NUMBER if name in NUMBERS else _TEXT for name in COMPARISON}),
+    "comparison": _record(
+        **dict.fromkeys(COMPARISON, _TEXT) | dict.fromkeys(NUMBERS, _NUMBER) | dict.fromkeys(WIDTHS, _WIDTH)
+    ),
 }
 STUDY_SCHEMA = _record(
     **dict.fromkeys(TEXTS, _TEXT),

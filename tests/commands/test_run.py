@@ -115,7 +115,7 @@ def test_options_that_nothing_would_look_at_are_refused(cli, stand):
     assert not stand.calls
 
 
-@pytest.mark.parametrize("words", [("gamma", "t5b"), ("gamma", "--fidelity", "solid")])
+@pytest.mark.parametrize("words", [("gamma", "t5b")])
 def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
     code, _, err = cli("study", *words)
     assert code == 2

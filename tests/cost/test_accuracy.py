@@ -99,7 +99,7 @@ def test_a_fidelity_that_does_not_know_what_is_asked_for_is_refused(costs):
 @pytest.mark.parametrize(
     ("changes", "differs"),
     [
-        ({"impact__angle": "60 deg"}, "angle"),
+        ({"impact__angle": "60 deg"}, "angle|slope"),
         ({"impact__v_n": "-1.1 m/s", "impact__v_t": "-1.085 m/s"}, "approach"),
         ({"impact__omega": "30 rad/s"}, "spin|approach"),
         ({"barrier__material__E": "180 GPa"}, "E of the barrier"),

@@ -196,6 +196,7 @@ def test_thresholds_are_those_that_the_page_names():
         "rate-hardening": 0.03,
         "machined-skin": 0.03,
         "radiation": 0.01,
+        "plate-bending": 0.006,
         "gravity": 0.005,
         "large-rotation": 0.01,
         "material-damping": 0.05,

@@ -24,15 +24,19 @@ from fem_impact.solid.watchers import Stopwatch, Watchers
 
 # together these sets name every effect that a scene can name
 SETS = (
-    tuple(n for n in NAMES if n not in ("barrier-rigid", "barrier-elastic")),
+    tuple(n for n in NAMES if n not in ("barrier-rigid", "barrier-elastic", "plate-bending")),
     ("vibration", "friction", "barrier-rigid", "rod-plasticity", "large-rotation", "contact-heating"),
-    ("vibration", "friction", "barrier-elastic"),
+    ("vibration", "friction", "barrier-elastic", "plate-bending"),
     ("friction", "rod-plasticity", "barrier-rigid", "large-rotation"),
 )
 
 
 def short(effects, **changes):
     scene = scenes.scene(*effects, length=0.06, v_n=-3.0, v_t=-3.0, max_time=5e-5, **changes)
+    if "machined-skin" in effects:
+        scene = replace(scene, surface=replace(scene.surface, skin_depth=0.5e-3, skin_factor=1.3))
+    if "plate-bending" in effects:
+        scene = replace(scene, barrier=replace(scene.barrier, thickness=30e-3, support="infinite"))
     return replace(scene, save=replace(scene.save, frames=400, history_every=7))
 
 

@@ -105,7 +105,7 @@ def test_a_study_of_sets_takes_scene_files(tmp_path, monkeypatch):
     assert jobs["fine"].name == "mine" and jobs["fine"].out == tmp_path / "out" / "mine"
     request = sets.Request(tmp_path / "out", (str(path),), True)
     run = simulate(read_toml(path), "modal")
-    monkeypatch.setattr(sets, "with_limits", lambda fine, runs, out: fine)
+    monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
     seen = []
     monkeypatch.setattr(sets, "publish", lambda report, *_: seen.append(report) or sets.StudyResult({}, ""))
     sets.conclude(request, {job.name: run for job in jobs.values()}, None)
