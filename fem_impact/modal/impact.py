@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, inf, sin
+from math import cos, sin
 
 import numpy as np
 
@@ -14,13 +14,14 @@ from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import (
     BASE_N,
     BASE_T,
+    FLOWED,
     HARDEST,
     MOST_CONTACTS,
     NOTHING,
-    PEAK,
+    RUBBED,
+    SHEARED,
     WORK_G,
     WORK_P,
-    WORK_T,
     Bounds,
     ModalEnd,
     Modes,
@@ -31,6 +32,7 @@ from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import contact_estimate, fall
 from fem_impact.physics.contact_law import ContactLaw, contact_law
+from fem_impact.physics.flow_law import FlowLaw, flow_law
 from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
 
@@ -46,8 +48,9 @@ class ModalResult:
     Attributes
     ----------
     V_n, V_t, Omega : after the last separation, what gravity gave in contact removed, m/s, rad/s
-    E_0, kinetic, friction, plastic, stored, residual : J, of the whole rod; kinetic is the rigid motion's,
-        stored what the contact still holds elastically where the run was cut off
+    E_0, kinetic, friction, plastic, skin, stored, residual : J, of the whole rod; kinetic is the rigid
+        motion's, skin friction and plastic work of the sheared surface, stored what the contact still holds
+        elastically where the run was cut off
     plate : work on a plate that bends, J; ``barrier`` : what the motion of a free barrier holds, J
     V_bn, V_bt : velocity of the barrier, m/s, as seen from where it was before
     fallen : what gravity added to these and to the vibration, J
@@ -67,6 +70,7 @@ class ModalResult:
     energies: Array
     friction: float
     plastic: float
+    skin: float
     stored: float
     plate: float
     barrier: float
@@ -95,24 +99,24 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
         progress(compiling(plan.max_time, COMPILE))
     scene = plan.scene
     rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
+    flow = flow_law(plan.bodies, plan.slots.rod_law, plan.slots.barrier_law)
     dt = contact_estimate(plan.bodies).duration / STEPS
     dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt
     contacts = np.zeros((MOST_CONTACTS, 4))
     start, modes = _start(plan, rod), Modes(rod.omega, rod.along_t, rod.along_n)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
-    bounds = Bounds(dt, horizon(scene), plan.max_time, reach(law, E_0))
+    bounds = Bounds(dt, horizon(scene), plan.max_time, reach(law, flow, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    drop(start, law, modes, rod.others, bounds._replace(horizon=0.0), contacts)
+    drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts)
     wall, cpu = time.perf_counter(), time.process_time()
-    end = drop(start, law, modes, rod.others, bounds, contacts)
+    end = drop(start, law, flow, modes, rod.others, bounds, contacts)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(plan, rod, law, end, E_0, contacts, bounds, (wall, cpu))
+    return _result(plan, rod, end, E_0, contacts, bounds, (wall, cpu))
 
 
 def _result(
     plan: Plan,
     rod: ModalRod,
-    law: ContactLaw,
     end: ModalEnd,
     E_0: float,
     contacts: Array,
@@ -122,8 +126,8 @@ def _result(
     """Return the result of a march that ``took`` wall and processor time, s."""
     scene, motion, tally = plan.scene, end.motion.rigid[:3], end.tally
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
-    # the contact gives back what it stores: the normal force by itself, the springs out of friction
-    plastic, friction = plastic_work(law, tally[PEAK]), -tally[WORK_T] - end.held[1]
+    skin, friction = tally[SHEARED] + tally[RUBBED], tally[RUBBED]
+    plastic = tally[FLOWED] + tally[SHEARED]
     base_n, base_t = end.motion.rigid[[BASE_N, BASE_T]]
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
     given = barrier + tally[WORK_P]
@@ -141,6 +145,7 @@ def _result(
         energies=energies,
         friction=friction,
         plastic=plastic,
+        skin=skin,
         stored=sum(end.held),
         plate=tally[WORK_P],
         barrier=barrier,
@@ -172,29 +177,12 @@ def _reason(rod: ModalRod, end: ModalEnd, bounds: Bounds) -> str:
     )
 
 
-def plastic_work(law: ContactLaw, peak: float) -> float:
-    """Return the work, J, that a largest approach ``peak``, m, has turned to plastic work.
-
-    It is the area under first loading less what Hertz' unloading with the flatter radius gives back.
-    """
-    if law.limit == inf or peak <= law.yield_depth:
-        return 0.0
-    beyond = peak - law.yield_depth
-    loading = 0.4 * law.yield_force * law.yield_depth + (law.yield_force + 0.5 * law.slope * beyond) * beyond
-    force = law.yield_force + law.slope * beyond
-    square = (2 * force + law.yield_force) / (2 * np.pi * law.limit)
-    elastic = 0.75 * force / (law.E_star * np.sqrt(square))  # peak - residual depth
-    return float(loading - 0.4 * force * elastic)
-
-
-def reach(law: ContactLaw, energy: float) -> float:
-    """Return the contact radius, m, of first loading that has taken up an energy, J."""
-    at_yield = 0.4 * law.yield_force * law.yield_depth
-    if energy <= at_yield:
+def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
+    """Return the half length, m, of a contact that has taken up an energy, J, along t."""
+    if not flow.yields:
         return float(np.sqrt(law.R) * (2.5 * energy / law.stiffness) ** 0.2)
-    more = 2 * (energy - at_yield) / law.slope
-    start = law.yield_force / law.slope
-    return float(np.sqrt(law.R * (law.yield_depth - start + np.sqrt(start**2 + more))))
+    depth = np.sqrt(energy / (np.pi * law.limit * law.R))
+    return float(np.sqrt(2 * flow.R1 * depth))
 
 
 def _start(plan: Plan, rod: ModalRod) -> Start:

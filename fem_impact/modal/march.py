@@ -1,8 +1,8 @@
 """The compiled march: impulses of the contact between exact flights of the rod and its modes.
 
 Each step kicks with the force at the present place and then flies exactly, gravity included, so a flight
-without contact is exact for any step, and the work of a force is the trapezoidal sum of it over its path. All
-compiled code of the reduced model stands in this file: the compiler's cache looks at one file at a time.
+without contact is exact for any step, and the work of a force is the trapezoidal sum of it over its path.
+A contact that does not yield is Hertz' with friction; one that yields is a `fem_impact.modal.furrow`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,9 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
+from fem_impact.modal.furrow import Furrow, held_by, let_go, meets, plough, smooth
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP, ContactLaw
+from fem_impact.physics.flow_law import FlowLaw
 
 MOST_CONTACTS = 200
 SPRINGS = 100
@@ -22,7 +24,8 @@ TILT = 0.5  # of the largest depth: a face has tipped over where an edge is so m
 
 # of the rigid motion: m/s, m/s, rad/s, m and m from the barrier, rad; the barrier's velocities, m/s
 V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T = range(8)
-PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P = range(6)  # of the tally: m, N, J, J, J, J
+# of the tally: m, N; J of the forces, gravity and a plate; J of flow, of the sheared skin, of friction
+PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P, FLOWED, SHEARED, RUBBED = range(9)
 NOTHING, TIP = -1, -2  # of what strikes
 
 
@@ -107,7 +110,7 @@ class ModalEnd(NamedTuple):
     Attributes
     ----------
     motion : then
-    tally : (6,) largest depth and force, works of the contact along n and t, of gravity, on a plate
+    tally : (9,) largest depth and force, works, see `PEAK` to `RUBBED`
     held : energy in the contact and in its springs, J, 0 but for a run that was cut off
     time, steps, touches : s, number of steps, of contacts
     struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s
@@ -126,36 +129,11 @@ class ModalEnd(NamedTuple):
 
 
 @inlined
-def virgin(depth: float, law: ContactLaw) -> float:
-    """Force of first loading, N."""
-    if depth <= law.yield_depth:
-        return float(law.stiffness * depth**1.5)
-    return law.yield_force + law.slope * (depth - law.yield_depth)
-
-
-@inlined
-def crater(peak: float, law: ContactLaw) -> tuple[float, float]:
-    """Radius R_p and residual depth that a largest depth ``peak`` leaves, m."""
-    if peak <= law.yield_depth:
-        return law.R, 0.0
-    force = virgin(peak, law)
-    square = (2 * force + law.yield_force) / (2 * np.pi * law.limit)
-    R_p = 4 * law.E_star / (3 * force) * square**1.5
-    return R_p, peak - square / R_p
-
-
-@inlined
-def press(depth: float, peak: float, law: ContactLaw) -> tuple[float, float]:
-    """Return normal force, N, and contact radius, m; ``peak`` is the largest depth before."""
+def press(depth: float, law: ContactLaw) -> tuple[float, float]:
+    """Return Hertz' normal force, N, and contact radius, m."""
     if depth <= 0.0:
         return 0.0, 0.0
-    if depth >= peak:
-        return virgin(depth, law), np.sqrt(law.R * depth)
-    R_p, residual = crater(peak, law)
-    if depth <= residual:
-        return 0.0, 0.0
-    above = depth - residual
-    return 4 / 3 * law.E_star * np.sqrt(R_p) * above**1.5, np.sqrt(R_p * above)
+    return law.stiffness * depth**1.5, np.sqrt(law.R * depth)
 
 
 @allocating_kernel
@@ -186,12 +164,12 @@ def grip(springs: Springs, moved: float, F: float, a: float, law: ContactLaw) ->
 
 
 @inlined
-def stored(depth: float, peak: float, F: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
+def stored(depth: float, F: float, springs: Springs, law: ContactLaw) -> tuple[float, float]:
     """Return the energies, J, that the contact holds: Hertz' above the crater, and that of its springs."""
     total = 0.0
     for i in range(len(springs.shift)):
         total += springs.width[i] * springs.shift[i] ** 2
-    return 0.4 * F * (depth - crater(peak, law)[1]), 0.25 * law.shear * total
+    return 0.4 * F * depth, 0.25 * law.shear * total
 
 
 @inlined
@@ -291,20 +269,22 @@ def ahead(
     others: Others,
     turns: tuple[Array, Array],
     bounds: Bounds,
-    law: ContactLaw,
+    flow: FlowLaw,
+    furrow: Furrow,
     peak: float,
 ) -> tuple[int, int]:
     """Fly on until something strikes or to the horizon; return the steps and what strikes.
 
     Gravity has no part in that: a rod that falls back strikes anew.
     """
-    steps, residual = 0, crater(peak, law)[1]
+    steps = 0
     while steps * bounds.step < bounds.horizon:
         fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
         steps += 1
-        arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)[3]
-        depth = start.radius - now.rigid[HEIGHT] - arm_n
-        if depth > residual:
+        arm = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
+        depth = start.radius - now.rigid[HEIGHT] - arm[3]
+        place = now.rigid[ALONG] + arm[2] - start.centre_t - start.radius * now.rigid[TURN]
+        if meets(furrow, depth, place, flow) if flow.yields else depth > 0.0:
             return steps, TIP
         if steps % LOOK == 0:
             struck = strikes(now, others, depth, peak)
@@ -314,65 +294,69 @@ def ahead(
 
 
 @inlined
-def touch(
-    now: ModalState,
-    start: Start,
+def meet(
     law: ContactLaw,
-    modes: Modes,
+    flow: FlowLaw,
     springs: Springs,
-    arm: tuple[float, float, float, float],
-    force: tuple[float, float],
+    furrow: Furrow,
+    depth: float,
+    place: float,
     moved: float,
-    span: float,
-    tally: Array,
 ) -> tuple[float, float]:
-    """Push the rod by its contact of normal force, N, and radius, m, for a ``span``, s; return impulses, N s.
-
-    The contact has ``moved`` along t, m, since its springs were last loaded.
-    """
-    p_n, p_t = span * force[0], -span * grip(springs, moved, force[0], force[1], law)
-    push(now, start, modes, arm, p_n, p_t, tally)
-    now.rigid[HEIGHT] += p_n * start.give  # a plate sinks away under the force
-    tally[WORK_P] += p_n * force[0] * start.give
-    tally[HARDEST] = max(tally[HARDEST], force[0])
-    return p_n, p_t
+    """Return normal and tangential force, N, at a depth and place, m, of a tip that has ``moved``, m."""
+    if flow.yields:
+        return plough(furrow, depth, place, flow)
+    F, a = press(depth, law)
+    return (F, -grip(springs, moved, F, a, law)) if F > 0.0 else (0.0, 0.0)
 
 
 @allocating_kernel
 def drop(
-    start: Start, law: ContactLaw, modes: Modes, others: Others, bounds: Bounds, contacts: Array
+    start: Start,
+    law: ContactLaw,
+    flow: FlowLaw,
+    modes: Modes,
+    others: Others,
+    bounds: Bounds,
+    contacts: Array,
 ) -> ModalEnd:
     """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
 
     ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.
     """
-    dt, k, tally = bounds.step, len(modes.omega), np.zeros(6)
+    dt, k, tally = bounds.step, len(modes.omega), np.zeros(9)
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
     rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0, 0.0, 0.0])
     now = ModalState(rigid, np.zeros(k), np.zeros(k))
-    springs = springs_over(bounds.reach)
-    gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), start.centre_t, False, 0.0
+    springs, furrow = springs_over(bounds.reach), smooth(bounds.reach)
+    gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), 0.0, False, 0.0
     time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
     depth, force = 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
         c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-        depth, place = start.radius - rigid[HEIGHT] - arm_n, rigid[ALONG] + arm_t - start.radius * rigid[TURN]
-        force = press(depth, tally[PEAK], law)
+        depth = start.radius - rigid[HEIGHT] - arm_n
+        place = rigid[ALONG] + arm_t - start.centre_t - start.radius * rigid[TURN]
+        force = meet(law, flow, springs, furrow, depth, place, place - before)
         struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
         late = force[0] > 0.0 and time > bounds.latest
         if force[0] > 0.0:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
             arm = (c, s, arm_t, arm_n - start.radius)
-            p_n, p_t = touch(now, start, law, modes, springs, arm, force, place - before, span, tally)
+            p_n, p_t = span * force[0], span * force[1]
+            push(now, start, modes, arm, p_n, p_t, tally)
+            rigid[HEIGHT] += p_n * start.give  # a plate sinks away under the force
+            tally[WORK_P] += p_n * force[0] * start.give
+            tally[HARDEST] = max(tally[HARDEST], force[0])
             count = book(contacts, count, time, p_n, p_t, dt * tally[HARDEST], gap)
             tally[PEAK], last = max(tally[PEAK], depth), time
         else:
             springs.shift[:] = 0.0
+            let_go(furrow, depth, place)
         if late or struck != NOTHING:
             break
         if pressed and force[0] == 0.0:
             flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
-            flown, struck = ahead(flight, start, modes, others, turns, bounds, law, tally[PEAK])
+            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, furrow, tally[PEAK])
             steps += flown
             if struck != TIP:
                 wait = flown * dt
@@ -381,6 +365,11 @@ def drop(
         tally[WORK_G] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
         time += dt
         steps += 1
-    held = stored(depth, tally[PEAK], force[0], springs, law)
+    held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
+    if flow.yields:
+        tally[FLOWED : RUBBED + 1] = furrow.works
+    else:
+        # the normal spring gives back what it stores by itself, the tangential ones out of friction
+        tally[RUBBED] = -tally[WORK_T] - held[1]
     over = struck in (NOTHING, TIP) and not late
     return ModalEnd(now, tally, held, time, steps, count, struck, wait, over)

@@ -60,9 +60,13 @@ def contact_law(bodies: ContactBodies) -> ContactLaw:
     stiffness = 4 / 3 * E_star * sqrt(R)
     depth = (pi * limit / (2 * E_star)) ** 2 * R
     force = stiffness * depth**1.5
-    # 8 G*, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)
-    shear = 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies.elastic)
+    shear = shear_stiffness(bodies)
     return ContactLaw(R, E_star, limit, stiffness, depth, force, pi * limit * R, shear, bodies.f)
+
+
+def shear_stiffness(bodies: ContactBodies) -> float:
+    """Return 8 G*, Pa, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)."""
+    return 8 / sum((2 - m.nu) * 2 * (1 + m.nu) / m.E for m in bodies.elastic)
 
 
 def restitution(law: ContactLaw, mass: float, speed: float) -> float:

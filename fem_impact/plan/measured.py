@@ -44,6 +44,17 @@ def summary() -> dict[str, Any]:
     return dict(json.loads(_data("summary.json")))
 
 
+@cache
+def reduced_table() -> tuple[dict[str, Any], ...]:
+    """Return each stored scene's quantities by reduced model and finite elements; None: not known."""
+    rows = csv.DictReader(_data("reduced.csv").splitlines())
+    return tuple({key: _value(key, text) for key, text in row.items()} for row in rows)
+
+
+def _value(key: str, text: str) -> float | str | None:
+    return text if key in ("name", "group") else float(text) if text else None
+
+
 def _data(name: str) -> str:
     return files("fem_impact.plan").joinpath("data", name).read_text(encoding="utf-8")
 

@@ -41,7 +41,7 @@ HARD = "neither body yields, so that no hardness limits the pressure of a touchi
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
-ROUND_OFF = 1e-9  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
+ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
 
 
 def provenance(

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cache
 from typing import Any
+
+import numpy as np
 
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import between
-from fem_impact.plan.measured import summary
+from fem_impact.plan.measured import reduced_table
 from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
     MASSIVE,
@@ -80,7 +82,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         vibration_floor=floor,
         below_floor=vibration < floor,
         friction=result.friction / E_0,
-        skin=Unknown("a local contact law does not say how deep it flows"),
+        skin=result.skin / E_0,
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
         locked_rod=NO_STRESS,
@@ -123,49 +125,46 @@ def _cost(result: ModalResult) -> RunCost:
 
 
 ASSUMPTIONS = (
-    "Contact by Hertz or, with a yielding body, by Thornton's law with 2.8 times the softer yield stress; "
-    "the elliptic contact is replaced by a round one of the same sqrt(R1 R2).",
-    "The indented surface keeps the barrier's direction: no ploughing, so a sliding contact has mu = f.",
-    "Tangential force by Coulomb's limit and Mindlin's stiffness: no plastic shear flow under the tip.",
-    "No hardening, no residual stress, no waves in the barrier.",
-    "A later contact finds the rod and the barrier indented where they touch, as a first one left them.",
+    "Contact by Hertz or, with a yielding body, by cells across a furrow with Tabor's hardness of the softer "
+    "body; the elliptic contact is replaced by a round one of the same sqrt(R1 R2).",
+    "A sliding tip ploughs; a yielding contact flows in shear, by two constants from six other impacts.",
+    "No residual stress, no waves in the barrier; the harder body stays elastic.",
+    "A later contact finds the barrier indented where it touches, as a first one left it.",
 )
-
-COMPARED = ("e", "mu", "Omega", "E_vib")
-UNITS = {"Omega": " rad/s", "E_vib": " of E_0"}
-Pair = tuple[float, float]
 
 
 def beside_solid(scene: Scene) -> tuple[str, ...]:
-    """Return where the reduced model may not be used, as numbers; and those of the measured set itself."""
-    held = _pairs()
-    general = [_largest(name, held) for name in COMPARED]
+    """Return how far the reduced model is from the finite elements, over the stored scenes and on a set."""
+    rows = reduced_table()
+    parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
-        f"Beside the finite elements on their finest stored mesh, over {len(held)} measured sets, it is off "
-        f"by up to {', '.join(general)}: do not use it where that matters.",
+        f"Beside the finite elements, over {len(rows)} yielding scenes (the measured sets on their finest "
+        "stored mesh, the rest drawn at random and on coarse meshes), half and nine tenths of them within: "
+        f"{', '.join(parts)}.",
     ]
-    if scene.measured in held:
-        own = ", ".join(
-            f"{name} {a:.3g} beside {b:.3g}{UNITS.get(name, '')}"
-            for name, (a, b) in held[scene.measured].items()
+    own = next((row for row in rows if row["name"] == scene.measured), None)
+    if own:
+        values = ", ".join(
+            f"{name} {own[f'{key}_modal']:.3g} beside {own[f'{key}_solid']:.3g}{unit}"
+            for key, name, unit in COMPARED
+            if own[f"{key}_solid"] is not None
         )
-        sentences.append(f"On {scene.measured}: {own}.")
+        sentences.append(f"On {scene.measured}: {values}.")
     return tuple(sentences)
 
 
-def _largest(name: str, held: dict[str, dict[str, Pair]]) -> str:
-    where = max(held, key=lambda key: abs(held[key][name][0] - held[key][name][1]))
-    a, b = held[where][name]
-    return f"{abs(a - b):.2g}{UNITS.get(name, '')} in {name} ({where})"
+COMPARED = (
+    ("e", "e", ""),
+    ("mu", "mu", ""),
+    ("Omega", "Omega", " rad/s"),
+    ("E_vib", "E_vib", " of E_0"),
+    ("skin", "friction and sheared skin", " of E_0"),
+)
 
 
-@cache
-def _pairs() -> dict[str, dict[str, Pair]]:
-    """Return (modal, finest solid) of each quantity by set."""
-    return {name: _pair(cost["settings"]) for name, cost in summary()["scenes"].items()}
-
-
-def _pair(settings: list[dict[str, Any]]) -> dict[str, Pair]:
-    modal = next(one for one in settings if one["kind"] == "modal")
-    solid = min((one for one in settings if one["kind"] == "mesh"), key=lambda one: one["tip_size_m"])
-    return {name: (modal["value"][name], solid["value"][name]) for name in COMPARED}
+def error_text(rows: Sequence[Mapping[str, Any]], key: str, name: str, unit: str) -> str:
+    """Return median and nine-tenths quantile of a quantity's error as text."""
+    pairs = [(row[f"{key}_modal"], row[f"{key}_solid"]) for row in rows]
+    errors = [abs(modal - solid) for modal, solid in pairs if solid is not None]
+    half, most = np.quantile(errors, [0.5, 0.9])
+    return f"{name} {half:.2g} and {most:.2g}{unit}"

@@ -17,6 +17,7 @@ from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.flow_law import flow_law
 from fem_impact.plan.plan import plan
 from fem_impact.reference.hertz import SPAN
 from fem_impact.reference.oblique import ObliqueRod, oblique_rod
@@ -120,8 +121,9 @@ def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
 def whole_ratio(drop: Drop) -> float:
     """Return T1/tau with tau of the rod's whole mass on the contact of 45 degrees (`Rod.whole`)."""
     level = replace(drop, angle=45.0).scene()
-    law, mass = contact_law(plan(level, "modal").bodies), projectile(level).mass
-    return drop.first_period / contact_time(law, mass, drop.speed)
+    planned, mass = plan(level, "modal"), projectile(level).mass
+    flow = flow_law(planned.bodies, planned.slots.rod_law, planned.slots.barrier_law)
+    return drop.first_period / contact_time(contact_law(planned.bodies), flow, mass, drop.speed)
 
 
 def modal_restitution(drop: Drop, results: Results) -> float | None:

@@ -14,6 +14,7 @@ from fem_impact.arrays import Array
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import ALONE, MOST_CONTACTS, RIGID, Bounds, Start, drop
 from fem_impact.physics.contact_law import ContactLaw
+from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.reference.oblique import ObliqueRod
 
 STEP, FREE = 2e-8, 1e-6  # s: time steps of the point mass in contact and in flight
@@ -23,12 +24,12 @@ SAMPLES = 24  # of the gap over the shortest period
 MOST = 40  # contacts of a spring drop
 
 
-def contact_time(law: ContactLaw, mass: float, speed: float) -> float:
+def contact_time(law: ContactLaw, flow: FlowLaw, mass: float, speed: float) -> float:
     """Return the contact time, s, of a rigid mass, kg, that falls along the normal with a speed, m/s."""
     start = Start(mass, 1.0, 0.0, 0.0, 0.0, 0.0, -speed, 0.0, 0.0, 0.0)
-    bounds = Bounds(STEP, FREE, LATEST, reach(law, 0.5 * mass * speed**2))
+    bounds = Bounds(STEP, FREE, LATEST, reach(law, flow, 0.5 * mass * speed**2))
     contacts = np.zeros((MOST_CONTACTS, 4))
-    drop(start, law, RIGID, ALONE, bounds, contacts)
+    drop(start, law, flow, RIGID, ALONE, bounds, contacts)
     return float(contacts[0, 1] - contacts[0, 0])
 
 

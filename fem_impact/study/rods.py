@@ -29,9 +29,7 @@ DROP_NOTES = (
     "Elastic drops: neither body yields, whatever the pressure. Yielding drops have every effect that the "
     "scene calls for.",
 )
-MODAL_NOTE = (
-    "Modal: a round contact of the same sqrt(R1 R2), no ploughing, no shear flow under a sticking tip."
-)
+MODAL_NOTE = "Modal: a round contact of the same sqrt(R1 R2); each outcome tells its error."
 
 
 def length_of(gamma: float, diameter: float = BODY) -> float:

@@ -12,12 +12,13 @@ from math import sqrt
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 from fem_impact.figures.lines import Panel, Series
-from fem_impact.modal.impact import plastic_work
+from fem_impact.modal.furrow import indent
+from fem_impact.modal.impact import reach
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.flow_law import flow_law
 from fem_impact.plan.plan import plan
 from fem_impact.study.criterion_measure import Rod, Rods, of_body
 from fem_impact.study.document import Picture, Sheet
@@ -96,19 +97,11 @@ def static_restitution(drop: Drop) -> float:
 
     Impact energy = plastic and elastic work of the contact + F^2/2 times the flexibility of the rod's modes.
     """
-    scene = drop.scene()
-    rod, law = modal_rod(scene), contact_law(plan(scene, "modal").bodies)
+    planned = plan(drop.scene(), "modal")
+    scene, rod = planned.scene, modal_rod(planned.scene)
+    law = flow_law(planned.bodies, planned.slots.rod_law, planned.slots.barrier_law)
     mass = rod.mass / (1 + rod.centre_t**2 / rod.k2)
     energy = 0.5 * mass * scene.impact.v_n**2
     flexibility = float((rod.along_n**2 / rod.omega**2).sum())
-
-    def surplus(depth: float) -> float:
-        """Return the energy of the loading to a depth, m, less the impact's, J."""
-        # first loading: Hertz, then linear beyond yield
-        elastic = min(depth, law.yield_depth)
-        beyond, force = depth - elastic, law.stiffness * elastic**1.5
-        work = 0.4 * force * elastic + (force + 0.5 * law.slope * beyond) * beyond
-        total: float = work + 0.5 * flexibility * (force + law.slope * beyond) ** 2 - energy
-        return total
-
-    return sqrt(1 - plastic_work(law, brentq(surplus, 0.0, drop.radius)) / energy)
+    widest = reach(contact_law(planned.bodies), law, energy)
+    return sqrt(1 - indent(law, widest, flexibility, energy)[2] / energy)

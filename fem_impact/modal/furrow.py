@@ -1,0 +1,258 @@
+"""The yielding contact: a row of cells across the furrow that a round tip presses and ploughs into a surface.
+
+Cell x of the surface carries a normal force q and a tangential force T a metre of the row. It is an elastic
+spring (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6) on a bed that flows. With the tip at depth d and
+place X it is pressed by D = d - (x - X)^2 / (2 R1), g of it for good. The tip is met at its slope
+s = (x - X) / R1, so that
+
+    F_n = sum (q - T s) dx,    F_t = -sum (T + q s) dx.
+
+Flow starts on an ellipse, (q / 2 b H)^2 + (T / 2 b K)^2 = 1, and follows its normal; b = sqrt(2 R2 g) is half
+the width of the contact at the cell and H the hardness. K is at first that of a contact which sticks; as the
+tip slides, it falls to the shear yield stress k: normal force falls as tangential force rises (Tabor 1959,
+doi:10.1098/rspa.1959.0114). T is at most f q and 2 b k. What the tip ploughs up fills the gap ahead of it, so
+that the contact grows.
+"""
+
+from __future__ import annotations
+
+from math import exp, log, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.fem.kernels import allocating_kernel, inlined
+from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, STUCK, FlowLaw
+
+CELLS = 512  # of the ring that follows the tip
+ACROSS = 40  # cells over the largest half length of the contact
+
+LOW, HIGH, PLACE, DEPTH, WIDEST, SLID, CARRIED, RIDGE, TOP = range(9)  # of `Furrow.now`
+FLOW, SKIN, RUB = range(3)  # works, J: normal flow, shear flow under the contact, friction
+
+
+class Furrow(NamedTuple):
+    """A furrow: (CELLS,) depth, m, normal force, N/m, tangential spring's shift, m; what stands once.
+
+    ``now`` (9,) are the first and last cell visited; the tip's last place and depth, the widest contact
+    radius, the way slid, m; the volume carried before the tip over its width, m2; the ridge's height under
+    the tip and the highest ever, m. ``size`` is a cell's, m; ``works`` (3,) J.
+    """
+
+    depth: Array
+    normal: Array
+    shift: Array
+    now: Array
+    works: Array
+    size: float
+
+
+@allocating_kernel
+def smooth(reach: float) -> Furrow:
+    """Return a surface without a furrow for contacts of at most a half length ``reach``, m."""
+    now = np.zeros(9)
+    now[HIGH] = -1.0
+    return Furrow(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), now, np.zeros(3), reach / ACROSS)
+
+
+@inlined
+def hardness(widest: float, law: FlowLaw) -> float:
+    """Return H, Pa: Johnson's expanding cavity up to Tabor's fully plastic contact, at its strain .2 a/R."""
+    stress = law.yield_stress * (1.0 + law.slope * REPRESENTATIVE * widest / law.R) ** law.exponent
+    strained = law.E_star * widest / (law.R * stress)
+    nu = law.nu
+    cavity = 2 / 3 * (2 + log((strained + 4 * (1 - 2 * nu)) / (6 * (1 - nu))))
+    return float(stress * min(FULLY_PLASTIC, cavity))
+
+
+@inlined
+def window(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> tuple[int, int]:
+    """Return first and last cell that the tip may touch; cells not visited before become smooth."""
+    now, size = furrow.now, furrow.size
+    half = sqrt(2 * law.R1 * max(depth + now[TOP], 0.0))
+    first, last = int(np.floor((place - half) / size)), int(np.floor((place + half) / size)) + 1
+    first = max(first, last - CELLS // 2)
+    if now[HIGH] < now[LOW]:
+        now[LOW], now[HIGH] = first, first - 1
+    for c in range(int(now[HIGH]) + 1, last + CELLS // 4):
+        clear(furrow, c)
+        now[HIGH] = c
+    now[LOW] = max(now[LOW], now[HIGH] - CELLS + 1)
+    for c in range(int(now[LOW]) - 1, first - CELLS // 4, -1):
+        clear(furrow, c)
+        now[LOW] = c
+    now[HIGH] = min(now[HIGH], now[LOW] + CELLS - 1)
+    return first, last
+
+
+@inlined
+def clear(furrow: Furrow, cell: int) -> None:
+    """Make a cell smooth."""
+    at = cell % CELLS
+    furrow.depth[at], furrow.normal[at], furrow.shift[at] = 0.0, 0.0, 0.0
+
+
+@inlined
+def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float, float]:
+    """Return elastic forces q, T brought back along the normal to the ellipse of semi-axes Q, S."""
+    if Q <= 0.0:
+        return 0.0, 0.0
+    a, b = law.normal / Q**2, law.shear / S**2
+    x, y, way = (q / Q) ** 2, (T / S) ** 2, 0.0
+    if x + y <= 1.0:
+        return q, T
+    for _ in range(30):
+        u, v = 1 + way * a, 1 + way * b
+        beyond = x / u**2 + y / v**2 - 1
+        if beyond < 1e-6:
+            break
+        way += beyond / (2 * a * x / u**3 + 2 * b * y / v**3)
+    return q / (1 + way * a), T / (1 + way * b)
+
+
+@inlined
+def strengths(furrow: Furrow, law: FlowLaw) -> tuple[float, float]:
+    """Return H and K, Pa, of the contact as it is."""
+    H = hardness(furrow.now[WIDEST], law)
+    slid = min(law.skin, STUCK * H)
+    return H, slid + (STUCK * H - slid) * exp(-furrow.now[SLID] / (RUN_IN * furrow.now[WIDEST]))
+
+
+@inlined
+def press_cell(
+    furrow: Furrow, i: int, D: float, moved: float, up: float, H: float, K: float, law: FlowLaw
+) -> tuple[float, float]:
+    """Press a cell to D, m, move the tip along it, m, and return its normal and tangential force, N/m.
+
+    ``up`` is how high the ridge stands there, m. Flow, shear and friction are booked.
+    """
+    g, normal, shift, _, works, size = furrow
+    before, sheared = g[i], law.shear * shift[i]
+    trial, b = sheared + law.shear * moved, sqrt(2 * law.R2 * max(g[i] + up, 0.0))
+    q, stuck = flowed(law.normal * (D - g[i]), trial, 2 * b * H, 2 * b * K, law)
+    g[i] = max(g[i], D - q / law.normal)
+    works[FLOW] += 0.5 * (normal[i] + q) * (g[i] - before) * size
+    limit = min(law.friction * q, 2 * b * law.skin)
+    T = min(max(stuck, -limit), limit)
+    mean = 0.5 * (sheared + T) * size / law.shear
+    works[SKIN] += mean * (trial - stuck)
+    works[RUB if law.friction * q <= 2 * b * law.skin else SKIN] += mean * (stuck - T)
+    normal[i], shift[i] = q, T / law.shear
+    return q, T
+
+
+@inlined
+def release_cell(furrow: Furrow, i: int, law: FlowLaw) -> None:
+    """Free a cell that the tip has left."""
+    furrow.works[RUB] += 0.5 * law.shear * furrow.shift[i] ** 2 * furrow.size
+    furrow.normal[i], furrow.shift[i] = 0.0, 0.0
+
+
+@inlined
+def plough(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> tuple[float, float]:
+    """Move the tip to a depth and place, m, and return its normal and tangential force, N."""
+    g, now, size = furrow.depth, furrow.now, furrow.size
+    sunk, moved = depth - now[DEPTH], place - now[PLACE]
+    now[DEPTH], now[PLACE] = depth, place
+    middle = place if law.ploughs else 0.0  # a tip that is flattened takes its cells along
+    first, last = window(furrow, depth, middle, law)
+    now[WIDEST] = max(now[WIDEST], sqrt(2 * law.R * max(depth, 0.0)))
+    if now[WIDEST] == 0.0:
+        return 0.0, 0.0
+    H, K = strengths(furrow, law)
+    F_n, F_t, ridge, front, touched = 0.0, 0.0, 0.0, 0, False
+    way = 1 if moved > 0.0 else -1
+    for step in range(last - first + 1):
+        c = first + step if way > 0 else last - step  # from the rear to the front
+        i, x = c % CELLS, (c + 0.5) * size - middle
+        D = depth - 0.5 * x**2 / law.R1
+        if D <= g[i]:
+            release_cell(furrow, i, law)
+            continue
+        s, before = x / law.R1 if law.ploughs else 0.0, g[i]
+        ahead = s * moved > 0.0
+        q, T = press_cell(furrow, i, D, moved - s * sunk, now[RIDGE] if ahead else 0.0, H, K, law)
+        F_n += (q - T * s) * size
+        F_t -= (T + q * s) * size
+        if ahead:
+            now[CARRIED] += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
+            ridge, front, touched = max(ridge, -g[i]), c, True
+    now[RIDGE] = ridge
+    now[SLID] += abs(moved) if F_n > 0.0 else 0.0
+    if touched:
+        heap(furrow, front, way, law)
+    return F_n, F_t
+
+
+@inlined
+def heap(furrow: Furrow, front: int, way: int, law: FlowLaw) -> None:
+    """Fill the gap between tip and surface before the ``front`` cell with what is carried there."""
+    g, now, size = furrow.depth, furrow.now, furrow.size
+    c = front + way
+    while now[LOW] <= c <= now[HIGH]:
+        x = (c + 0.5) * size - now[PLACE]
+        gap = g[c % CELLS] - (now[DEPTH] - 0.5 * x**2 / law.R1)
+        if gap > 0.0:
+            if gap * size > now[CARRIED]:
+                break
+            now[CARRIED] -= gap * size
+            g[c % CELLS] -= gap
+            now[TOP] = max(now[TOP], -g[c % CELLS])
+        c += way
+
+
+@inlined
+def meets(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> bool:
+    """Return whether a tip at a depth and place, m, touches."""
+    if depth + furrow.now[TOP] <= 0.0:
+        return False
+    middle = place if law.ploughs else 0.0
+    first, last = window(furrow, depth, middle, law)
+    for c in range(first, last + 1):
+        x = (c + 0.5) * furrow.size - middle
+        if depth - 0.5 * x**2 / law.R1 > furrow.depth[c % CELLS]:
+            return True
+    return False
+
+
+@inlined
+def let_go(furrow: Furrow, depth: float, place: float) -> None:
+    """Move the tip without contact."""
+    furrow.now[DEPTH], furrow.now[PLACE] = depth, place
+    furrow.normal[:] = 0.0
+    furrow.shift[:] = 0.0
+
+
+@inlined
+def held_by(furrow: Furrow, law: FlowLaw) -> tuple[float, float]:
+    """Return the elastic energies, J, of the cells' normal and tangential springs."""
+    normal, tangential = 0.0, 0.0
+    for i in range(CELLS):
+        normal += furrow.normal[i] ** 2
+        tangential += furrow.shift[i] ** 2
+    return 0.5 * furrow.size * normal / law.normal, 0.5 * furrow.size * law.shear * tangential
+
+
+@allocating_kernel
+def indent(law: FlowLaw, reach: float, flexibility: float, energy: float) -> tuple[float, float, float]:
+    """Press a tip into a smooth surface until the contact and a spring behind it have taken up an energy, J.
+
+    Parameters
+    ----------
+    reach : half length of the contact, m, at least of the deepest
+    flexibility : of the spring, m/N
+
+    Returns
+    -------
+    tuple of float
+        Depth, m, force, N, and work of the flow, J.
+    """
+    furrow, depth, force, work = smooth(reach), 0.0, 0.0, 0.0
+    step = 1e-4 * reach**2 / law.R1
+    while work + 0.5 * flexibility * force**2 < energy:
+        depth += step
+        before = force
+        force = plough(furrow, depth, 0.0, law)[0]
+        work += 0.5 * (before + force) * step
+    return depth, force, furrow.works[FLOW]
