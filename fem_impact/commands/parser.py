@@ -22,6 +22,7 @@ STUDIES = {
     "gamma": "vibration against slenderness",
     "criterion": "when a rod may be called rigid",
     "effects": "effects chosen by the scene beside everything on, and what each costs",
+    "reduced": "the reduced model beside the finite elements",
     "validation": "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
 }
 REPORT = {"report": "one page over all studies beside it"}

@@ -46,9 +46,13 @@ def summary() -> dict[str, Any]:
 
 @cache
 def reduced_table() -> tuple[dict[str, Any], ...]:
-    """Return each stored scene's quantities by reduced model and finite elements; None: not known."""
+    """Return each stored scene's quantities by reduced model and finite elements; None: not known.
+
+    Scenes from which constants of the reduced model were read are left out.
+    """
     rows = csv.DictReader(_data("reduced.csv").splitlines())
-    return tuple({key: _value(key, text) for key, text in row.items()} for row in rows)
+    read = ({key: _value(key, text) for key, text in row.items()} for row in rows)
+    return tuple(row for row in read if row["group"] != "calibration")
 
 
 def _value(key: str, text: str) -> float | str | None:

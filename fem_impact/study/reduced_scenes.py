@@ -18,14 +18,6 @@ COUNT = 24
 COARSE = {"accuracy.tip_size": "0.6 mm", "accuracy.barrier_size": "0.3 mm", "save.frames": 0}
 
 
-RATE: dict[str, str | float] = {
-    f"{body}.material.rate.{key}": value
-    for body in ("projectile", "barrier")
-    for key, value in (("C", 0.022), ("tested", "1 /s"))
-}
-"""Rate law of both steels in these scenes: Johnson and Cook's of mild steel over strengths at 1/s."""
-
-
 @dataclass(frozen=True, slots=True)
 class Side:
     """One side of the hypercube: what varies evenly from ``low`` to ``high``."""
@@ -59,7 +51,7 @@ CALIBRATION: tuple[Row, ...] = tuple(
         (220.0, 35.0, 1.5, 0.2, 3.0, 400.0, 520 / 400),
     )
 )
-"""Impacts from which the two constants of `fem_impact.physics.flow_law` were read, on their own meshes."""
+"""Impacts from which the two constants of `fem_impact.physics.flow_law` were read, with earlier inputs."""
 
 
 def design(count: int) -> list[Row]:
@@ -86,5 +78,5 @@ def scene_of(row: Row, name: str) -> Scene:
         "surface.friction_low": f,
         "surface.friction_high": f,
     }
-    scene = replace_all(load("t5b"), changes | RATE | COARSE)
+    scene = replace_all(load("t5b"), changes | COARSE)
     return replace(scene, id=name, title="Reduced model beside finite elements", measured=None)
