@@ -138,8 +138,8 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
     rows = reduced_table()
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
-        f"Beside the finite elements, over {len(rows)} yielding scenes (the measured sets, and scenes drawn at "
-        "random on coarser meshes), half and nine tenths of them within: "
+        f"Beside the finite elements, over {len(rows)} yielding scenes (the measured sets, and scenes drawn "
+        "at random on coarser meshes), half and nine tenths of them within: "
         f"{', '.join(parts)}.",
     ]
     own = next((row for row in rows if row["name"] == scene.measured), None)
