@@ -55,7 +55,13 @@ DIMENSIONS: dict[str, Dimension] = {
     d.name: d
     for d in (
         Dimension("length", "m", "mm", "240 mm", (Unit("m"), Unit("mm", -3), Unit("cm", -2), Unit("um", -6))),
-        Dimension("speed", "m_per_s", "m/s", "-2.1 m/s", (Unit("m/s"), Unit("mm/s", -3), Unit("km/s", 3))),
+        Dimension(
+            "speed",
+            "m_per_s",
+            "m/s",
+            "-2.1 m/s",
+            (Unit("m/s"), Unit("mm/s", -3), Unit("km/s", 3), Unit("km/h", 0, 1 / 3.6)),
+        ),
         Dimension("angle", "rad", "deg", "45 deg", (Unit("rad"), Unit("deg", 0, math.pi / 180.0))),
         Dimension(
             "angular speed",
@@ -75,7 +81,20 @@ DIMENSIONS: dict[str, Dimension] = {
             *("heat capacity", "J_per_kg_K", "J/(kg K)", "440 J/(kg K)"), (Unit("J/(kg K)"), Unit("J/kgK"))
         ),
         Dimension("strain rate", "per_s", "/s", "1 /s", (Unit("/s"), Unit("1/s"))),
-        Dimension("time", "s", "ms", "2.5 ms", (Unit("s"), Unit("ms", -3), Unit("us", -6), Unit("ns", -9))),
+        Dimension(
+            "time",
+            "s",
+            "ms",
+            "2.5 ms",
+            (
+                Unit("s"),
+                Unit("ms", -3),
+                Unit("us", -6),
+                Unit("ns", -9),
+                Unit("min", 0, 60.0),
+                Unit("h", 0, 3600.0),
+            ),
+        ),
     )
 }
 

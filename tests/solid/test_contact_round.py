@@ -6,8 +6,9 @@ import solid_scenes as scenes
 
 from fem_impact.physics.contact import barrier_conforms
 from fem_impact.plan.plan import plan
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
+from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.patch import lowest_gap, make_patch, vertex_normals
 from fem_impact.solid.march import advance, evaluate
 
@@ -134,3 +135,17 @@ def test_a_rod_that_slides_through_its_crater_loses_nothing_but_friction():
     assert result.model.geometry.conforming
     assert abs(result.accounts["closing"]) < 1e-4 * result.E_0
     assert result.worst < 1e-6 * result.E_0
+
+
+def test_a_flat_face_that_comes_down_flat_on_steel_that_yields_touches_with_finite_normals():
+    """Its bulge is exactly 0, and still its quads take their normals from the rod."""
+    flat = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm", "accuracy.tip_size": "1 mm"}
+    upright = {"impact.angle": "0 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
+    model = build(plan(replace_all(load("t5b"), flat | upright)))
+    state = model.initial_state()
+    for _ in range(20):
+        evaluate(model, state)
+        advance(model, state)
+    assert model.contact.rod.sag == 0.0
+    assert np.isfinite(state.v).all()
+    assert model.book.step[ACTIVE] > 0

@@ -111,7 +111,7 @@ class SurfaceContact:
     def _turn_normals(self, x: Array) -> None:
         rod, barrier = self.rod, self.barrier
         vertex_normals(x, barrier.places, barrier.quads, barrier.mirrored, self.normals)
-        if rod.sag > 0.0:
+        if rod.bend.any():  # not by the sag: that of a flat face may be exactly 0
             vertex_normals(x, rod.places, rod.quads, rod.mirrored, self.rod_normals)
 
     def energies(self, state: State) -> tuple[float, ...]:
