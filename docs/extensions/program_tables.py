@@ -36,6 +36,10 @@ def scene_numbers() -> str:
 
 
 _PLACES = {"material": "`[projectile.material]` and `[barrier.material]`", "top": "Before the first table"}
+_PLACES |= {
+    "skin": "`[surface]`, for the effect machined-skin",
+    "motion": "`[impact]` on a barrier that moves",
+}
 _PLACES |= {law: f'`rate` of a material, with `law = "{law}"`' for law in fields.RATES}
 _OPTIONAL = ("top", "surface")  # a shipped surface brings its friction along
 

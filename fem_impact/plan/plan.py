@@ -61,10 +61,14 @@ class Plan:
         return validity(self.scene, self.active)
 
     @property
+    def unknown(self) -> tuple[str, ...]:
+        """Return sentences on what the materials do not state."""
+        return unknowns(self.scene, self.active)
+
+    @property
     def warnings(self) -> tuple[str, ...]:
-        """Return sentences on what the reader should distrust."""
-        unknown = unknowns(self.scene, self.active)
-        return (*neglected(self.scene), *coarse_tip(self.bodies), *unknown)
+        """Return sentences on what the reader should distrust on finite elements."""
+        return (*neglected(self.scene), *coarse_tip(self.bodies), *self.unknown)
 
     @property
     def size(self) -> RunSize:

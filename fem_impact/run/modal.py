@@ -58,7 +58,7 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
             result.V_n - result.V_bn,
             "the reduced model has no second mesh",
             (*ASSUMPTIONS, *beside_solid(scene)),
-            [*doubts(origin, moved, coefficients, energy), *gravity_warning(plan, contacts)],
+            [*doubts(origin, moved, coefficients, energy), *gravity_warning(plan, contacts), *plan.unknown],
         ),
         motion=moved,
         barrier=struck,

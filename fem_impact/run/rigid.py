@@ -58,7 +58,7 @@ def rigid_outcome(plan: Plan) -> Outcome:
     struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base))
     energy = _energy(plan.bodies, path, moved, base)
     origin, coefficients = provenance(plan, Unknown(UNKNOWN), WITHOUT), restitution(scene, moved, struck)
-    warnings = doubts(origin, moved, coefficients, energy)
+    warnings = (*doubts(origin, moved, coefficients, energy), *plan.unknown)
     return Outcome(
         provenance=origin,
         validity=validity(

@@ -202,3 +202,10 @@ def test_the_modal_outcome_says_how_far_it_is_from_the_finite_elements():
     )
     assert modal == pytest.approx(solid, abs=0.05)
     assert re.search(r"nine tenths of them within: e 0\.0\d+ and 0\.\d+, mu", told)
+
+
+@pytest.mark.parametrize("fidelity", ["rigid", "modal"])
+def test_friction_that_is_not_known_for_a_material_is_told_in_every_fidelity(fidelity):
+    scene = replace_all(load("t5b"), {"projectile.material": "aluminium-6061-t6"})
+    told = simulate(scene, fidelity).validity.warnings
+    assert any("friction" in sentence.lower() and "aluminium-6061-t6" in sentence for sentence in told)
