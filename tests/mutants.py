@@ -88,8 +88,8 @@ MUTANTS = (
     Mutant(
         "friction of the reduced model moved by the last speed of its contact, not by its place",
         "fem_impact/modal/march.py",
-        "force, place - before, span, tally)",
-        "force, dt * (rigid[V_T] + rigid[SPIN] * arm[3]), span, tally)",
+        "meet(law, flow, springs, furrow, depth, place, place - before)",
+        "meet(law, flow, springs, furrow, depth, place, dt * (rigid[V_T] + rigid[SPIN] * arm[3]))",
         "tests/modal/test_modal.py::test_friction_takes_energy_whatever_the_step",
     ),
     Mutant(

@@ -10,6 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start, drop
 from fem_impact.physics.contact_law import contact_law
+from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
 from fem_impact.plan.choose import resolved
 from fem_impact.plan.plan import plan
@@ -41,12 +42,14 @@ def test_zeners_equation_gives_the_published_kind_of_curve(number):
 
 @pytest.mark.parametrize("number", ZENER)
 def test_the_reduced_model_obeys_zeners_equation(number):
-    law = contact_law(bodies_of(resolved(load("elastic-frictionless"))))
+    bodies = bodies_of(resolved(load("elastic-frictionless")))
+    law, flow = contact_law(bodies), flow_law(bodies, None, None)
     m, v, exact = 0.1, 1.0, zener_impact(number)
     T = (m / (law.stiffness * sqrt(v))) ** 0.4
     start = Start(m, 1.0, 0.0, 0.0, 0.0, 0.0, -v, 0.0, 0.0, 0.0, give=number * T / m)
     contacts = np.zeros((MOST_CONTACTS, 4))
-    end = drop(start, law, RIGID, ALONE, Bounds(T / 300, T, 1.0, reach(law, 0.5 * m * v**2)), contacts)
+    bounds = Bounds(T / 300, T, 1.0, reach(law, flow, 0.5 * m * v**2))
+    end = drop(start, law, flow, RIGID, ALONE, bounds, contacts)
     assert end.motion.rigid[0] == pytest.approx(exact.restitution * v, abs=1e-3)
     assert end.tally[HARDEST] == pytest.approx(exact.peak * law.stiffness * (v * T) ** 1.5, rel=2e-3)
     kept = 0.5 * m * end.motion.rigid[0] ** 2 + end.tally[WORK_P]
