@@ -13,6 +13,7 @@ from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.gamma_findings import PLAIN, Curves
 from fem_impact.study.gamma_points import Member, Meshes, expected_time, first_jobs, more_jobs, point_of
 from fem_impact.study.gamma_report import study_report
+from fem_impact.study.pairs import COARSER, PLACES
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of
 from rigid import LIMIT
 
@@ -29,8 +30,7 @@ DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the
 ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
 QUICK_REDUCED = REDUCED[::11]
-FULL, QUICK = Meshes(1.0, 2.0, 0.5), Meshes(2.0, 4.0, None)
-PLACES = (0.0, 0.5)  # of the barrier's grid at which the study of the sets runs them
+FULL, QUICK = Meshes(1.0, COARSER, 0.5), Meshes(COARSER, COARSER**2, None)
 MOST = 400.0  # s of processor time that a finer mesh may be expected to take
 
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 COARSER = 2.0  # element sizes of the second mesh over those of the first
+PLACES = (0.0, 0.5)  # of the barrier's grid, in cells at the contact, at which measured sets run
 
 
 def resized(scene: Scene, factor: float) -> Scene:

@@ -78,7 +78,7 @@ def _row(group: str, name: str, runs: Sequence[object]) -> Row | None:
 
 def study_report(rows: Sequence[Row]) -> StudyReport:
     """Return the study of rows with the columns `HEAD`."""
-    sentences = [text for group in dict.fromkeys(row[1] for row in rows) if (text := _near(rows, str(group)))]
+    sentences = [_near(rows, group) for group in _groups(rows)]
     panels = tuple(_panel(rows, name) for name in KEYS)
     return StudyReport(
         "reduced",
@@ -90,6 +90,10 @@ def study_report(rows: Sequence[Row]) -> StudyReport:
         [],
         [("beside", sentence) for sentence in sentences],
     )
+
+
+def _groups(rows: Sequence[Row]) -> list[str]:
+    return list(dict.fromkeys(str(row[1]) for row in rows))
 
 
 def _column(rows: Sequence[Row], name: str) -> np.ndarray:
@@ -113,9 +117,8 @@ def _near(rows: Sequence[Row], group: str) -> str:
 
 def _panel(rows: Sequence[Row], name: str) -> Panel:
     """Return one quantity by both models, a colour a group."""
-    groups = list(dict.fromkeys(str(row[1]) for row in rows))
     series = []
-    for group in groups:
+    for group in _groups(rows):
         own = [row for row in rows if row[1] == group]
         both = _column(own, f"{name}_solid"), _column(own, f"{name}_modal")
         series.append(Series(group, *both, "points"))

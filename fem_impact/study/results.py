@@ -152,10 +152,6 @@ def _same(stated: Any, wanted: Any) -> bool:
     return abs(a - b) <= 1e-9 * max(abs(a), abs(b))
 
 
-def _values(row: Row, units: Mapping[str, str]) -> list[Cell]:
-    return [in_unit(row.case.values[key], unit) for key, unit in units.items()]
-
-
 def _ended(row: Row) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(OUTCOME))]

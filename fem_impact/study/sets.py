@@ -28,7 +28,7 @@ from fem_impact.study.inputs import (
     sensitivity_jobs,
     sensitivity_rows,
 )
-from fem_impact.study.pairs import COARSER, resized, shifted, with_limits
+from fem_impact.study.pairs import COARSER, PLACES, resized, shifted, with_limits
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import Table
 
@@ -43,9 +43,15 @@ HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further
 
 
 def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
-    """Return the jobs of a set, or of a scene file with own tests: "fine", "coarse" and, unless quick, more.
+    """Return the jobs of a set: those of its meshes and, unless quick, "coarse" with each input changed."""
+    meshes = mesh_jobs(name, quick, out)
+    return meshes if quick else meshes | sensitivity_jobs(meshes["coarse"], out)
 
-    These are both meshes with the barrier's grid half a cell further, and "coarse" with each input changed.
+
+def mesh_jobs(name: str, quick: bool, out: Path) -> dict[str, Job]:
+    """Return the jobs of a set, or of a scene file with own tests, on two meshes: "fine" and "coarse".
+
+    Unless quick, both run again with the barrier's grid half a cell further.
     """
     scene = load(name)
     set_id = scene.id
@@ -55,13 +61,12 @@ def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
     meshes = {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job}
     if quick:
         return meshes
-    moved = {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
-    return {**meshes, **moved, **sensitivity_jobs(coarse_job, out)}
+    return meshes | {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
 
 
 def _half_cell(job: Job) -> Job:
     """Return the job with the grid of the barrier half a cell further along t, without fields."""
-    return Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, 0.5))
+    return Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, PLACES[1]))
 
 
 def chosen(request: Request) -> tuple[str, ...]:
@@ -92,15 +97,8 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
 
 
-def by_mesh(runs: Results) -> tuple[dict[str, list[Outcome]], list[Failure]]:
-    """Return the finished runs of "fine" and "coarse" at their places, and the failed ones, of `jobs_of`."""
-    placed = {mesh: at_places(runs, mesh) for mesh in ("fine", "coarse")}
-    finished = {m: [run for run in of if isinstance(run, Outcome)] for m, of in placed.items()}
-    return finished, [run for of in placed.values() for run in of if isinstance(run, Failure)]
-
-
 def at_places(runs: Results, mesh: str) -> list[Outcome | Failure]:
-    """Return the runs of a mesh at its places of the barrier's grid, of `jobs_of`."""
+    """Return the runs of a mesh at its places of the barrier's grid, of `mesh_jobs`."""
     return [runs[kind] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in runs]
 
 

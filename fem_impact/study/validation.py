@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.cost.limits import mesh_limits
-from fem_impact.jobs.job import Job
+from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.inputs import UNCERTAIN_INPUTS, changes, sample_values
+from fem_impact.study.pairs import with_limits
 from fem_impact.study.response import fit
-from fem_impact.study.sets import HALF_CELL, by_mesh, jobs_of
+from fem_impact.study.sets import at_places, mesh_jobs
 from fem_impact.study.validated import DRAWN, KEYS, ValidatedSet, compared, outputs, scaled, unit_sample
 from fem_impact.study.validation_report import study_report
 from rigid.experiments import measured_set
@@ -54,13 +55,8 @@ def _sets(request: Request) -> tuple[str, ...]:
 
 def _meshes(name: str, request: Request) -> dict[str, Job]:
     """Return the jobs at nominal inputs by mesh and place, without their fields."""
-    jobs = jobs_of(name, request.quick, request.out)
-    kinds = ("fine", "coarse", f"fine-{HALF_CELL}", f"coarse-{HALF_CELL}")
-    return {
-        kind: Job(jobs[kind].name, replace_all(jobs[kind].scene, {"save.frames": 0}))
-        for kind in kinds
-        if kind in jobs
-    }
+    jobs = mesh_jobs(name, request.quick, request.out)
+    return {k: Job(job.name, replace_all(job.scene, {"save.frames": 0})) for k, job in jobs.items()}
 
 
 def _sample(name: str, request: Request) -> list[Job]:
@@ -76,16 +72,20 @@ def _sample(name: str, request: Request) -> list[Job]:
 def _validated(name: str, request: Request, results: Results) -> ValidatedSet | None:
     """Return the set from its runs; None where one of its meshes or too much of its sample failed."""
     measured = measured_set(name)
-    meshes, failed = by_mesh({kind: results[job.name] for kind, job in _meshes(name, request).items()})
+    nominal = {kind: results[job.name] for kind, job in _meshes(name, request).items()}
+    fine, coarse = (at_places(nominal, mesh) for mesh in ("fine", "coarse"))
     runs = [results[job.name] for job in _sample(name, request)]
     finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
-    if failed or len(finished) < FEWEST:
+    if isinstance(fine[0], Failure) or len(finished) < FEWEST:
+        return None
+    validity = with_limits(fine, coarse).validity
+    limits, bands = validity.mesh_limit, validity.mesh_band
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
     sampled = scaled(name, unit_sample(len(runs)))[list(finished)]
     surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
     every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
-    limits, bands = mesh_limits(meshes["fine"], meshes["coarse"])
     S = np.array([limits[key] for key in KEYS])
     comparisons = compared(measured, S, [bands[key] for key in KEYS], every.std(axis=0))
-    shift = S - np.mean([outputs(run, measured) for run in meshes["coarse"]], axis=0)
+    shift = S - np.mean([outputs(run, measured) for run in coarse if isinstance(run, Outcome)], axis=0)
     return ValidatedSet(name, measured, surface, shift, every, tests, comparisons)
