@@ -17,6 +17,12 @@ class Arms(NamedTuple):
     d_d: Floats
 
 
+def point_arms(z_c: float, rho: Floats, z: Floats, alpha: ArrayLike) -> Arms:
+    """Arms, m, of a point (rho, z) of a turned body about its mass centre at z_c, m from the tip."""
+    sin, cos = np.sin(alpha), np.cos(alpha)
+    return Arms((z_c - z) * sin - rho * cos, (z_c - z) * cos + rho * sin)
+
+
 def corner_arms(length: ArrayLike, diameter: ArrayLike, alpha: ArrayLike) -> Arms:
     """Arms of the sharp corner of a plain cylinder (Eq 6-7).
 

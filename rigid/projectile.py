@@ -10,7 +10,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arms import Arms, corner_arms
+from .arms import Arms, corner_arms, point_arms
 from .arrays import Floats, floats
 from .errors import ShapeError, refuse
 from .nose import SHAPES, Nose
@@ -158,9 +158,7 @@ class Projectile:
 
     def arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the tip's lowest point about the mass centre of the turned rod."""
-        rho, z = self.contact_point(alpha)
-        sin, cos = np.sin(alpha), np.cos(alpha)
-        return Arms((self.z_c - z) * sin - rho * cos, (self.z_c - z) * cos + rho * sin)
+        return point_arms(self.z_c, *self.contact_point(alpha), alpha)
 
     def corner_arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the sharp corner of a plain cylinder of this size (Eq 6-7)."""

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .arms import Arms
+from .arms import Arms, point_arms
 from .arrays import Floats, floats
 from .errors import ShapeError, refuse
 from .slenderness import slenderness
@@ -186,9 +186,7 @@ class Turned:
 
     def arms(self, alpha: ArrayLike) -> Arms:
         """Arms d_c, d_d, m, of the lowest point about the mass centre."""
-        rho, z = self.contact_point(alpha)
-        sin, cos = np.sin(alpha), np.cos(alpha)
-        return Arms((self.z_c - z) * sin - rho * cos, (self.z_c - z) * cos + rho * sin)
+        return point_arms(self.z_c, *self.contact_point(alpha), alpha)
 
     def tip_curvature(self, alpha: float) -> float:
         """Radius of curvature, m, of the meridian at the lowest point; 0 on an edge."""

@@ -65,10 +65,11 @@ def _scene(options: Options) -> Scene:
 
 def _short(options: Options) -> Scene:
     from fem_impact.commands.rigid import angle_of, rod_of
-    from fem_impact.verdict.drop import DroppedRod, quantity
+    from fem_impact.scene.units import option_quantity
+    from fem_impact.verdict.drop import DroppedRod
     from fem_impact.verdict.dropped import scene_of
 
-    height = quantity(options.height or "", "length", "--height")
+    height = option_quantity(options.height or "", "length", "--height")
     return scene_of(DroppedRod(rod_of(options), height, angle_of(options), options.surface or ""))
 
 
@@ -87,10 +88,10 @@ def _tolerance(options: Options) -> float:
 
 
 def _budget(options: Options) -> float:
+    from fem_impact.scene.units import option_quantity
     from fem_impact.verdict.assess import BUDGET
-    from fem_impact.verdict.drop import quantity
 
-    return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
+    return option_quantity(options.budget, "time", "--budget") if options.budget else BUDGET
 
 
 def _teller(options: Options) -> Callable[[str], object]:

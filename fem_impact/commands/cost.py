@@ -26,11 +26,11 @@ PAPER = "paper"
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     from fem_impact.cost.quantities import chosen
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = _share(options.target) if options.target else None
-    budget = quantity(options.budget, "time", "--budget") if options.budget else None
+    budget = option_quantity(options.budget, "time", "--budget") if options.budget else None
     if options.scene == PAPER and (target or budget):
         remedy = "Leave them out, or name one scene."
         raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)
@@ -71,9 +71,9 @@ def _share(text: str) -> float:
 def _family(scene: Scene, finest: str) -> list[Mesh]:
     """Return the meshes whose tip elements are at least ``finest`` in size."""
     from fem_impact.cost.settings import FAMILY
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
 
-    least = quantity(finest, "length", "--finest") if finest else 0.0
+    least = option_quantity(finest, "length", "--finest") if finest else 0.0
     sizes = [mesh.sizes(scene)[0] for mesh in FAMILY]
     if least > sizes[1]:
         raise UsageError(

@@ -77,9 +77,9 @@ def rod_of(options: Options) -> Projectile:
 
 def angle_of(options: Options) -> float:
     """Return the angle, rad; one that is not in [0, pi/2) is refused."""
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
 
-    alpha = quantity(options.angle or "", "angle", "--angle")
+    alpha = option_quantity(options.angle or "", "angle", "--angle")
     if not 0 <= alpha < math.pi / 2:
         raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
     return alpha
@@ -89,7 +89,7 @@ def _stated_arms(options: Options) -> Arms | None:
     """Return the arms, m, of ``--d-c`` and ``--d-d``, which are given both or neither."""
     import numpy as np
 
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
     from rigid import Arms
 
     given = (options.d_c, options.d_d)
@@ -97,7 +97,7 @@ def _stated_arms(options: Options) -> Arms | None:
         return None
     if options.d_c is None or options.d_d is None:
         raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
-    d_c, d_d = (quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
+    d_c, d_d = (option_quantity(text, "length", "--d-c, --d-d") for text in (options.d_c, options.d_d))
     return Arms(np.asarray(d_c), np.asarray(d_d))
 
 

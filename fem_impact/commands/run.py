@@ -35,7 +35,6 @@ if TYPE_CHECKING:
     from fem_impact.outcome.record import Outcome
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
-    from fem_impact.scene.material import Material
 
 
 LONG = 600.0
@@ -124,9 +123,9 @@ def _say_plan(scene: Scene, options: Options) -> None:
 def _budget(options: Options) -> float:
     """Return the wall time, s, of ``--budget``, for a scene that states the error it allows."""
     from fem_impact.cost.to_target import BUDGET
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
 
-    return quantity(options.budget, "time", "--budget") if options.budget else BUDGET
+    return option_quantity(options.budget, "time", "--budget") if options.budget else BUDGET
 
 
 def _long_run(scene: Scene) -> str:
@@ -307,7 +306,7 @@ def _sources(scene: Scene) -> dict[str, str]:
     """Return where each material value and the friction come from, by dotted key."""
     sources = {
         f"{body}.material.{key}": source_of(metal.name, key)
-        for body, metal in _bodies(scene).items()
+        for body, metal in scene.materials.items()
         for key in stated_keys(metal)
     }
     return sources | {"surface.friction": scene.surface.source}
@@ -317,13 +316,9 @@ def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
     """Return the intervals that a shipped material states for its values, by dotted key."""
     return {
         f"{body}.material.{key}": interval
-        for body, metal in _bodies(scene).items()
+        for body, metal in scene.materials.items()
         for key, interval in intervals_of(metal.name).items()
     }
-
-
-def _bodies(scene: Scene) -> dict[str, Material]:
-    return {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
 
 
 def _flow_stresses(planned: Plan) -> dict[str, dict[str, float]]:

@@ -43,10 +43,10 @@ def render(options: Options) -> int:
 def _span(options: Options) -> Span:
     """Return what the film shall show."""
     from fem_impact.render.timeline import Span
-    from fem_impact.verdict.drop import quantity
+    from fem_impact.scene.units import option_quantity
 
     first, last, speed = (
-        quantity(text, "time", key) if text else None
+        option_quantity(text, "time", key) if text else None
         for text, key in ((options.first, "--from"), (options.last, "--until"), (options.speed, "--speed"))
     )
     return Span(first, last, options.frames, speed)

@@ -14,6 +14,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.checks import check_choice, check_id, check_names, check_numbers, check_text
 from fem_impact.scene.impact import Impact
+from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 
 MEASURED_SETS = (
@@ -152,6 +153,11 @@ class Scene:
             check_numbers(self, fields.TOP)
         _check_approach(self)
         _check_tip_size(self)
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """The materials of both bodies by the section that states them."""
+        return {"projectile": self.projectile.material, "barrier": self.barrier.material}
 
     @property
     def relative(self) -> Impact:

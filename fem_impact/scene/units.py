@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
 
-from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.errors import SceneError, UsageError, did_you_mean
 
 _NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\D.*)?", re.DOTALL)
@@ -234,3 +234,24 @@ def _kind(value: Any) -> str:
         float: "number",
     }
     return names.get(type(value), type(value).__name__)
+
+
+_EXAMPLES = {
+    "--diameter": "19 mm",
+    "--height": "0.82 m",
+    "--angle": "45 deg",
+    "--tip-radius": "3 mm",
+    "--budget": "30 s",
+    "--finest": "0.25 mm",
+}
+"""Example value of an option, for messages; of others that of their dimension."""
+
+
+def option_quantity(text: str, dimension: str, option: str) -> float:
+    """Read an option that carries a unit, such as ``--length "240 mm"``; return its SI value."""
+    try:
+        return parse_quantity(text, dimension, option)
+    except SceneError as error:
+        example = _EXAMPLES.get(option, DIMENSIONS[dimension].example)
+        remedy = f'Write it with its unit, such as {option} "{example}".'
+        raise UsageError(error.problem, key=option, value=text, remedy=remedy) from None

@@ -28,7 +28,6 @@ from rigid import Errors
 from rigid.experiments import MeasuredSet
 
 if TYPE_CHECKING:
-    from fem_impact.scene.material import Material
     from fem_impact.scene.types import Scene
 
 
@@ -179,10 +178,6 @@ class InputChange:
     changes: Callable[[Scene], dict[str, Any]]
 
 
-def _metals(scene: Scene) -> dict[str, Material]:
-    return {"projectile": scene.projectile.material, "barrier": scene.barrier.material}
-
-
 def hardened(scene: Scene, share: float) -> dict[str, Any]:
     """Return changed keys: flow stresses ``share`` of the way from tensile test to hardness.
 
@@ -190,7 +185,7 @@ def hardened(scene: Scene, share: float) -> dict[str, Any]:
     yield stress, so that a hardness number stands for each law between them.
     """
     changed: dict[str, Any] = {}
-    for body, metal in _metals(scene).items():
+    for body, metal in scene.materials.items():
         tensile = hardening_of(replace(metal, law="tensile"))
         low = float(tensile.flow_stress(TABOR_STRAIN)) / tabor_stress(1.0)
         high = intervals_of(metal.name)["hardness"][1]
@@ -202,7 +197,7 @@ def hardened(scene: Scene, share: float) -> dict[str, Any]:
 def rates(scene: Scene, place: float) -> dict[str, Any]:
     """Return changed keys: C of both steels at a place in the interval of the rate factor, 1/2: nominal."""
     changed = {}
-    for body, metal in _metals(scene).items():
+    for body, metal in scene.materials.items():
         if not isinstance(metal.rate, JohnsonCookRate):
             continue
         low, high = intervals_of(metal.name)["rate_factor"]
@@ -227,7 +222,7 @@ INPUT_CHANGES = (
     InputChange(
         "hardness",
         "flow stress of both steels from their hardness instead of their tensile tests",
-        lambda s: {f"{body}.material.law": "hardness" for body in _metals(s)},
+        lambda s: {f"{body}.material.law": "hardness" for body in s.materials},
     ),
     InputChange("rate-low", "lower end of the rate factors", lambda s: rates(s, 0.0)),
     InputChange("rate-high", "upper end of the rate factors", lambda s: rates(s, 1.0)),

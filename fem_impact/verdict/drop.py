@@ -9,7 +9,7 @@ from typing import Any, Literal
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene.tips import tips
-from fem_impact.scene.units import parse_quantity
+from fem_impact.scene.units import option_quantity
 from rigid import SHAPES, Arms, Projectile, RigidError, drop_velocities
 from rigid.arrays import Floats
 from rigid.experiments import MeasuredSet, measured_sets
@@ -28,16 +28,6 @@ HIGHEST = 1000.0
 
 TIP_RADII = {"A": 0.007, "B": 0.003, "plain": 0.0}
 """Radius of each measured tip, m (a plain tip has a sharp edge); other tips have no default."""
-
-_EXAMPLES = {
-    "--diameter": "19 mm",
-    "--height": "0.82 m",
-    "--angle": "45 deg",
-    "--tip-radius": "3 mm",
-    "--budget": "30 s",
-    "--finest": "0.25 mm",
-}
-"""Example value of an option, for messages."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,16 +171,6 @@ def _span(values: list[float], unit: str, form: str) -> str:
     return f"{low} {unit} only" if low == high else f"{low} to {high} {unit}"
 
 
-def quantity(text: str, dimension: str, option: str) -> float:
-    """Read an option that carries a unit, such as ``--length "240 mm"``; return its SI value."""
-    try:
-        return parse_quantity(text, dimension, option)
-    except SceneError as error:
-        example = _EXAMPLES.get(option, "240 mm")
-        remedy = f'Write it with its unit, such as {option} "{example}".'
-        raise UsageError(error.problem, key=option, value=text, remedy=remedy) from None
-
-
 def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | None) -> Projectile:
     """Make the steel rod that ``--length --diameter --tip --tip-radius`` describe.
 
@@ -208,8 +188,10 @@ def rod_from_options(length: str, diameter: str, tip: str, tip_radius: str | Non
     if tip_radius is None and tip not in TIP_RADII:
         remedy = 'Give its radius, such as --tip-radius "3 mm".'
         raise UsageError("has no default radius.", key="--tip", value=tip, remedy=remedy)
-    radius = quantity(tip_radius, "length", "--tip-radius") if tip_radius is not None else TIP_RADII[tip]
-    size = quantity(length, "length", "--length"), quantity(diameter, "length", "--diameter")
+    radius = (
+        option_quantity(tip_radius, "length", "--tip-radius") if tip_radius is not None else TIP_RADII[tip]
+    )
+    size = option_quantity(length, "length", "--length"), option_quantity(diameter, "length", "--diameter")
     try:
         return Projectile(*size, tip, radius, DENSITY)
     except RigidError as error:

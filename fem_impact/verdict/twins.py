@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import atan2, cos, hypot, sin
+from math import cos, hypot, sin
 
 from fem_impact.effects.registry import NAMES, grounded
 from fem_impact.plan.choose import active
@@ -28,7 +28,6 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
 def inclined(scene: Scene, angle: float) -> Scene:
     """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays."""
     impact = scene.impact
-    speed, beside = hypot(impact.v_n, impact.v_t), atan2(-impact.v_t, -impact.v_n) - impact.angle
-    way = angle + beside
+    speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
     turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=-speed * sin(way))
     return replace(scene, impact=turned, measured=None)

@@ -6,9 +6,8 @@ from dataclasses import dataclass, field
 from typing import ClassVar
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.solid.contact.book import MOVING, SWEEPS, ContactBook
-from fem_impact.solid.contact.impulses import solve
-from fem_impact.solid.contact.points import Points, PointState, book_work, make_points, over_plane
+from fem_impact.solid.contact.book import MOVING, ContactBook
+from fem_impact.solid.contact.points import Points, PointState, make_points, over_plane, settle
 from fem_impact.solid.state import State
 
 
@@ -42,15 +41,10 @@ class MovingPlane:
     def resolve(self, state: State) -> None:
         """Apply this step's impulses and book the work."""
         motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
-        c, record = self.points, self.book.step
-        record[:] = 0.0
+        self.book.step[:] = 0.0
+        c = self.points
         count = over_plane(self.nodes, self.footing, motion, c)
-        if count:
-            record[SWEEPS] = solve(
-                count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
-            )
-        book_work(count, motion, c, record)
-        self.book.close_step(state.time)
+        settle(count, motion, c, self.f, self.book, state.time)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""

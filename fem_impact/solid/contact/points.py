@@ -1,4 +1,4 @@
-"""The point contacts of one step: their search on both surfaces and the record of their work."""
+"""The point contacts of one step: their search on both surfaces, their impulses and their work."""
 
 from __future__ import annotations
 
@@ -8,8 +8,18 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import inlined, kernel
-from fem_impact.solid.contact.book import ACTIVE, ARM, CLOSING, FRICTION, IMPULSE_N, IMPULSE_T, OUTSIDE
-from fem_impact.solid.contact.impulses import relative
+from fem_impact.solid.contact.book import (
+    ACTIVE,
+    ARM,
+    CLOSING,
+    FRICTION,
+    IMPULSE_N,
+    IMPULSE_T,
+    OUTSIDE,
+    SWEEPS,
+    ContactBook,
+)
+from fem_impact.solid.contact.impulses import relative, solve
 from fem_impact.solid.contact.patch import bilinear, height_from, locate
 
 
@@ -184,6 +194,16 @@ def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
         count += _enter(count, first + i, (surface - n) * c.normal[count, 2], band, motion, c)
     return count
+
+
+def settle(count: int, motion: PointState, c: Points, f: float, book: ContactBook, time: float) -> None:
+    """Solve the impulses of the collected contacts, book their work and close the step."""
+    if count:
+        book.step[SWEEPS] = solve(
+            count, motion.v, motion.inverse_mass, c.nodes, c.weights, c.normal, c.target, f, c.p
+        )
+    book_work(count, motion, c, book.step)
+    book.close_step(time)
 
 
 @kernel

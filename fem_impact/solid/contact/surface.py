@@ -22,16 +22,15 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.solid.contact.book import MOVING, SWEEPS, ContactBook
-from fem_impact.solid.contact.impulses import solve
+from fem_impact.solid.contact.book import MOVING, ContactBook
 from fem_impact.solid.contact.patch import Patch, lowest_gap, nearest_quads, vertex_normals
 from fem_impact.solid.contact.points import (
     Points,
     PointState,
     barrier_under_rod,
-    book_work,
     make_points,
     rod_over_barrier,
+    settle,
 )
 from fem_impact.solid.state import State
 
@@ -93,12 +92,7 @@ class SurfaceContact:
         last, normals, band = self.last, self.normals, self.band
         under = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
         count = rod_over_barrier(under, rod, barrier, normals, last, self.play, band, motion, c, record)
-        if count:
-            record[SWEEPS] = solve(
-                count, state.v, self.inverse_mass, c.nodes, c.weights, c.normal, c.target, self.f, c.p
-            )
-        book_work(count, motion, c, record)
-        self.book.close_step(state.time)
+        settle(count, motion, c, self.f, self.book, state.time)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of one patch over the other at positions ``x`` (inf: none is)."""
