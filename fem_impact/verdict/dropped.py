@@ -37,8 +37,8 @@ def dropped(scene: Scene) -> DroppedRod:
     Raises
     ------
     SceneError
-        The measured tests do not apply: other materials or surfaces than theirs, spin, or a velocity that no
-        fall along the axis has.
+        The measured tests do not apply: another shape, barrier, material or surface than theirs, spin, or a
+        velocity that no fall along the axis has.
     """
     reason = _not_measured(scene)
     if reason:
@@ -56,6 +56,11 @@ def _not_measured(scene: Scene) -> str:
         ("rod", scene.projectile.material, steels[ROD]),
         ("barrier", scene.barrier.material, steels[PLATE]),
     )
+    if not scene.projectile.is_rod:
+        return "they are about solid rods with a tip"
+    plate = scene.barrier
+    if plate.bends or plate.mass is not None or plate.v_n or plate.v_t:
+        return "they are about a massive plate at rest"
     for body, mine, measured in pairs:
         if mine != measured:
             return f"they are about a {body} of {measured.name}, not of {mine.name}"

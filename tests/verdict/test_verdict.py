@@ -247,3 +247,17 @@ def test_a_plain_run_names_the_command_of_the_verdict(cli):
     words = " ".join(out.split())
     assert "may rigid theory be used (estimate): T1/tau = " in words
     assert "fem-impact assess t5b --set surface.friction=0.4" in words
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("ogive", "solid rods"),
+        ("tube", "solid rods"),
+        ("plate-10mm", "massive plate"),
+        ("moving-barrier", "at rest"),
+    ],
+)
+def test_measured_tests_are_not_carried_over_to_other_bodies_and_barriers(name, reason):
+    with pytest.raises(SceneError, match=reason):
+        dropped(load(name))
