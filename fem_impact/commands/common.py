@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import shutil
 import sys
 import tempfile
@@ -18,6 +19,7 @@ from fem_impact.files.run_directory import COMPUTED
 from fem_impact.progress import NullMeter, ProgressMeter, meter_for
 
 if TYPE_CHECKING:
+    from fem_impact.plan.size import RunSize
     from fem_impact.scene.types import Scene
 
 RESULT_FILES = ("outcome.json", "study.json")
@@ -157,3 +159,27 @@ def _cannot(out: Path, error: Exception) -> str:
 def print_json(document: Any) -> None:
     """Print one JSON document; NaN and infinity raise ValueError."""
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def say_fall(scene: Scene, options: Options) -> None:
+    """Say what became of stated velocities where ``--set`` changed the angle of impact alone."""
+    changed, impact = set(read_changes(options.changes)), scene.impact
+    stated = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
+    if stated or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
+        return
+    speed = math.hypot(impact.v_n, impact.v_t)
+    if impact.speed:
+        told = f"the rod falls along its axis as fast as before, {speed:.4g} m/s"
+    else:
+        told = (
+            "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
+            f"--set impact.speed='{speed:.4g} m/s'"
+        )
+    sys.stderr.write(f"fem-impact: {told}\n")
+
+
+def size_text(size: RunSize) -> str:
+    """Return numbers of elements and steps in words."""
+    from fem_impact.plan.size import about
+
+    return f"{about(size.rod + size.barrier)} elements, {about(size.steps)} steps"

@@ -268,7 +268,7 @@ def _add_report(commands: Commands) -> None:
 
 def _add_check(commands: Commands) -> None:
     summary = "check a scene and print it with units, sources and effects, without computing"
-    _add_scene_options(_command(commands, "check", summary, "fem_impact.commands.run:check"))
+    _add_scene_options(_command(commands, "check", summary, "fem_impact.commands.check:check"))
 
 
 def _add_cost(commands: Commands) -> None:
