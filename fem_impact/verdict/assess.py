@@ -22,6 +22,7 @@ from fem_impact.verdict.screening import Screening, screening
 from fem_impact.verdict.twins import inclined
 
 if TYPE_CHECKING:
+    from fem_impact.cost.settings import Mesh
     from fem_impact.scene.types import Scene
 
 
@@ -34,6 +35,8 @@ ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
 LEAST_PAIRS = 2
 """Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
+
+COUNT = ("first", "second", "third", "fourth")
 
 Tell = Callable[[str], object]
 
@@ -127,8 +130,9 @@ def assess(
     here, used = quick, "modal"
     open_still = quick is None or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        solid = _solid(scene, fidelity, tolerance, (budget_s, workers), tell, notes)
+        solid, told = _solid(scene, fidelity, tolerance, (budget_s, workers), quick, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
+        notes += told
     if here is None:
         raise RunError(" ".join(notes))
     worst, not_known = _over_angles(scene)
@@ -157,35 +161,69 @@ def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
 
 
 def _solid(
-    scene: Scene, fidelity: str, tolerance: float, means: tuple[float, int], tell: Tell, notes: list[str]
-) -> Change | None:
-    """Return what finite elements say, None where the budget allows no mesh or no run gives an e."""
-    ladder = Ladder.of(scene, *means)
+    scene: Scene, fidelity: str, tolerance: float, means: tuple[float, int], quick: Change | None, tell: Tell
+) -> tuple[Change | None, list[str]]:
+    """Return what finite elements say, None where the budget allows no mesh or no run gives an e; and notes.
+
+    One mesh alone counts where the reduced model, ``quick``, does not contradict it.
+    """
+    ladder, notes = Ladder.of(scene, *means), list[str]()
     least = LEAST_PAIRS if fidelity == "solid" else 0
-    while not ladder.pairs or len(ladder.pairs) < least or ladder.change().answer(tolerance) == "undecided":
-        if len(ladder.pairs) < least:
-            ladder.budget_s = max(ladder.budget_s, ladder.spent_s + ladder.next_s())
-        tell(f"finite elements, mesh {len(ladder.pairs) + 1} ...")
-        if not ladder.climb():
-            notes.append(_stopped(ladder, means[0]))
+    while not _decided(ladder, tolerance, quick, least):
+        mesh = ladder.following()
+        if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):
+            notes.append(_stopped(ladder, mesh, means[0]))
             break
+        tell(f"finite elements, {COUNT[len(ladder.pairs)]} mesh, about {ladder.expected_s(mesh):.0f} s ...")
+        ladder.climb(mesh)
         failed = unfinished(ladder.pairs[-1])
         if failed:
-            notes.append(f"Finite elements have no answer here: {failed}")
-            ladder.pairs.pop()
+            notes.append(
+                f"Finite elements have no answer on the {COUNT[len(ladder.pairs) - 1]} mesh: {failed}"
+            )
+            ladder.drop()
             break
-    return ladder.change() if ladder.pairs else None
+    return _found(ladder, quick, notes), notes
 
 
-def _stopped(ladder: Ladder, budget_s: float) -> str:
-    from fem_impact.cost.settings import FAMILY
+def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int) -> bool:
+    """Say whether the meshes that ran are enough for an answer."""
+    if not ladder.pairs or len(ladder.pairs) < least:
+        return False
+    change = ladder.change()
+    supported = len(ladder.pairs) >= LEAST_PAIRS or (quick is not None and quick.meets(change))
+    return supported and change.answer(tolerance) != "undecided"
 
-    if len(ladder.meshes) == len(FAMILY):
-        return "No finer mesh is tried: the finest of the family leaves the answer open."
-    return (
-        f"A further mesh of finite elements would take about {ladder.next_s():.2g} s of wall time, more than "
-        f"is left of the budget of {budget_s:g} s: give a larger --budget."
+
+def _found(ladder: Ladder, quick: Change | None, notes: list[str]) -> Change | None:
+    """Return what the ladder says; the band of one mesh that the reduced model contradicts holds both."""
+    if not ladder.pairs:
+        return None
+    change = ladder.change()
+    if len(ladder.pairs) >= LEAST_PAIRS or quick is None or quick.meets(change):
+        return change
+    notes.append(
+        f"One mesh of finite elements says {change.value:+.3f} ± {change.band:.3f}, the reduced model "
+        f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
     )
+    return change.widened(quick)
+
+
+def _stopped(ladder: Ladder, mesh: Mesh | None, budget_s: float) -> str:
+    if mesh is None:
+        return "No finer mesh is tried: none of the family has finer cells at the contact."
+    more, left = ladder.expected_s(mesh), budget_s - ladder.spent_s
+    enough = _seconds(ladder.spent_s + 2 * more)
+    return (
+        f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
+        f"{_seconds(more)} more, and {_seconds(left)} are left of the budget of {budget_s:g} s. For it "
+        f'give --budget "{enough}".'
+    )
+
+
+def _seconds(time: float) -> str:
+    """Return a time in whole seconds, two digits of them: 4 s, 17 s, 170 s."""
+    return f"{float(f'{max(time, 0.0):.2g}'):.0f} s"
 
 
 def _over_angles(scene: Scene) -> tuple[Change | None, tuple[tuple[float, ...], str]]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from math import log
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from fem_impact.outcome.keys import known
 from fem_impact.plan.measured import summary
@@ -29,11 +29,10 @@ LIKE = log(1.5)
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """One scene computed by both models: T1/tau, the change of e by vibration, E_vib over E_0 of each."""
+    """One scene computed by both models: the change of e by vibration, E_vib over E_0 of each."""
 
     name: str
     scene: Scene
-    ratio: float
     modal: float
     solid: float
     E_vib_modal: float
@@ -75,9 +74,9 @@ class KnownError:
 def known_error(scene: Scene) -> KnownError:
     """Return how far the reduced model may be off for a scene."""
     ratio = screening(scene).ratio
-    same = [one for one in comparisons() if _materials(one.scene) == _materials(scene)]
-    near = [one for one in same if abs(log(one.ratio / ratio)) <= LIKE]
-    counted = near or comparisons()
+    same = [name for name in stored() if _materials(_stored(name)) == _materials(scene)]
+    near = [name for name in same if abs(log(screening(_stored(name)).ratio / ratio)) <= LIKE]
+    counted = [beside(name) for name in near or stored()]
     return KnownError(
         max(abs(one.modal - one.solid) for one in counted),
         max(abs(one.E_vib_modal - one.E_vib_solid) for one in counted),
@@ -92,14 +91,20 @@ def _materials(scene: Scene) -> list[tuple[float, ...]]:
     return [(m.E, m.nu, m.rho, m.yield_stress, m.ultimate_stress) for m in both]
 
 
+def stored() -> tuple[str, ...]:
+    """Return the names of the scenes that are stored with both models."""
+    return tuple(summary()["scenes"])
+
+
 @cache
-def comparisons() -> tuple[Beside, ...]:
-    """Return the scenes that are stored with both models."""
-    scenes = summary()["scenes"].items()
-    return tuple(_beside(name, read_dict(cost["scene"]), cost["settings"]) for name, cost in scenes)
+def _stored(name: str) -> Scene:
+    return read_dict(summary()["scenes"][name]["scene"])
 
 
-def _beside(name: str, scene: Scene, settings: list[dict[str, Any]]) -> Beside:
+@cache
+def beside(name: str) -> Beside:
+    """Return a stored scene computed by both models."""
+    scene, settings = _stored(name), summary()["scenes"][name]["settings"]
     stiff = next(one for one in settings if one["name"].endswith("without vibration"))["value"]
     meshes = [one for one in settings if one["kind"] == "mesh"]
     coarse = max(meshes, key=lambda one: one["tip_size_m"])["value"]
@@ -108,7 +113,6 @@ def _beside(name: str, scene: Scene, settings: list[dict[str, Any]]) -> Beside:
     return Beside(
         name,
         scene,
-        screening(scene).ratio,
         known(whole.restitution.edge.e) - known(twin.restitution.edge.e),
         coarse["e"] - stiff["e"],
         known(whole.energy.vibration),

@@ -41,13 +41,24 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
 
 
 def _may(v: Verdict) -> str:
-    here = f"leaving vibration out changes e by {_signed(v.here)} here"
-    worst = "the worst inclination is not known"
-    if v.worst is not None:
-        angle = degrees(v.worst.angle)
-        worst = f"by {_signed(v.worst)} at the worst inclination, {angle:.0f} degrees"
-    anywhere = f"at any inclination: {v.worst_answer}"
-    return f"{v.answer.upper()}: {here}, {worst} (allowed: {v.tolerance:g}); {anywhere}"
+    return (
+        f"{v.answer.upper()}: leaving vibration out changes e by {_signed(v.here)} at this inclination "
+        f"(allowed: {v.tolerance:g}). {_anywhere(v)}"
+    )
+
+
+def _anywhere(v: Verdict) -> str:
+    """Say what holds for other inclinations of the same projectile at the same speed."""
+    if v.worst is None:
+        return "For other inclinations the answer is not known."
+    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {_signed(v.worst)}"
+    if v.worst_answer == "yes":
+        return f"Rigid theory may be used at other inclinations too: {largest}."
+    if v.worst_answer == "undecided":
+        return f"Whether rigid theory may be used at other inclinations is undecided: {largest}."
+    here = v.answer == "no" and v.worst.answer(v.tolerance) != "no"
+    which = "not at this one" if here else f"not at {degrees(v.worst.angle):.0f} degrees"
+    return f"Rigid theory may not be used at every inclination, {which}: {largest}."
 
 
 def _signed(change: Change) -> str:

@@ -10,15 +10,18 @@ from fem_impact.plan.choose import active
 from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
+UNFELT = "contact-heating"
+"""It watches the motion, which does not feel it: a verdict has no need of it."""
 
 
 def twins(scene: Scene) -> tuple[Scene, Scene]:
     """Return the scene with a rod that vibrates, and the same scene with one that cannot.
 
     Both have the effects that the scene calls for; vibration is in the first one even where the scene would
-    leave it out as small, because its size is the question. No field is kept of either.
+    leave it out as small, because its size is the question. No field and no flash temperature is kept of
+    either.
     """
-    on = {*active(scene), VIBRATION}
+    on = {*active(scene), VIBRATION} - {UNFELT}
     free = tuple(name for name in NAMES if name in on)
     stiff = tuple(grounded([name for name in free if name != VIBRATION]))
     plain = replace(scene, measured=None, save=replace(scene.save, frames=0))
