@@ -5,18 +5,15 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.cost.judge import Judged, best_pair, front
 from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
-from fem_impact.figures.style import PALETTE, QUIET, figure
+from fem_impact.figures.panels import Look, Panel, Picture, Series
+from fem_impact.figures.still import draw
 from fem_impact.files.atomic import write_text
 from fem_impact.tables.table import Cell, Column, Table
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
 
 WIDE = 400
 """Characters of a line of cost.txt, enough that no cell of its tables is wrapped."""
@@ -25,14 +22,14 @@ SCALARS = ("name", "kind", "fidelity", "tip_size_m")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
 NUMBERS = tuple(f"{kind}_{name}" for kind in ("value", "error", "scatter", "band") for name in NAMES)
 COLUMNS = (*SCALARS, *COSTS, *NUMBERS, "front")
-LOOKS = {
-    "rigid": ("rigid", "s", "purple"),
-    "modal": ("modal", "D", "orange"),
-    "mesh": ("one mesh", "o", "blue"),
-    "pair": ("two meshes, extrapolated", "^", "green"),
-    "numerics": ("other elements or step", "x", "vermilion"),
+LOOKS: dict[str, tuple[str, Look, str]] = {
+    "rigid": ("rigid", "squares", "purple"),
+    "modal": ("modal", "diamonds", "orange"),
+    "mesh": ("one mesh", "points", "blue"),
+    "pair": ("two meshes, extrapolated", "triangles", "green"),
+    "numerics": ("other elements or step", "crosses", "vermilion"),
 }
-"""Label, marker and colour of each kind of setting."""
+"""Label, look and colour of each kind of setting."""
 WANTED = 0.02
 """Largest band over scale of a pair of meshes that meets the requirement in the table of scenes."""
 
@@ -51,7 +48,7 @@ def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
         rows.append([*fields, *numbers, " ".join(one.front)])
     write_text(out / "cost.csv", Table.of(COLUMNS, rows).csv())
     write_text(out / "cost.txt", text_table(cost) + "\n")
-    work_precision(cost.settings, names, out / "cost.svg")
+    draw(cost_picture(cost.settings, names), out / "cost.svg")
 
 
 COST_COLUMNS = (
@@ -119,35 +116,21 @@ def _line(
     return (setting.name, *costs, *shown)
 
 
-def work_precision(settings: Sequence[Judged], names: Sequence[str], path: Path) -> None:
-    """Draw relative error against CPU time, both logarithmic, of some quantities."""
-    rows = (len(names) + 1) // 2
-    with figure(path, "wide", 0.6 + 2.7 * rows) as drawn:
-        panels = drawn.subplots(rows, min(2, len(names)), squeeze=False, sharex=True).ravel()
-        for panel, name in zip(panels, names, strict=False):
-            _panel(panel, [one for one in settings if one.error[name] and one.kind in LOOKS], name)
-        for panel in panels[len(names) :]:
-            panel.set_visible(False)
-        drawn.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(LOOKS) + 1)
+def cost_picture(settings: Sequence[Judged], names: Sequence[str]) -> Picture:
+    """Return relative error against CPU time, both logarithmic, of some quantities."""
+    panels = tuple(
+        _panel([one for one in settings if one.error[name] and one.kind in LOOKS], name) for name in names
+    )
+    return Picture("cost", "Error by the limit's uncertainty against time, a point a setting.", panels)
 
 
-def _panel(axes: Axes, settings: Sequence[Judged], name: str) -> None:
-    from matplotlib.ticker import MaxNLocator, NullFormatter
-
-    best = front(settings, [name])
-    axes.plot(*_points(best, name), color=QUIET, label="no other beats it")
-    for kind, (label, marker, colour) in LOOKS.items():
-        of_kind = [one for one in settings if one.kind == kind]
-        axes.plot(*_points(of_kind, name), marker, color=PALETTE[colour], label=label, markersize=5)
-    axes.set(title=name, xscale="log", yscale="log", xlabel="CPU time, s", ylabel="error, %")
-    axes.tick_params(labelbottom=True)  # though panels share their x axis: one may have none below it
-    low, high = axes.get_ylim()
-    if high < 10 * low:  # less than a decade: ticks at even round steps
-        axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_formatter(NullFormatter())
-    axes.grid(alpha=0.5)
+def _panel(settings: Sequence[Judged], name: str) -> Panel:
+    best = Series("no other beats it", *_points(front(settings, [name]), name), "line", "grey")
+    kinds = (
+        Series(label, *_points([one for one in settings if one.kind == kind], name), look, colour)
+        for kind, (label, look, colour) in LOOKS.items()
+    )
+    return Panel(name, "CPU time, s", "error, %", (best, *kinds), logarithmic=True)
 
 
 def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:

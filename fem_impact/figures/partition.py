@@ -2,61 +2,44 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from fem_impact.figures.style import INK, PALETTE, QUIET, Shape, figure, percent, write_data
+from fem_impact.figures.panels import Look, Panel, Picture, Series
+from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
 from fem_impact.tables.csv import COMPARISON
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
+from fem_impact.tables.table import Table
 
 UNSEEN = 1e-5
 """Fraction of E_0 below which a bar is not drawn."""
 
-TITLE = {"wide": 9.5, "narrow": 7.5}
-"""Font size of a panel's title, points, at which the longest title fits."""
+AXIS = "share of E_0, %"
 
 
-def partition_figure(outcome: Outcome, path: str | Path, shape: Shape = "wide") -> Path:
-    """Draw the known shares of E_0 after the last separation, of two meshes their limits and bands.
+def partition_picture(outcome: Outcome) -> Picture:
+    """Return the known shares of E_0 after the last separation, of two meshes their limits and bands.
 
-    Parameters
-    ----------
-    outcome : Outcome
-        Shares that are not known are left out (the record holds the reasons).
-    path : path
-        The picture; the data go to the same name with ``.csv``.
-    shape : "wide" or "narrow"
+    Shares that are not known are left out (the record holds the reasons).
     """
-    path = Path(path)
     listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
     values = [known(outcome.estimate(share.key)[0]) for share in listed]
     names = [share.key.name.removesuffix("_over_E_0") for share in listed]
-    write_data(path, ("account", "fraction_of_E_0"), zip(names, values, strict=True))
-    with figure(path, shape, 0.9 + 0.27 * max(len(listed), 1)) as drawn:
-        axes = drawn.add_subplot()
-        # bars below UNSEEN are 0: the number beside a negative one would cover its name
-        widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
-        bars = axes.barh([share.label for share in listed], widths, height=0.68)
-        for bar, share in zip(bars, listed, strict=True):
-            bar.set_color(PALETTE[share.colour])
-        axes.bar_label(bars, [_label(share, outcome) for share in listed], padding=4, fontsize=8.5)
-        axes.invert_yaxis()
-        axes.tick_params(axis="y", length=0)
-        axes.margins(x=0.22)
-        axes.grid(axis="x")
-        axes.set_xlabel("share of E₀ after the last separation, %", color=QUIET)
-    return path
+    # bars below UNSEEN are 0: the number beside a negative one would cover its name
+    widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
+    bars = tuple(
+        Series("", [width], [at], "bars", share.colour, texts=(_label(share, outcome),))
+        for at, (width, share) in enumerate(zip(widths, listed, strict=True))
+    )
+    right = 1.3 * max([*widths, 1e-3])  # leaves room for the numbers
+    rows = tuple(share.label for share in listed)
+    panel = Panel("", AXIS, "", bars, rows=rows, x_range=(min(0.0, *widths), right))
+    numbers = Table.of(("account", "fraction_of_E_0"), zip(names, values, strict=True))
+    return Picture("partition", "Shares of E₀ after the last separation.", (panel,), 1, numbers)
 
 
 def _label(share: EnergyShare, outcome: Outcome) -> str:
@@ -67,96 +50,54 @@ def _label(share: EnergyShare, outcome: Outcome) -> str:
     return percent(known(value), width)
 
 
-def study_partition_figure(rows: Sequence[Outcome], path: str | Path, shape: Shape = "wide") -> Path:
-    """Draw one stacked bar a run, shares that are not known left white.
-
-    Parameters
-    ----------
-    rows : sequence of Outcome
-    path : path
-        The picture; the data go to the same name with ``.csv``.
-    shape : "wide" or "narrow"
-    """
-    path = Path(path)
-    listed = shares("figure")
-    data = [[row.provenance.scene_id, *(or_none(share.of(row.energy)) for share in listed)] for row in rows]
-    write_data(path, ("scene_id", *(share.key.name for share in listed)), data)
-    names, left = [row.provenance.scene_id for row in rows], np.zeros(len(rows))
-    with figure(path, shape, 1.6 + 0.3 * len(rows) + (0.0 if shape == "wide" else 0.6)) as drawn:
-        axes = drawn.add_subplot()
-        for share in listed:
-            widths = np.array([100.0 * (or_none(share.of(row.energy)) or 0.0) for row in rows])
-            look: dict[str, Any] = {"color": PALETTE[share.colour], "edgecolor": "white", "linewidth": 0.4}
-            axes.barh(names, widths, left=left, label=share.label, height=0.72, **look)
-            left += widths
-        axes.invert_yaxis()
-        axes.tick_params(axis="y", length=0)
-        axes.set(xlabel="share of E₀ after the last separation, %", xlim=(0.0, 103.0))
-        axes.grid(axis="x")
-        drawn.legend(loc="outside lower center", ncols=5 if shape == "wide" else 2)
-    return path
+def study_partition_picture(rows: Sequence[Outcome]) -> Picture:
+    """Return one stacked bar a run, shares that are not known left white."""
+    listed, at = shares("figure"), range(len(rows))
+    fractions = {share: [or_none(share.of(row.energy)) for row in rows] for share in listed}
+    bars = tuple(
+        Series(share.label, [100.0 * (part or 0.0) for part in parts], at, "bars", share.colour)
+        for share, parts in fractions.items()
+    )
+    names = tuple(row.provenance.scene_id for row in rows)
+    panel = Panel("", AXIS, "", bars, rows=names, x_range=(0.0, 103.0))
+    columns = ("scene_id", *(share.key.name for share in listed))
+    numbers = Table.of(columns, zip(names, *fractions.values(), strict=True))
+    caption = "Shares of E₀ after the last separation; a white rest is not known."
+    return Picture("partition", caption, (panel,), 1, numbers)
 
 
-def comparison_figure(rows: Sequence[Mapping[str, Any]], path: str | Path, shape: Shape = "wide") -> Path:
-    """Draw measured means with their 95 % intervals, and the model with its two-mesh band.
+def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
+    """Return measured means with their 95 % intervals, and the model with its two-mesh band.
 
     Parameters
     ----------
     rows : sequence of mappings
         Rows of ``comparison`` in study.json; null values are left out of the picture.
-    path : path
-        The picture; the data go to the same name with ``.csv``.
-    shape : "wide" or "narrow"
     """
-    path = Path(path)
-    write_data(path, COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
     quantities, sets = ([*dict.fromkeys(row[name] for row in rows)] for name in ("quantity", "set"))
-    columns = min(4 if shape == "wide" else 2, max(len(quantities), 1))
-    lines = math.ceil(max(len(quantities), 1) / columns)
-    with figure(path, shape, 0.6 + lines * (0.75 + 0.24 * len(sets))) as drawn:
-        panels = list(drawn.subplots(lines, columns, sharey=True, squeeze=False).flat)
-        for panel, quantity in zip(panels, quantities, strict=False):
-            _panel(panel, [row for row in rows if row["quantity"] == quantity], sets, TITLE[shape])
-        for panel in panels[len(quantities) :]:
-            panel.set_visible(False)
-        _legend(drawn, panels[0], shape)
-    return path
-
-
-def _panel(axes: Axes, rows: Sequence[Mapping[str, Any]], sets: list[str], size: float) -> None:
-    unit = rows[0]["unit"]
-    title = rows[0]["quantity"].replace(" in ", "\nin ")  # long names take two lines
-    axes.set_title(title + (f", {unit}" if unit not in ("", "-") else ""), fontsize=size)
-    for row in rows:
-        _line(axes, row, sets.index(row["set"]))
-    axes.set_yticks(range(len(sets)), sets)
-    axes.set_ylim(len(sets) - 0.5, -0.5)
-    axes.tick_params(axis="y", length=0)
-    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.grid()
-
-
-def _line(axes: Axes, row: Mapping[str, Any], at: int) -> None:
-    mean, low, high, model = (
-        row[name] for name in ("measured_mean", "measured_low", "measured_high", "model")
+    panels = tuple(_panel([row for row in rows if row["quantity"] == name], sets) for name in quantities)
+    numbers = Table.of(COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
+    caption = (
+        "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
+        "two-mesh band where two meshes were run."
     )
-    if mean is not None and row["measured_sd"] is not None:
-        spread = (mean - row["measured_sd"], mean + row["measured_sd"])
-        axes.plot(spread, (at - 0.16,) * 2, color=PALETTE["grey"], linewidth=1.0)
-    if low is not None and high is not None:
-        axes.plot((low, high), (at - 0.16,) * 2, color=INK, linewidth=3.2, solid_capstyle="butt")
-    if mean is not None:
-        axes.plot(mean, at - 0.16, "|", color=INK, markersize=8)
-    if model is not None:
-        colour = PALETTE["vermilion"]
-        band = row["band"] or 0.0
-        axes.errorbar(model, at + 0.16, xerr=band, fmt="D", color=colour, markersize=4.2, linewidth=1.2)
+    return Picture("comparison", caption, panels, 4, numbers)
 
 
-def _legend(drawn: Figure, axes: Axes, shape: Shape) -> None:
-    axes.plot([], [], color=INK, linewidth=3.2, label="measured mean, 95 % interval")
-    axes.plot([], [], color=PALETTE["grey"], linewidth=1.0, label="± one standard deviation")
-    axes.errorbar([], [], xerr=[], fmt="D", color=PALETTE["vermilion"], label="model, two-mesh band")
-    columns = 3 if shape == "wide" else 1
-    drawn.legend(loc="outside lower center", ncols=columns, labelcolor=QUIET)
+def _panel(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
+    unit = rows[0]["unit"]
+    title = rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else "")
+    at = np.array([sets.index(row["set"]) for row in rows])
+    mean, sd, low, high, model, band = (
+        np.array([np.nan if row[name] is None else row[name] for row in rows], float)
+        for name in ("measured_mean", "measured_sd", "measured_low", "measured_high", "model", "band")
+    )
+    above = at - 0.16
+    interval: tuple[Look, str] = ("interval", "ink")
+    series = (
+        Series("± one standard deviation", mean, above, "spread", "grey", sd),
+        Series("95 % interval of the mean", (low + high) / 2, above, *interval, (high - low) / 2),
+        Series("measured mean", mean, above, "points", "ink"),
+        Series("model, two-mesh band", model, at + 0.16, "diamonds", "vermilion", band),
+    )
+    return Panel(title, "", "", series, rows=tuple(sets))

@@ -1,4 +1,4 @@
-"""Style of all figures: sizes, a palette safe for colour-blind readers, and saving."""
+"""Style of all figures: size, a palette safe for colour-blind readers, the sides of labels, and saving."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.errors import MissingLibraryError
+from fem_impact.figures.panels import Mark
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
 
@@ -16,9 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-Shape = Literal["wide", "narrow"]
-"""Wide for paper and desktop, narrow for a phone."""
-
+INK, QUIET = "#1f2328", "#6b7280"
 PALETTE = {
     "blue": "#0072B2",
     "sky": "#56B4E9",
@@ -32,11 +31,16 @@ PALETTE = {
     "night": "#1B3A57",
     "brown": "#7A4B1E",
     "olive": "#A3A847",
+    "ink": INK,
 }
-"""Colours of Okabe and Ito, and five more of other lightness."""
+"""Colours of Okabe and Ito, five more of other lightness, and that of texts."""
 
-INK, QUIET = "#1f2328", "#6b7280"
-WIDTH = {"wide": 8.4, "narrow": 4.3}
+COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
+"""Colours of series in order."""
+
+WIDTH = 8.4  # inches
+NEAR = 0.05
+"""Least distance, share of the axis, of two marks whose labels stand on the same side."""
 
 _STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -64,11 +68,8 @@ _STYLE: dict[Any, Any] = {
 
 
 @contextmanager
-def figure(path: Path, shape: Shape, height: float, formulas: bool = False) -> Iterator[Figure]:
+def figure(path: Path, height: float) -> Iterator[Figure]:
     """Yield an empty figure in the style of the project; it is saved to ``path`` at the end.
-
-    Texts between dollar signs are set as formulas only with ``formulas``, since titles and names of the
-    user may hold that sign.
 
     Raises
     ------
@@ -81,17 +82,17 @@ def figure(path: Path, shape: Shape, height: float, formulas: bool = False) -> I
         import matplotlib
     except ImportError as error:
         raise MissingLibraryError("Figures need matplotlib: pip install matplotlib.") from error
-    with matplotlib.rc_context(_STYLE | {"text.parse_math": formulas}):
-        drawn = new_figure(shape, height)
+    with matplotlib.rc_context(_STYLE):
+        drawn = new_figure(height)
         yield drawn
         save(drawn, path)
 
 
-def new_figure(shape: Shape, height: float) -> Figure:
+def new_figure(height: float) -> Figure:
     """Return an empty figure, ``height`` in inches, that is not registered with pyplot."""
     from matplotlib.figure import Figure
 
-    return Figure(figsize=(WIDTH[shape], height), layout="constrained")
+    return Figure(figsize=(WIDTH, height), layout="constrained")
 
 
 def save(drawn: Figure, path: Path) -> None:
@@ -104,6 +105,25 @@ def save(drawn: Figure, path: Path) -> None:
 def write_data(picture: Path, columns: Sequence[str], rows: Iterable[Sequence[Cell]]) -> None:
     """Write the numbers of a figure as CSV beside it, units in the names. Raises OutputPathError."""
     write_text(picture.with_suffix(".csv"), Table.of(columns, rows).csv())
+
+
+def colour_of(wanted: int | str | None, at: int) -> str:
+    """Return the colour of the series at a place, by its index or name, of its place where that is None."""
+    named = wanted if isinstance(wanted, str) else COLOURS[(at if wanted is None else wanted) % len(COLOURS)]
+    return PALETTE[named]
+
+
+def sides(marks: Iterable[Mark], low: float, high: float) -> list[tuple[Mark, Literal["left", "right"]]]:
+    """Return marks from left to right with the alignment of their labels on an axis from low to high.
+
+    A label stands left of its line, or right where the mark before is within `NEAR`.
+    """
+    placed: list[tuple[Mark, Literal["left", "right"]]] = []
+    before = -math.inf
+    for mark in sorted(marks, key=lambda mark: mark.at):
+        placed.append((mark, "left" if mark.at - before < NEAR * (high - low) else "right"))
+        before = mark.at
+    return placed
 
 
 def percent(fraction: float, band: float | None = None) -> str:

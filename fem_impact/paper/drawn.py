@@ -62,6 +62,6 @@ class Drawn:
 @contextmanager
 def canvas(path: Path, height: float, sentence: str) -> Iterator[Figure]:
     """Yield a wide figure with the sentence above it; it is saved at the end."""
-    with figure(path, "wide", height, formulas=True) as drawn:
+    with figure(path, height) as drawn:
         drawn.suptitle(textwrap.fill(sentence, 118), x=0.012, ha="left", fontsize=9.0, color=INK)
         yield drawn

@@ -19,6 +19,7 @@ from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.study_page import comparison_part, partition_part
 from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_section, verdicts
 from fem_impact.study.document import LEDGER
+from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table, read_csv
 
 
@@ -154,7 +155,7 @@ def _of_paper(rows: Sequence[Outcome]) -> list[Conclusion]:
 def conclusion_section(listed: Sequence[Conclusion]) -> Markup:
     """Return the section of conclusions, each linked to its figure."""
     links = (f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else "" for one in listed)
-    items = (Markup(escape(one.sentence) + link) for one, link in zip(listed, links, strict=True))
+    items = (Markup(markup(one.sentence) + link) for one, link in zip(listed, links, strict=True))
     return section("Conclusions", bullets(items))
 
 

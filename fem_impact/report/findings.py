@@ -7,7 +7,7 @@ from html import escape
 from typing import Any
 
 from fem_impact.report.html import Markup, bullets, details, join, paragraph, place, section, table
-from fem_impact.report.page import download, stored_picture
+from fem_impact.report.page import download, stored_figure
 from fem_impact.report.study_data import Study
 from fem_impact.tables.table import Table
 
@@ -34,7 +34,7 @@ def figure_id(study: str, name: str) -> str:
 
 def _figure(entry: Mapping[str, Any], study: Study) -> Markup:
     stem = study.folder / "figures" / entry["name"]
-    shown = place(figure_id(study.study, entry["name"]), stored_picture(stem, entry["caption"]))
+    shown = place(figure_id(study.study, entry["name"]), stored_figure(stem))
     return join([shown, download(stem.with_suffix(".csv"), "its data")])
 
 

@@ -1,4 +1,4 @@
-"""HTML elements; texts that are not `Markup` are escaped."""
+"""HTML elements; texts that are not `Markup` are escaped, their symbols typeset."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from html import escape
 
+from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table, number
 
 
@@ -36,13 +37,13 @@ def place(name: str, content: Markup) -> Markup:
 def section(title: str, *content: Markup) -> Markup:
     """Return a titled section, nothing when it would be empty."""
     inner = join(content).text
-    return Markup(f"<section>\n<h2>{escape(title)}</h2>\n{inner}\n</section>" if inner else "")
+    return Markup(f"<section>\n<h2>{markup(title)}</h2>\n{inner}\n</section>" if inner else "")
 
 
 def details(title: str, *content: Markup, opened: bool = False) -> Markup:
     """Return a block that can be unfolded."""
     state = " open" if opened else ""
-    return Markup(f"<details{state}><summary>{escape(title)}</summary>\n{join(content).text}\n</details>")
+    return Markup(f"<details{state}><summary>{markup(title)}</summary>\n{join(content).text}\n</details>")
 
 
 def bullets(items: Iterable[str | Markup]) -> Markup:
@@ -62,4 +63,4 @@ def with_band(value: float | None, width: float | None) -> str:
 
 
 def _safe(content: str | Markup) -> str:
-    return content.text if isinstance(content, Markup) else escape(str(content))
+    return content.text if isinstance(content, Markup) else markup(str(content))

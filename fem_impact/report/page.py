@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import base64
+import gzip
+import hashlib
+import json
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from functools import cache
 from html import escape
 from importlib import resources
 from pathlib import Path
 from string import Template
+from typing import Any
 
-from fem_impact.errors import ResultError
-from fem_impact.figures.style import Shape
-from fem_impact.report.html import Markup, bullets, join, section
+from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.figures.live import live
+from fem_impact.figures.panels import Picture
+from fem_impact.figures.still import draw
+from fem_impact.report.html import Markup, bullets, details, join, section
+from fem_impact.tables.symbols import markup
 
 TYPES = {
-    ".svg": "image/svg+xml",
-    ".png": "image/png",
     ".gif": "image/gif",
     ".webp": "image/webp",
     ".mp4": "video/mp4",
@@ -25,9 +31,6 @@ TYPES = {
 
 FILMS = ("film.mp4", "film.webp", "film.gif")
 """Names of a run's film, in order of preference."""
-
-Draw = Callable[[Path, Shape], Path]
-"""Draws a figure to a path in a shape and returns the path."""
 
 
 def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
@@ -40,14 +43,46 @@ def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) 
     body : iterable of Markup
         The sections.
     """
+    content = join(body).text
+    policy, scripts = _scripts() if 'class="live"' in content else ("", "")
     return Template(_data("page.html")).substitute(
+        policy=policy,
+        scripts=scripts,
         title=escape(title),
+        heading=markup(title),
         kind=escape(kind),
-        lead=escape(lead),
+        lead=markup(lead),
         footer=escape(footer),
         style=_data("style.css").strip(),
-        body=join(body).text,
+        body=content,
     )
+
+
+@cache
+def _scripts() -> tuple[str, str]:
+    """Return what a page with figures may run, by digest, and the elements: Plotly compressed, and its use.
+
+    Raises
+    ------
+    MissingLibraryError
+        plotly is not installed.
+    """
+    try:
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise MissingLibraryError("Pages with figures need plotly: pip install plotly.") from error
+    library, own = get_plotlyjs(), _data("figures.js")
+    digests = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+        for text in (library, own)
+    )
+    packed = base64.b64encode(gzip.compress(library.encode(), mtime=0)).decode()
+    elements = (
+        '<noscript><p class="notice">The figures of this page need JavaScript; without it they are pictures '
+        "in the folder figures beside it.</p></noscript>\n"
+        f'<script id="library" type="application/gzip">{packed}</script>\n<script>{own}</script>'
+    )
+    return f"; script-src {digests}", elements
 
 
 def sources(named: Iterable[str]) -> Markup:
@@ -60,53 +95,56 @@ def sources(named: Iterable[str]) -> Markup:
     """
     wanted = {"always", *named}
     listed = tomllib.loads(_data("sources.toml"))["source"]
-    return section("Sources", bullets(entry["text"] for entry in listed if wanted & set(entry["for"])))
+    papers = bullets(entry["text"] for entry in listed if wanted & set(entry["for"]))
+    return section("Sources", details("Papers behind what was used", papers))
 
 
 def _data(name: str) -> str:
     return resources.files("fem_impact.report").joinpath("data", name).read_text(encoding="utf-8")
 
 
-def picture(draw: Draw, stem: Path, alt: str, caption: str, since: Path | None = None) -> Markup:
-    """Draw a figure twice, for desktop and phone, and return it embedded.
+def figure(picture: Picture, figures: Path, since: Path | None = None) -> Markup:
+    """Return a picture with hover and zoom; as SVG, with its numbers, it is written into ``figures``.
 
-    Parameters
-    ----------
-    draw : callable
-    stem : Path
-        Path of the files without suffix: ``stem.svg``, ``stem.csv``, ``stem-narrow.svg``.
-    alt : str
-        Alternative text.
-    caption : str
-        Text below the figure.
-    since : Path, optional
-        File of the data shown: figures newer than it are not drawn again.
+    Files newer than ``since``, the file of the data shown, are not written again.
     """
-    files = _files(stem)
-    if since and all(file.is_file() and file.stat().st_mtime > since.stat().st_mtime for file in files):
-        return _figure(_data_url(files[0]), _data_url(files[1]), alt, caption)
-    wide, slim = _data_url(draw(files[0], "wide")), draw(files[1], "narrow")
-    narrow = _data_url(slim)
-    slim.with_suffix(".csv").unlink(missing_ok=True)  # equal to stem.csv
-    return _figure(wide, narrow, alt, caption)
+    drawn = figures / f"{picture.name}.svg"
+    if not since or not drawn.is_file() or drawn.stat().st_mtime <= since.stat().st_mtime:
+        draw(picture, drawn)
+    return _figure(live(picture))
 
 
-def stored_picture(stem: Path, caption: str) -> Markup:
-    """Return a figure that a study drew, ``stem.svg`` and ``stem-narrow.svg``, embedded."""
-    wide, narrow = map(_data_url, _files(stem))
-    return _figure(wide, narrow, caption, caption)
+def stored_figure(stem: Path) -> Markup:
+    """Return a figure that a study stored, ``stem.json``. Raises ResultError where it is none."""
+    path = stem.with_suffix(".json")
+    try:
+        return _figure(json.loads(_bytes(path)))
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise ResultError(f"{path}: not a figure of this version; run the study again ({error}).") from error
 
 
-def _files(stem: Path) -> tuple[Path, Path]:
-    return stem.with_suffix(".svg"), stem.with_name(f"{stem.name}-narrow.svg")
-
-
-def _figure(wide: str, narrow: str, alt: str, caption: str) -> Markup:
-    inner = (
-        f'<picture><source media="(max-width: 640px)" srcset="{narrow}">'
-        f'<img src="{wide}" alt="{escape(alt)}"></picture>'
+def _figure(shown: dict[str, Any]) -> Markup:
+    """Return panels that the page's script draws, their legend and caption."""
+    drawn = [{"data": panel["data"], "layout": panel["layout"]} for panel in shown["panels"]]
+    # no text within can end the element
+    text = json.dumps(drawn, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    panels = "\n".join(map(_panel, shown["panels"]))
+    signs = (
+        f'<span><b style="color:{escape(colour)}">{escape(sign)}</b> {label}</span>'
+        for sign, colour, label in shown["legend"]
     )
-    return Markup(f"<figure>{inner}<figcaption>{escape(caption)}</figcaption></figure>")
+    legend = f'<p class="legend">{" ".join(signs)}</p>' if shown["legend"] else ""
+    return Markup(
+        f'<figure class="live"><script type="application/json">{text}</script>\n'
+        f'<div class="panels" style="--columns:{int(shown["columns"])}">\n{panels}\n</div>\n'
+        f"{legend}<figcaption>{shown['caption']}</figcaption></figure>"
+    )
+
+
+def _panel(panel: dict[str, Any]) -> str:
+    title = f"<h3>{panel['title']}</h3>" if panel["title"] else ""
+    area = f'<div class="plot" role="img" aria-label="{escape(panel["alt"])}"'
+    return f'<div>{title}{area} style="height:{int(panel["height"])}px"></div></div>'
 
 
 def download(path: Path, label: str) -> Markup:

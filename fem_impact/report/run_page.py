@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
-from functools import partial
 from html import escape
 from pathlib import Path
 
 from fem_impact.errors import RunError, SceneError, UsageError
-from fem_impact.figures.partition import partition_figure
+from fem_impact.figures.partition import partition_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.report.html import Markup, bullets, details, join, paragraph, section, table
-from fem_impact.report.page import page, picture, sources
+from fem_impact.report.page import figure, page, sources
 from fem_impact.report.sections import (
     all_keys,
     card,
@@ -70,19 +69,18 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     scene = _stated(folder)
     rigid = rigid_theory(outcome, scene)
+    shares = figure(partition_picture(outcome), make_directory(folder / "figures"))
     body = (
         *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
         _cards(outcome, rigid),
         film_section(folder),
         notices([outcome], strangers(outcome, folder)),
-        section(
-            "Where the energy went", _partition(outcome, folder), _folded(outcome, "shares", ENERGY, rigid)
-        ),
+        section("Where the energy went", shares, _folded(outcome, "shares", ENERGY, rigid)),
         section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
         waves_section(folder),
         history_figures(outcome, folder),
         section("Contacts", details("Times and impulses", contacts_table(outcome))),
-        section("Heat of the contact", _heat(outcome)),
+        section("Heat of the contact", _heat(outcome, rigid)),
         section("Coefficients and losses", details("With three sets of arms", _arms(outcome))),
         effects_section(outcome),
         unknown([outcome]),
@@ -119,21 +117,13 @@ def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | N
     return details(f"All {what}{beside}", key_table(outcome, keys, rigid=rigid))
 
 
-def _partition(outcome: Outcome, folder: Path) -> Markup:
-    return picture(
-        partial(partition_figure, outcome),
-        make_directory(folder / "figures") / "partition",
-        "Bars of the shares of the energy after the last separation",
-        "Shares of E₀ after the last separation.",
-    )
-
-
-def _heat(outcome: Outcome) -> Markup:
+def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
     """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
     if isinstance(outcome.heat.bound, Unknown):
         return Markup("")
     bound = paragraph("The bound for a safety case holds under these assumptions:")
-    return join([key_table(outcome, HEAT), bound, bullets(ASSUMPTIONS)])
+    told = join([key_table(outcome, HEAT, rigid=rigid), bound, bullets(ASSUMPTIONS)])
+    return details("Work, power and temperatures, and the bound for a safety case", told)
 
 
 def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
@@ -142,7 +132,7 @@ def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
     restitution = ("e, paper's arms", "e_paper", "") if measured else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
     cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
-    residual = f"{outcome.energy.residual:.1e}"
+    residual = number(outcome.energy.residual, 2)
     last = card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
     inner = join([*cards, _vibration_card(outcome), last])
     return Markup(f'<div class="cards">{inner.text}</div>')

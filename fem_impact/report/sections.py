@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
 from html import escape
 from pathlib import Path
 
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import ResultError, SceneError
-from fem_impact.figures.history import force_figure, ledger_figure
+from fem_impact.figures.history import force_picture, ledger_picture
 from fem_impact.figures.style import percent
-from fem_impact.figures.waves import waves_figure
+from fem_impact.figures.waves import waves_picture
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.outcome.groups import ContactInterval, EffectChoice
@@ -27,10 +26,11 @@ from fem_impact.report.html import (
     table,
     with_band,
 )
-from fem_impact.report.page import FILMS, film, picture
+from fem_impact.report.page import FILMS, figure, film
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.write import digest
 from fem_impact.tables.history import read_history
+from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Cell, Missing, Table, number
 
 
@@ -84,40 +84,20 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
     try:
         history = read_history(folder / "history.csv")
         figures = make_directory(folder / "figures")
-        ledger = picture(
-            lambda path, shape: ledger_figure(history, outcome.energy.E_0, path, shape),
-            figures / "ledger",
-            "Stacked areas of the energy accounts over time",
-            "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
-            "Strain energies include what stays locked in.",
-            since,
-        )
-        force = picture(
-            lambda path, shape: force_figure(history, or_none(outcome.contact.intervals) or (), path, shape),
-            figures / "force",
-            "Normal and tangential contact force over time",
-            "Contact force on the whole rod; contact intervals shaded, with their normal impulse.",
-            since,
-        )
+        ledger = figure(ledger_picture(history, outcome.energy.E_0), figures, since)
+        force = figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
         return section("Over time", paragraph(f"No curves over time: {error}"))
     return join([section("Ledger over time", ledger), section("Contact force", force)])
 
 
-def waves_section(folder: Path, again: bool = True) -> Markup:
+def waves_section(folder: Path) -> Markup:
     """Return the strain along the axis over time, nothing where the run did not store it."""
     stored = folder / "waves.h5"
     if not stored.is_file():
         return Markup("")
     try:
-        drawn = picture(
-            partial(waves_figure, read_waves(stored)),
-            make_directory(folder / "figures") / "waves",
-            "Strain along the axis of the rod over time, stretch and bending apart",
-            "Position along the axis against time: the mean strain of each section, and the part by which "
-            "the side facing the barrier differs from it. Dashed: where a front from the contact would be.",
-            None if again else stored,
-        )
+        drawn = figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
     except ResultError as error:
         drawn = paragraph(f"No diagram of the waves: {error}")
     return section("Waves along the rod", drawn)
@@ -160,8 +140,8 @@ def _predicted(rigid: Outcome | None, key: Key) -> list[Cell]:
 
 def card(name: str, value: str, note: str = "") -> Markup:
     """Return a card that shows one number with its name and a note."""
-    small = f'<div class="note">{escape(note)}</div>' if note else ""
-    inner = f'<div class="name">{escape(name)}</div><div class="value">{escape(value)}</div>{small}'
+    small = f'<div class="note">{markup(note)}</div>' if note else ""
+    inner = f'<div class="name">{markup(name)}</div><div class="value">{escape(value)}</div>{small}'
     return Markup(f'<div class="card">{inner}</div>')
 
 

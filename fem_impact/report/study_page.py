@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
 
-from fem_impact.figures.partition import comparison_figure, study_partition_figure
+from fem_impact.figures.partition import comparison_picture, study_partition_picture
 from fem_impact.files.atomic import make_directory
 from fem_impact.outcome.groups import RunCost
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.report.findings import findings_section
 from fem_impact.report.html import Markup, bullets, details, join, section, table
-from fem_impact.report.page import download, page, picture, sources
+from fem_impact.report.page import download, figure, page, sources
 from fem_impact.report.sections import (
     card,
     estimated,
@@ -88,14 +87,7 @@ def comparison_part(study: Study, since: Path | None = None) -> Markup:
     if not study.comparison:
         return Markup("")
     figures = make_directory(study.folder / "figures")
-    drawn = picture(
-        partial(comparison_figure, study.comparison),
-        figures / "comparison",
-        "Model and measured values with intervals, a panel for each quantity",
-        "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
-        "two-mesh band where two meshes were run.",
-        since,
-    )
+    drawn = figure(comparison_picture(study.comparison), figures, since)
     return join([drawn, download(figures / "comparison.csv", "its data")])
 
 
@@ -145,13 +137,7 @@ def partition_part(study: Study, since: Path | None = None) -> Markup:
     if not study.rows:
         return Markup("")
     figures = make_directory(study.folder / "figures")
-    drawn = picture(
-        partial(study_partition_figure, study.rows),
-        figures / "partition",
-        "Stacked bars of the shares of the energy, one a run",
-        "Shares of E₀ after the last separation; a white rest is not known.",
-        since,
-    )
+    drawn = figure(study_partition_picture(study.rows), figures, since)
     return join([drawn, download(figures / "partition.csv", "its data")])
 
 

@@ -18,6 +18,7 @@ from fem_impact.scene.library import source_of, stated_keys
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
+from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table
 from fem_impact.verdict.assess import Verdict
 from fem_impact.verdict.screening import screening
@@ -29,7 +30,7 @@ STATED = "stated in the scene"
 def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
     """Return titled sentences as the box that heads a page; ``answer`` gives its colour."""
     rows = "\n".join(
-        f"<p><strong>{escape(title)}</strong> {escape(sentence)}</p>" for title, sentence in lines
+        f"<p><strong>{markup(title)}</strong> {markup(sentence)}</p>" for title, sentence in lines
     )
     return Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
 
@@ -73,7 +74,7 @@ def verdict_page(verdict: Verdict, document: dict[str, Any]) -> str:
 
 def _titled(lines: Sequence[Line]) -> Markup:
     return bullets(
-        Markup(f"<strong>{escape(title)}</strong>: {escape(sentence)}") for title, sentence in lines
+        Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}") for title, sentence in lines
     )
 
 

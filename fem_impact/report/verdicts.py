@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 
 import numpy as np
 
-from fem_impact.figures.lines import Panel, Series, lines_figure
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.report.html import Markup, join, paragraph, place, section, table
-from fem_impact.report.page import download, picture
+from fem_impact.report.page import download, figure
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import measured_set
 
@@ -44,14 +43,10 @@ def verdict_section(judged: Sequence[Verdict], figures: Path) -> Markup:
 
 
 def _shown(verdict: Verdict, figures: Path) -> Markup:
-    name, title = verdict.name, verdict.panel.title
-    drawn = picture(partial(_draw, verdict.panel), figures / name, title, title)
+    name = verdict.name
+    drawn = figure(Picture(name, verdict.panel.title, (verdict.panel,), 1), figures)
     data = download(figures / f"{name}.csv", "its data")
     return join([paragraph(verdict.sentence), place(name, drawn), data])
-
-
-def _draw(panel: Panel, path: Path, shape: str) -> Path:
-    return lines_figure([panel], path, "wide" if shape == "wide" else "narrow", columns=1)
 
 
 def _closure(rows: Sequence[Outcome]) -> Verdict:

@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.cost.limits import limit, pair_limit
 from fem_impact.cost.settings import FAMILY, placed
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
 from fem_impact.scene.shipped import load, replace_all
-from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
@@ -146,6 +146,6 @@ def _panel(name: str, rows: list[Row]) -> Panel:
     lines, limits = [], []
     for at, row in enumerate(row for row in rows if row["quantity"] == name):
         sizes = [1e3 * size for size in row["tip_size_m"]]
-        lines.append(Series(row["set"], sizes, row["values"], colour=at))
+        lines.append(Series(row["set"], sizes, row["values"], "joined", at))
         limits.append(Series(f"{row['set']}, limit", [0.0], [row["fit"].value], "rings", at))
     return Panel(name, "element at the tip, mm", name, (*lines, *limits))

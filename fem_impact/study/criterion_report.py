@@ -8,7 +8,7 @@ from operator import attrgetter
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.figures.lines import Mark, Panel, Series
+from fem_impact.figures.panels import Mark, Panel, Picture, Series
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
@@ -28,7 +28,7 @@ from fem_impact.study.criterion_measure import (
     place_at,
     spread_of,
 )
-from fem_impact.study.document import Picture, Sheet, StudyReport
+from fem_impact.study.document import Sheet, StudyReport
 from fem_impact.study.rods import BODY, DROP_NOTES, MODAL_NOTE, PAPER_RODS, Drop
 from fem_impact.study.static_give import give_picture, give_sentences, give_sheet, gives_of
 from fem_impact.tables.table import Cell, Table
@@ -99,7 +99,9 @@ def _angles(families: Families) -> Picture:
     for name, rods in families.items():
         same = of_body(rods)
         chosen = (same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int)))
-        series = [Series(f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "line", i) for i, r in enumerate(chosen)]
+        series = [
+            Series(f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "joined", i) for i, r in enumerate(chosen)
+        ]
         panels.append(Panel(name, "inclination, degrees", "e", tuple(series)))
     return Picture("angles", "Restitution against inclination, 19 mm rods.", tuple(panels))
 
@@ -111,10 +113,10 @@ def _onset(families: Families) -> Picture:
         same = of_body(rods)
         gamma, error = [r.drop.gamma for r in same], [r.error for r in same]
         band = [r.error_high - r.error for r in same] if any(r.bands.any() for r in same) else None
-        series.append(Series(name, gamma, error, "line" if band is None else "joined", at, band))
+        series.append(Series(name, gamma, error, "joined", at, band))
     marks = (Mark(LIMIT, "limit of Eq 29"),)
     label = "largest error of e by rigid theory"
-    panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, LEVELS)
+    panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, tuple(map(Mark, LEVELS)))
     return Picture("onset", "Where vibration changes the rebound; dotted: the stated levels.", (panel,), 1)
 
 
@@ -142,7 +144,7 @@ def _blind(blind: Sequence[Drop], results: Results) -> Picture:
     series, marks = [], []
     for at, (rod, length) in enumerate(PAPER_RODS.items()):
         f, share = _over_friction(blind, results, length)
-        series.append(Series(rod, f, 100 * share, "line", at))
+        series.append(Series(rod, f, 100 * share, "joined", at))
         marks.append(Mark(blind_ratio(Drop(length)), f"mu* of {rod}"))
     panel = Panel("elastic, 45 degrees", "f", "vibration, % of E_0", tuple(series), tuple(marks))
     caption = "A contact force of ratio mu* does not excite the first bending mode."

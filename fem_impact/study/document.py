@@ -12,7 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.figures.lines import Panel, lines_figure
+from fem_impact.figures.live import live
+from fem_impact.figures.panels import Picture
+from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, write_text
 from fem_impact.files.signed_json import signed
 from fem_impact.jobs.job import Failure, Job
@@ -92,16 +94,6 @@ class Sheet:
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
-    """A figure: name of its files, caption, panels, and their number side by side."""
-
-    name: str
-    caption: str
-    panels: tuple[Panel, ...]
-    columns: int = 2
-
-
-@dataclass(frozen=True, slots=True)
 class StudyReport:
     """The result of a study.
 
@@ -138,7 +130,7 @@ class StudyReport:
 
 
 def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
-    """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, phone width) with its data."""
+    """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data."""
     ledger: list[list[Cell]] = []
     for name, run in results.items():
         if isinstance(run, Outcome):
@@ -148,7 +140,10 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
             ledger.append([values[column] for column in LEDGER])
     document = _document(report, request, results)
     for picture in report.pictures:
-        _draw(picture, make_directory(request.out / "figures"))
+        stem = make_directory(request.out / "figures") / picture.name
+        for suffix in (".svg", ".png"):
+            draw(picture, stem.with_suffix(suffix))
+        write_text(stem.with_suffix(".json"), json.dumps(live(picture), allow_nan=False))
     for sheet in report.sheets:
         write_text(request.out / f"{sheet.name}.csv", sheet.table.csv())
     write_text(request.out / "runs.csv", Table.of(LEDGER, ledger).csv())
@@ -183,15 +178,6 @@ def _document(report: StudyReport, request: Request, results: Results) -> dict[s
         "rows": [outcome.to_dict() for outcome in report.outcomes],
         "comparison": [dict(row) for row in report.comparison],
     }
-
-
-def _draw(picture: Picture, place: Path) -> None:
-    stem = place / picture.name
-    for suffix in (".svg", ".png"):
-        lines_figure(picture.panels, stem.with_suffix(suffix), "wide", picture.columns)
-    narrow = stem.with_name(f"{picture.name}-narrow.svg")
-    lines_figure(picture.panels, narrow, "narrow")
-    narrow.with_suffix(".csv").unlink()  # the same numbers stand beside the wide one
 
 
 def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:

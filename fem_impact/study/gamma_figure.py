@@ -7,9 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.figures.lines import Look, Mark, Panel, Series
+from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.outcome.shares import shares
-from fem_impact.study.document import Picture
 from fem_impact.study.gamma_findings import Curves, plain_line
 from fem_impact.study.gamma_points import VIBRATION, Point, among
 from fem_impact.study.gamma_tables import KINDS

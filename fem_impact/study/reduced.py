@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS, Scene
-from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.reduced_scenes import CALIBRATION, COUNT, design, scene_of
 from fem_impact.tables.table import Cell, Table
 

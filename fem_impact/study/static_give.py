@@ -13,7 +13,7 @@ from math import sqrt
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.modal.furrow import indent
 from fem_impact.modal.impact import reach
 from fem_impact.modal.rod import modal_rod
@@ -21,7 +21,7 @@ from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.plan.plan import plan
 from fem_impact.study.criterion_measure import Rod, Rods, of_body
-from fem_impact.study.document import Picture, Sheet
+from fem_impact.study.document import Sheet
 from fem_impact.study.rods import PAPER_RODS, Drop
 from fem_impact.tables.table import Cell, Table
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.errors import UsageError, did_you_mean
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
@@ -22,7 +22,7 @@ from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
 from fem_impact.progress import NullMeter
 from fem_impact.scene.types import Scene
-from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.results import Results, Row, row_of
 from fem_impact.study.vary import cases, in_unit, measure
 
@@ -153,5 +153,5 @@ def _panel(
     for title, places in list(curves.items())[:MOST_CURVES]:
         known = [at for at in places if np.isfinite(values[at])]
         if known:
-            series.append(Series(title, [along[at] for at in known], values[known]))
+            series.append(Series(title, [along[at] for at in known], values[known], "joined"))
     return Panel(SHOWN[name], label, SHOWN[name], tuple(series))

@@ -8,11 +8,11 @@ import numpy as np
 from scipy.stats import sobol_indices, uniform, wasserstein_distance
 
 from fem_impact.arrays import Array
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.scene.shipped import load
 from fem_impact.study.calibration import Calibration, calibrate, constants_of
 from fem_impact.study.compare import MEASURED
-from fem_impact.study.document import Picture, Sheet, StudyReport
+from fem_impact.study.document import Sheet, StudyReport
 from fem_impact.study.inputs import UNCERTAIN_INPUTS
 from fem_impact.study.validated import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
 from fem_impact.tables.table import Cell, Table
@@ -98,11 +98,10 @@ def _errors(compared: Sequence[Comparison]) -> Picture:
     for name in SHOWN:
         rows = [c for c in compared if c.quantity == name]
         at = np.array([sets.index(c.set) for c in rows], dtype=float)
-        ends = np.array([[*c.interval, np.nan] for c in rows])
-        spans = Series("E ± 2 u_val", np.repeat(at, 3), ends.ravel(), "line", 5)
-        errors = Series("E = S - D", at, np.array([c.E for c in rows]), "points", 0)
+        widths = [COVERAGE * c.u_val for c in rows]
+        errors = Series("E = S - D, ± 2 u_val", at, [c.E for c in rows], "points", 0, widths)
         panels.append(
-            Panel(f"Error of {name}", "set", AXES[name], (spans, errors), levels=(0.0,), names=sets)
+            Panel(f"Error of {name}", "set", AXES[name], (errors,), levels=(Mark(0.0),), names=sets)
         )
     caption = "Error of the model and the interval that contains it, set by set."
     return Picture("errors", caption, tuple(panels), 1)
@@ -123,12 +122,12 @@ def _distributions(sets: Sequence[ValidatedSet], name: str) -> Picture:
     return Picture(f"distribution-{name}", caption, tuple(panels), 3)
 
 
-def _steps(label: str, values: Array, look: str, colour: int) -> Series:
+def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
     """Return the empirical distribution of values, at most 64 points of it."""
     ordered = np.sort(values)
     rank = (np.arange(len(ordered)) + 0.5) / len(ordered)
     every = slice(None, None, max(1, len(ordered) // 64))
-    return Series(label, ordered[every], rank[every], look, colour)  # type: ignore[arg-type]
+    return Series(label, ordered[every], rank[every], look, colour)
 
 
 def _comparison_sheet(compared: Sequence[Comparison]) -> Sheet:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import io
 import math
-import re
 import textwrap
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from typing import TYPE_CHECKING, Self
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text
 from fem_impact.tables.csv import Plain, csv_line, row_of
+from fem_impact.tables.symbols import CODE, STRONG, markup
 
 if TYPE_CHECKING:
     import numpy as np
@@ -25,7 +25,6 @@ DASH = "–"
 GAP = "  "
 NARROWEST = 12
 """Letters that a column of texts keeps at least when a table is fitted to a terminal."""
-STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,13 +168,13 @@ class Table:
         """
         if not self.rows:
             return ""
-        titles = "".join(f"<th{_style(column)}>{escape(column.title)}</th>" for column in self.columns)
+        titles = "".join(f"<th{_style(column)}>{markup(column.title)}</th>" for column in self.columns)
         lines = [
             "".join(_html(cell, column) for cell, column in zip(row, self.columns, strict=True))
             for row in self.rows
         ]
         body = "\n".join(f"<tr>{line}</tr>" for line in lines)
-        above = f"<caption>{escape(caption)}</caption>" if caption else ""
+        above = f"<caption>{markup(caption)}</caption>" if caption else ""
         look = ' class="compact"' if compact else ""
         inner = f"{above}<thead><tr>{titles}</tr></thead>\n<tbody>\n{body}\n</tbody>"
         return f'<div class="scroll"><table{look}>{inner}</table></div>'
@@ -262,9 +261,8 @@ def _text(cell: Cell, digits: int) -> str:
 
 def _html(cell: Cell, column: Column) -> str:
     plain = _plain(cell)
-    text = escape(plain) if isinstance(plain, str) else number(plain, column.digits)
+    shown = markup(plain) if isinstance(plain, str) else number(plain, column.digits)
     why = f' title="{escape(cell.reason)}"' if isinstance(cell, Missing) else ""
-    shown = CODE.sub(r"<code>\1</code>", STRONG.sub(r"<strong>\1</strong>", text))
     return f"<td{_style(column, cell.style if isinstance(cell, Marked) else '')}{why}>{shown}</td>"
 
 

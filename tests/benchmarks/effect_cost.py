@@ -103,7 +103,7 @@ def measured() -> list[Row]:
 def draw(rows: Sequence[Row], path: Path) -> None:
     """Draw the run time of each rung."""
     labels = ["rigid rod, rigid plane", *(f"+ {row[0]}" for row in rows[1:-1]), "the first again"]
-    with figure(path, "wide", 4.2) as drawn:
+    with figure(path, 4.2) as drawn:
         axes = drawn.add_subplot()
         bars = axes.barh(range(len(rows)), [row[2] for row in rows], height=0.7, color=PALETTE["blue"])
         for i in (0, -1):

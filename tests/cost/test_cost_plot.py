@@ -2,9 +2,9 @@
 
 import pytest
 
-from fem_impact.cost.document import work_precision
+from fem_impact.cost.document import cost_picture
 from fem_impact.cost.judge import Judged
-from fem_impact.figures import style
+from fem_impact.figures import still, style
 
 
 def setting(kind, cpu_s, error):
@@ -33,9 +33,8 @@ def drawn(monkeypatch, tmp_path):
     monkeypatch.setattr(style, "save", lambda figure, path: kept.append(figure))
 
     def draw(rigid, mesh, names=("e",)):
-        work_precision(
-            [setting("rigid", 1e-4, rigid), setting("mesh", 30.0, mesh)], names, tmp_path / "x.svg"
-        )
+        settings = [setting("rigid", 1e-4, rigid), setting("mesh", 30.0, mesh)]
+        still.draw(cost_picture(settings, names), tmp_path / "x.svg")
         kept[0].draw_without_rendering()
         return [axes for axes in kept[0].axes if axes.get_visible()]
 
@@ -61,5 +60,5 @@ def test_ticks_are_at_least_two_plain_numbers(drawn, errors):
 
 def test_every_panel_has_its_times_and_no_panel_is_empty(drawn):
     panels = drawn(0.2, 0.1, ("e", "mu", "E_vib"))
-    assert [axes.get_title(loc="left") for axes in panels] == ["e", "mu", "E_vib"]
+    assert [axes.get_title(loc="left") for axes in panels] == ["e", "µ", r"$E_{\mathrm{vib}}$"]
     assert all(axes.xaxis.get_tick_params()["labelbottom"] for axes in panels)

@@ -1,3 +1,4 @@
+import json
 import subprocess
 import sys
 from itertools import pairwise
@@ -10,8 +11,10 @@ from outcome_maker import altered
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.figures import style
-from fem_impact.figures.history import force_figure, ledger_figure
-from fem_impact.figures.partition import comparison_figure, partition_figure, study_partition_figure
+from fem_impact.figures.history import force_picture, ledger_picture
+from fem_impact.figures.live import live
+from fem_impact.figures.partition import comparison_picture, partition_picture, study_partition_picture
+from fem_impact.figures.still import draw
 from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
@@ -26,15 +29,14 @@ def history(result):
 
 
 def test_ledger_data_are_the_history_over_e_0(history, tmp_path):
-    ledger_figure(history, 2.0, tmp_path / "ledger.svg")
+    draw(ledger_picture(history, 2.0), tmp_path / "ledger.svg")
     data = read_csv(tmp_path / "ledger.csv")
     assert np.allclose(data.numbers("W_friction_over_E_0"), history.numbers("W_friction_J") / 2.0)
     assert data.numbers("time_s").tolist() == history.numbers("time_s").tolist()
 
 
-def test_ledger_areas_add_up_to_what_the_history_holds(history, tmp_path):
-    ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg")
-    data = read_csv(tmp_path / "ledger.csv")
+def test_ledger_areas_add_up_to_what_the_history_holds(history):
+    data = ledger_picture(history, result_maker.E_0).table()
     total = sum(data.numbers(account.column.removesuffix("_J") + "_over_E_0") for account in ACCOUNTS)
     assert np.allclose(total, 1.0, atol=3e-6)
 
@@ -49,13 +51,12 @@ def test_accounts_differ_in_colour():
         assert len({account.colour for account in accounts}) == len(accounts)
 
 
-@pytest.mark.parametrize("shape", ["wide", "narrow"])
-def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, record, shape):
+def test_figures_of_a_run_are_pictures_with_their_numbers(history, tmp_path, record):
     outcome = Outcome.from_dict(record)
     paths = [
-        ledger_figure(history, result_maker.E_0, tmp_path / "ledger.svg", shape),
-        force_figure(history, known(outcome.contact.intervals), tmp_path / "force.svg", shape),
-        partition_figure(outcome, tmp_path / "partition.svg", shape),
+        draw(ledger_picture(history, result_maker.E_0), tmp_path / "ledger.svg"),
+        draw(force_picture(history, known(outcome.contact.intervals)), tmp_path / "force.svg"),
+        draw(partition_picture(outcome), tmp_path / "partition.svg"),
     ]
     for path in paths:
         root = ElementTree.parse(path).getroot()
@@ -67,16 +68,15 @@ def test_figures_of_a_study(tmp_path):
     rows = [Outcome.from_dict(row) for row in result_maker.study_rows()]
     compared = result_maker.comparison()
     compared[0] |= {"model": None, "band": None, "measured_sd": None, "measured_low": None}
-    study_partition_figure(rows, tmp_path / "partition.png")
-    comparison_figure(compared, tmp_path / "comparison.png", "narrow")
+    draw(study_partition_picture(rows), tmp_path / "partition.png")
+    draw(comparison_picture(compared), tmp_path / "comparison.png")
     assert (tmp_path / "comparison.png").stat().st_size > 20_000
     shares = read_csv(tmp_path / "partition.csv")
     assert shares.texts("scene_id") == list(result_maker.SETS)
     assert len(read_csv(tmp_path / "comparison.csv")) == len(compared)
 
 
-@pytest.mark.parametrize("shape", ["wide", "narrow"])
-def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, shape):
+def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
     names = [
         "residual stress in rod/E_0",
         "plastic barrier/E_0",
@@ -86,23 +86,22 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch, s
     first = result_maker.comparison()[0] | {"set": "t3-contaminated"}
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
-    comparison_figure([first | {"quantity": name} for name in names], tmp_path / "comparison.svg", shape)
+    draw(comparison_picture([first | {"quantity": name} for name in names]), tmp_path / "comparison.svg")
     kept[0].draw_without_rendering()  # the file had other dots per inch
     boxes = [axes._left_title.get_window_extent() for axes in kept[0].axes]
     assert all(0 < box.x0 and box.x1 <= kept[0].bbox.x1 for box in boxes)
     assert not any(a.overlaps(b) for at, a in enumerate(boxes) for b in boxes[:at])
 
 
-@pytest.mark.parametrize("shape", ["wide", "narrow"])
 @pytest.mark.parametrize("scale", [1e-3, 1.3e-3, 1e-4, 0.47, 30.0])
-def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, shape, scale):
+def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, scale):
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
     first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": None}
     first |= {"measured_low": None, "measured_sd": None, "band": 0.0}
     shares = [first | {"quantity": name, "model": 0.0} for name in "abcd"]
     others = [share | {"set": "t4", "model": 0.54 * scale, "band": 0.35 * scale} for share in shares]
-    comparison_figure([*shares, *others], tmp_path / "comparison.svg", shape)
+    draw(comparison_picture([*shares, *others]), tmp_path / "comparison.svg")
     kept[0].draw_without_rendering()
     for axes in kept[0].axes:
         boxes = [word.get_window_extent() for word in axes.get_xticklabels()]
@@ -110,28 +109,49 @@ def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, shape, sc
         assert all(a.x1 < b.x0 for a, b in pairwise(boxes))
 
 
-def test_unknown_share_is_left_out(tmp_path, record):
-    partition_figure(altered(Outcome.from_dict(record), E_vib_over_E_0=None), tmp_path / "partition.svg")
-    accounts = read_csv(tmp_path / "partition.csv").texts("account")
+def test_unknown_share_is_left_out(record):
+    picture = partition_picture(altered(Outcome.from_dict(record), E_vib_over_E_0=None))
+    accounts = picture.table().texts("account")
     assert "E_vib" not in accounts
     assert len(accounts) == len(shares("figure")) - 2  # nor damping, which is off
 
 
 def test_same_data_give_the_same_bytes(history, tmp_path):
-    first = ledger_figure(history, 0.4, tmp_path / "a.svg").read_bytes()
-    assert ledger_figure(history, 0.4, tmp_path / "b.svg").read_bytes() == first
+    first = draw(ledger_picture(history, 0.4), tmp_path / "a.svg").read_bytes()
+    assert draw(ledger_picture(history, 0.4), tmp_path / "b.svg").read_bytes() == first
+
+
+def test_live_figures_are_what_plotly_draws_and_hold_the_numbers(history, record):
+    import plotly.graph_objects as go
+
+    outcome = Outcome.from_dict(record)
+    rows = [Outcome.from_dict(row) for row in result_maker.study_rows()]
+    pictures = (
+        ledger_picture(history, result_maker.E_0),
+        force_picture(history, known(outcome.contact.intervals)),
+        partition_picture(outcome),
+        study_partition_picture(rows),
+        comparison_picture(result_maker.comparison()),
+    )
+    for picture in pictures:
+        shown = json.loads(json.dumps(live(picture), allow_nan=False))
+        for panel in shown["panels"]:
+            go.Figure(panel["data"], panel["layout"])  # refuses what Plotly does not know
+    force = live(pictures[1])["panels"][0]["data"][0]
+    assert np.allclose(force["x"], 1e6 * history.numbers("time_s"), rtol=1e-4)
+    assert np.allclose(force["y"], history.numbers("force_n_N") / 1e3, rtol=1e-4)
 
 
 def test_missing_column_is_named(tmp_path):
     (tmp_path / "history.csv").write_text("time_s\n0.0\n")
     with pytest.raises(ResultError, match=r"E_kinetic_rod_J.* is missing"):
-        ledger_figure(read_csv(tmp_path / "history.csv"), 1.0, tmp_path / "ledger.svg")
+        ledger_picture(read_csv(tmp_path / "history.csv"), 1.0)
 
 
 def test_place_that_cannot_be_written(history, tmp_path):
     (tmp_path / "figures").write_text("a file")
     with pytest.raises(OutputPathError, match="figures"):
-        force_figure(history, [], tmp_path / "figures" / "force.svg")
+        draw(force_picture(history, []), tmp_path / "figures" / "force.svg")
 
 
 @pytest.mark.parametrize(
@@ -162,4 +182,4 @@ def test_a_share_has_as_many_places_as_its_band(band, text):
 def test_import_stays_light():
     code = "import sys, fem_impact.figures, fem_impact.render, fem_impact.report; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert not {"matplotlib", "pyvista", "vtkmodules", "h5py", "PIL"} & set(done.stdout.split())
+    assert not {"matplotlib", "pyvista", "vtkmodules", "h5py", "PIL", "plotly"} & set(done.stdout.split())

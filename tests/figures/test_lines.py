@@ -1,9 +1,13 @@
 """Panels of lines as a reader sees them: nothing written over, names instead of numbers."""
 
+from dataclasses import replace
+
 import pytest
 
 from fem_impact.figures import style
-from fem_impact.figures.lines import Mark, Panel, Series, lines_figure
+from fem_impact.figures.live import live
+from fem_impact.figures.panels import Interval, Mark, Panel, Picture, Series, ShadedMap
+from fem_impact.figures.still import draw
 from fem_impact.tables.table import read_csv
 
 MARKS = (Mark(28.7, "0.12 m"), Mark(26.45, "limit of Eq 29"), Mark(57.3, "0.24 m"))
@@ -15,12 +19,16 @@ def drawn(monkeypatch, tmp_path):
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
 
-    def draw(panels, shape="wide"):
-        lines_figure(panels, tmp_path / "lines.svg", shape)
+    def drawn_of(panels):
+        draw(picture(panels), tmp_path / "lines.svg")
         kept[-1].draw_without_rendering()  # the file had other dots per inch
         return kept[-1]
 
-    return draw
+    return drawn_of
+
+
+def picture(panels):
+    return Picture("lines", "Lines.", tuple(panels))
 
 
 def panel(title, *labels, marks=()):
@@ -29,10 +37,9 @@ def panel(title, *labels, marks=()):
     )
 
 
-@pytest.mark.parametrize("shape", ["wide", "narrow"])
-def test_one_legend_names_all_series_and_stands_under_the_panels(drawn, shape):
+def test_one_legend_names_all_series_and_stands_under_the_panels(drawn):
     labels = [f"a series with a long name {at}" for at in range(6)]
-    figure = drawn([panel("elastic", *labels[:5]), panel("yielding", *labels)], shape)
+    figure = drawn([panel("elastic", *labels[:5]), panel("yielding", *labels)])
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == labels
     box = legend.get_window_extent()
@@ -44,9 +51,8 @@ def test_one_series_needs_no_legend(drawn):
     assert drawn([panel("elastic", "one")]).legends == []
 
 
-@pytest.mark.parametrize("shape", ["wide", "narrow"])
-def test_words_of_near_marks_stand_apart(drawn, shape):
-    figure = drawn([panel("elastic", "one", marks=MARKS), panel("yielding", "one", marks=MARKS)], shape)
+def test_words_of_near_marks_stand_apart(drawn):
+    figure = drawn([panel("elastic", "one", marks=MARKS), panel("yielding", "one", marks=MARKS)])
     for axes in figure.axes:
         boxes = [text.get_window_extent() for text in axes.texts]
         assert not any(a.overlaps(b) for at, a in enumerate(boxes) for b in boxes[:at])
@@ -83,3 +89,56 @@ def test_a_band_is_drawn_about_its_point_and_stands_in_the_data(drawn, tmp_path)
     assert bars.get_segments()[0].tolist() == [[1.0, 4.5], [1.0, 5.5]]
     data = read_csv(tmp_path / "lines.csv")
     assert data.texts("band") == ["0.5", "", "1.0"] and data.texts("y") == ["5.0", "6.0", ""]
+
+
+@pytest.mark.parametrize(("count", "look"), [(2, "points"), (3, "points"), (4, "joined")])
+def test_two_or_three_values_are_points_without_a_line(drawn, count, look):
+    series = Series("one", range(count), [*range(count - 1), 1.0], "joined")
+    assert series.drawn == look
+    (line,) = drawn([Panel("e", "gamma", "e", (series,))]).axes[0].lines
+    assert (line.get_linestyle() == "None") == (look == "points")
+    mode = live(picture([Panel("e", "gamma", "e", (series,))]))["panels"][0]["data"][0]["mode"]
+    assert ("lines" in mode) == (look == "joined")
+
+
+def test_a_gap_is_no_value(drawn):
+    assert Series("one", range(4), [1.0, float("nan"), 2.0, 3.0], "joined").drawn == "points"
+
+
+def test_a_live_panel_holds_bands_names_marks_and_intervals():
+    values = Series("e of E_0", [0.0, 1.0], [5.0, float("nan")], "points", 0, [0.5, float("nan")])
+    shown = Panel("T1/tau", "set", "e_m", (values,), MARKS, (Mark(1.0, "one"),), ("t2", "t4"))
+    told = live(picture([replace(shown, intervals=(Interval(0.0, 0.5, "contact"),))]))["panels"][0]
+    (trace,) = told["data"]
+    assert trace["y"] == [5.0, None] and trace["error_y"]["array"] == [0.5, None]
+    assert told["title"] == "<i>T</i><sub>1</sub>/τ"
+    layout = told["layout"]
+    assert layout["xaxis"]["ticktext"] == ["t2", "t4"]
+    assert layout["yaxis"]["title"]["text"] == "<i>e</i><sub>m</sub>"
+    assert {note["text"] for note in layout["annotations"]} == {mark.label for mark in MARKS} | {
+        "one",
+        "contact",
+    }
+    assert [shape["type"] for shape in layout["shapes"]] == ["line"] * 4 + ["rect"]
+
+
+def test_bands_lie_along_the_rows_of_a_panel(drawn):
+    values = Series("model", [1.0], [0], "diamonds", band=[0.25])
+    panel = Panel("", "e", "", (values,), rows=("t2",))
+    (container,) = drawn([panel]).axes[0].containers
+    assert container[2][0].get_segments()[0].tolist() == [[0.75, 0.0], [1.25, 0.0]]
+    assert live(picture([panel]))["panels"][0]["data"][0]["error_x"]["array"] == [0.25]
+
+
+def test_bars_are_stacked_from_the_left(drawn):
+    bars = [Series(name, [3.0, 1.0], [0, 1], "bars") for name in ("rigid", "vibration")]
+    axes = drawn([Panel("", "%", "", tuple(bars), rows=("t2", "t4"))]).axes[0]
+    assert [patch.get_x() for patch in axes.patches] == [0.0, 0.0, 3.0, 1.0]
+
+
+def test_a_shaded_map_has_its_values_and_ends(drawn):
+    shaded = ShadedMap([0.0, 1.0], [0.0, 1.0, 2.0], [[1.0, -2.0]] * 3, 2.0, "strain")
+    panel = Panel("", "x", "t", (), shaded=shaded)
+    assert drawn([panel]).axes[0].collections[0].get_clim() == (-2.0, 2.0)
+    (trace,) = live(picture([panel]))["panels"][0]["data"]
+    assert trace["z"] == [[1.0, -2.0]] * 3 and (trace["zmin"], trace["zmax"]) == (-2.0, 2.0)

@@ -160,7 +160,7 @@ def test_the_study_tells_errors_causes_and_failures(tmp_path):
     spread = {row[1]: row for row in sheets["spread"]["rows"]}
     assert spread["e"][-2] == pytest.approx(SET.statistics()["e"].sd)
     assert "E +- 2 u_val contains zero" in found.text and "never a default" in found.text
-    for name in ("errors.svg", "distribution-e-narrow.svg", "distribution-Omega.csv"):
+    for name in ("errors.svg", "distribution-e.json", "distribution-Omega.csv"):
         assert (tmp_path / "figures" / name).stat().st_size > 500
     assert written["command"] == "fem-impact study validation t5b --quick"
 

@@ -1,0 +1,245 @@
+"""Pictures for a page with hover and zoom: traces and layouts in Plotly's format, as plain JSON values."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap, half_widths, numbers
+from fem_impact.figures.style import INK, QUIET, colour_of, sides
+from fem_impact.tables.symbols import markup
+
+DIGITS = 5
+"""Significant digits of the numbers in a page; those of a shaded map have `SHADED`."""
+
+SHADED = 3
+GRID, SHADE = "#e2e5e9", "#eef2f6"
+RED_BLUE = [[0.0, "#053061"], [0.25, "#4393c3"], [0.5, "#f7f7f7"], [0.75, "#d6604d"], [1.0, "#67001f"]]
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "line": {"mode": "lines", "line": {"width": 2}},
+    "thin": {"mode": "lines", "line": {"width": 1, "dash": "4px,3px"}},
+    "dashed": {"mode": "lines", "line": {"width": 2, "dash": "7px,3px"}},
+    "points": {"mode": "markers", "marker": {"size": 6}},
+    "rings": {"mode": "markers", "marker": {"size": 9, "symbol": "circle-open"}},
+    "joined": {"mode": "lines+markers", "line": {"width": 1.5}, "marker": {"size": 5}},
+    "diamonds": {"mode": "markers", "marker": {"size": 8, "symbol": "diamond-open"}},
+    "squares": {"mode": "markers", "marker": {"size": 7, "symbol": "square"}},
+    "triangles": {"mode": "markers", "marker": {"size": 8, "symbol": "triangle-up"}},
+    "crosses": {"mode": "markers", "marker": {"size": 7, "symbol": "x-thin-open"}},
+    "interval": {"mode": "markers", "marker": {"size": 1}},
+    "spread": {"mode": "markers", "marker": {"size": 1}},
+    "area": {"mode": "lines", "line": {"width": 0}, "stackgroup": "areas"},
+}
+BAND = {"interval": {"thickness": 4, "width": 0}, "spread": {"thickness": 1, "width": 0}}
+CURVES = {"line", "thin", "dashed", "area"}
+"""Looks of which one label tells all values at the place of the pointer."""
+
+SIGNS = {
+    "line": "━",
+    "thin": "╌",
+    "dashed": "╍",
+    "points": "●",
+    "rings": "○",
+    "joined": "●",
+    "diamonds": "◇",
+    "squares": "■",
+    "triangles": "▲",
+    "crosses": "×",
+    "interval": "▬",
+    "spread": "─",
+    "area": "■",
+    "bars": "■",
+}
+"""How the legend shows each look."""
+
+
+def live(picture: Picture) -> dict[str, Any]:
+    """Return a picture as JSON values.
+
+    ``panels`` holds ``title`` and ``alt``, ``height`` in pixels, and ``data`` and ``layout`` in Plotly's
+    format; ``legend`` holds a sign, its colour and a label for each name; ``columns`` and ``caption`` are
+    those of the picture. Labels are HTML.
+    """
+    return {
+        "caption": markup(picture.caption),
+        "columns": max(1, min(picture.columns, len(picture.panels))),
+        "legend": _legend(picture),
+        "panels": [
+            {
+                "title": markup(panel.title),
+                "alt": ", ".join(words for words in (panel.title, panel.y, panel.x) if words),
+                "height": _height(panel),
+                "data": _traces(panel),
+                "layout": _layout(panel),
+            }
+            for panel in picture.panels
+        ],
+    }
+
+
+def _legend(picture: Picture) -> list[list[str]]:
+    named = {
+        series.label: [SIGNS[series.drawn], colour_of(series.colour, at), markup(series.label)]
+        for panel in reversed(picture.panels)
+        for at, series in reversed([*enumerate(panel.series)])
+        if series.label
+    }
+    return [*reversed(named.values())] if len(named) > 1 else []
+
+
+def _height(panel: Panel) -> int:
+    if panel.rows:
+        return 90 + 28 * len(panel.rows)
+    return 420 if panel.shaded else 340
+
+
+def _traces(panel: Panel) -> list[dict[str, Any]]:
+    shaded = [_map(panel.shaded, panel)] if panel.shaded else []
+    return [*shaded, *(_trace(series, at, panel) for at, series in enumerate(panel.series))]
+
+
+def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
+    colour = colour_of(series.colour, at)
+    label = markup(series.label)
+    trace: dict[str, Any] = {"x": numbers(series.x, DIGITS), "y": numbers(series.y, DIGITS), "name": label}
+    trace |= {"hovertemplate": _hover(label, series, panel), "showlegend": False}
+    if series.drawn == "bars":
+        texts = {"text": list(series.texts), "textposition": "outside", "cliponaxis": False}
+        bar = {"type": "bar", "orientation": "h", "width": 0.7, "marker": {"color": colour}}
+        return trace | bar | (texts if series.texts else {})
+    look = LOOKS[series.drawn]
+    trace |= {"type": "scatter"} | {
+        name: part | {"color": colour} if isinstance(part, dict) else part for name, part in look.items()
+    }
+    if series.drawn == "area":
+        trace |= {"fillcolor": colour}
+    if series.band is not None:
+        band = {"type": "data", "array": numbers(half_widths(series), DIGITS), "color": colour}
+        trace["error_x" if panel.lies else "error_y"] = band | BAND.get(
+            series.drawn, {"thickness": 1.2, "width": 3}
+        )
+    return trace
+
+
+def _hover(label: str, series: Series, panel: Panel) -> str:
+    """Return the words at the pointer: the series, and both values with their labels, units and band."""
+    if series.drawn in CURVES and _curves(panel):
+        return "%{y:.4g}"
+    x, y = ("%{x:.4g}", "%{y:.4g}")
+    if panel.lies:
+        x += " ± %{error_x.array:.2g}" if series.band is not None else ""
+        return f"<b>{label or '%{y}'}</b><br>{markup(panel.title or panel.x)}: {x}<extra></extra>"
+    y += " ± %{error_y.array:.2g}" if series.band is not None else ""
+    return f"<b>{label}</b><br>{markup(panel.x)}: {x}<br>{markup(panel.y)}: {y}<extra></extra>"
+
+
+def _curves(panel: Panel) -> bool:
+    return panel.shaded is None and all(series.drawn in CURVES for series in panel.series)
+
+
+def _map(shaded: ShadedMap, panel: Panel) -> dict[str, Any]:
+    hover = f"{markup(panel.x)}: %{{x:.4g}}<br>{markup(panel.y)}: %{{y:.4g}}<br>%{{z}}<extra></extra>"
+    return {
+        "type": "heatmap",
+        "x": numbers(shaded.x, DIGITS),
+        "y": numbers(shaded.y, DIGITS),
+        "z": [numbers(row, SHADED) for row in np.asarray(shaded.values, float)],
+        "zmin": -shaded.limit,
+        "zmax": shaded.limit,
+        "colorscale": RED_BLUE,
+        "colorbar": {
+            "title": {"text": markup(shaded.label), "side": "right"},
+            "thickness": 12,
+            "outlinewidth": 0,
+        },
+        "hovertemplate": hover,
+    }
+
+
+def _layout(panel: Panel) -> dict[str, Any]:
+    low, high = _ends(panel)
+    shapes = [_line("x", mark.at) for mark in panel.marks] + [_line("y", level.at) for level in panel.levels]
+    return {
+        "font": {"size": 12, "color": INK},
+        "margin": {"l": 10, "r": 10, "t": 18, "b": 10},
+        "paper_bgcolor": "#fff",
+        "plot_bgcolor": "#fff",
+        "barmode": "stack",
+        "hovermode": "x unified" if _curves(panel) else "closest",
+        "xaxis": _axis(panel.x, panel.x_range, panel) | _names("x", panel),
+        "yaxis": _axis(panel.y, panel.y_range, panel) | _names("y", panel),
+        "shapes": shapes + [_rectangle(part.start, part.end) for part in panel.intervals],
+        "annotations": [
+            *(_beside(mark.at, mark.label, side) for mark, side in sides(panel.marks, low, high)),
+            *(_on(level.at, level.label) for level in panel.levels if level.label),
+            *(_above((part.start + part.end) / 2, part.label) for part in panel.intervals),
+        ],
+    }
+
+
+def _ends(panel: Panel) -> tuple[float, float]:
+    """Return the least and the largest x that the panel shows."""
+    places = [np.asarray(series.x, float) for series in panel.series] + [
+        np.array([mark.at for mark in panel.marks])
+    ]
+    x = np.concatenate(places)
+    x = x[np.isfinite(x)]
+    return (float(x.min()), float(x.max())) if len(x) else (0.0, 1.0)
+
+
+def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[str, Any]:
+    axis: dict[str, Any] = {
+        "title": {"text": markup(label), "font": {"color": INK}},
+        "automargin": True,
+        "gridcolor": GRID,
+        "linecolor": QUIET,
+        "ticks": "outside",
+        "tickcolor": QUIET,
+        "zeroline": False,
+    }
+    if ends:
+        axis["range"] = list(ends)
+    return axis | ({"type": "log", "dtick": "D2"} if panel.logarithmic else {})
+
+
+def _names(of: str, panel: Panel) -> dict[str, Any]:
+    """Return the names of an axis's places 0, 1, 2 ...; rows stand from the top."""
+    names = panel.names if of == "x" else panel.rows
+    if not names:
+        return {}
+    ticks: dict[str, Any] = {"tickvals": list(range(len(names))), "ticktext": list(map(markup, names))}
+    if of == "x":
+        return ticks | {"tickangle": -35}
+    return ticks | {"range": [len(names) - 0.5, -0.5], "ticks": "", "gridcolor": "#fff"}
+
+
+def _line(across: str, at: float) -> dict[str, Any]:
+    look = {"color": QUIET, "width": 1, "dash": "dot" if across == "x" else "dash"}
+    ends = {"x0": at, "x1": at, "y0": 0, "y1": 1} if across == "x" else {"x0": 0, "x1": 1, "y0": at, "y1": at}
+    domain = {"yref": "paper"} if across == "x" else {"xref": "paper"}
+    return {"type": "line", **ends, **domain, "line": look, "layer": "below" if across == "x" else "above"}
+
+
+def _rectangle(start: float, end: float) -> dict[str, Any]:
+    place = {"x0": start, "x1": end, "y0": 0, "y1": 1, "yref": "paper"}
+    return {"type": "rect", **place, "fillcolor": SHADE, "line": {"width": 0}, "layer": "below"}
+
+
+def _note(text: str, **place: Any) -> dict[str, Any]:
+    return {"text": markup(text), "showarrow": False, "font": {"size": 10.5, "color": QUIET}, **place}
+
+
+def _beside(at: float, label: str, side: str) -> dict[str, Any]:
+    turned = {"textangle": -90, "y": 1, "yref": "paper", "yanchor": "top"}
+    return _note(label, x=at, xanchor=side, **turned)
+
+
+def _on(at: float, label: str) -> dict[str, Any]:
+    place = {"x": 0.01, "xref": "paper", "xanchor": "left", "y": at, "yanchor": "bottom"}
+    return _note(label, **place)
+
+
+def _above(at: float, label: str) -> dict[str, Any]:
+    return _note(label, x=at, y=1, yref="paper", yanchor="bottom")

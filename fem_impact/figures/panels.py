@@ -1,0 +1,178 @@
+"""What a figure shows: panels with lines, points, areas, bars or a shaded map, and their numbers.
+
+A `Picture` is described once; `still` draws it as SVG or PNG, `live` for a page with hover and zoom.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from fem_impact.tables.table import Cell, Table
+
+Look = Literal[
+    "line",
+    "thin",
+    "dashed",
+    "points",
+    "rings",
+    "joined",
+    "diamonds",
+    "squares",
+    "triangles",
+    "crosses",
+    "area",
+    "bars",
+    "interval",
+    "spread",
+]
+"""Rings are wider than points, so that both are seen where they agree. Areas and bars of a panel are stacked.
+Of an interval and of a spread only the band is drawn, thick and thin. Joined points have no line where
+there are three or fewer of them: two or three values show no course."""
+
+FEW = 3
+COLUMNS = ("panel", "series", "x_label", "y_label", "x", "y", "band")
+
+
+@dataclass(frozen=True, slots=True)
+class Series:
+    """A curve or points: ``x`` and ``y`` of equal length, and the colour: None is the next one.
+
+    The colour is an index of `COLOURS` or a name of the palette. ``band`` holds half-widths, NaN where there
+    is none, about ``y``, or about ``x`` in a panel with rows; they are drawn as error bars. A value of NaN is
+    a gap. ``texts`` stand beside bars. Series of one label look the same in all panels of a figure.
+    """
+
+    label: str
+    x: ArrayLike
+    y: ArrayLike
+    look: Look = "line"
+    colour: int | str | None = None
+    band: ArrayLike | None = None
+    texts: tuple[str, ...] = ()
+
+    @property
+    def drawn(self) -> Look:
+        """How it is drawn: joined points only where there are more than `FEW`."""
+        few = np.isfinite(np.asarray(self.y, float)).sum() <= FEW
+        return "points" if self.look == "joined" and few else self.look
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A labelled line across the panel, at ``at`` of the axis."""
+
+    at: float
+    label: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Interval:
+    """A shaded part of the x axis, named above it."""
+
+    start: float
+    end: float
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class ShadedMap:
+    """Values over x and y in red (positive) and blue; ``values`` has the shape (n_y, n_x).
+
+    Colours end at plus and minus ``limit``. ``label`` names the values with their unit.
+    """
+
+    x: ArrayLike
+    y: ArrayLike
+    values: ArrayLike
+    limit: float
+    label: str
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """One pair of axes.
+
+    Parameters
+    ----------
+    title, x, y : str
+        Labels hold the units.
+    series : tuple of Series
+    marks, levels : tuple of Mark
+        Vertical and horizontal lines.
+    names, rows : tuple of str
+        Names of x = 0, 1, 2 ..., and of y = 0, 1, 2 ... from the top.
+    intervals : tuple of Interval
+    shaded : ShadedMap, optional
+    x_range, y_range : (float, float), optional
+        Ends of the axes; those of the data where None.
+    logarithmic : bool
+        Whether both axes are.
+    """
+
+    title: str
+    x: str
+    y: str
+    series: tuple[Series, ...]
+    marks: tuple[Mark, ...] = ()
+    levels: tuple[Mark, ...] = ()
+    names: tuple[str, ...] = ()
+    rows: tuple[str, ...] = ()
+    intervals: tuple[Interval, ...] = ()
+    shaded: ShadedMap | None = None
+    x_range: tuple[float, float] | None = None
+    y_range: tuple[float, float] | None = None
+    logarithmic: bool = False
+
+    @property
+    def lies(self) -> bool:
+        """Whether bands and bars lie along x."""
+        return bool(self.rows)
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """A figure: name of its files, caption, panels and their number side by side, and its numbers.
+
+    ``numbers`` is written as CSV beside the drawing; where None, it is the series of all panels.
+    """
+
+    name: str
+    caption: str
+    panels: tuple[Panel, ...]
+    columns: int = 2
+    numbers: Table | None = None
+
+    def table(self) -> Table:
+        """Return the numbers that the figure shows."""
+        if self.numbers is not None:
+            return self.numbers
+        return Table.of(COLUMNS, [row for panel in self.panels for row in _rows(panel)])
+
+
+def half_widths(series: Series) -> np.ndarray:
+    """Return the bands of all points, NaN where there are none, ``(n,) float64``."""
+    if series.band is None:
+        return np.full(len(np.asarray(series.y)), np.nan)
+    return np.asarray(series.band, float)
+
+
+def numbers(values: ArrayLike, digits: int = 17) -> list[float | None]:
+    """Return numbers rounded to significant digits, None for NaN."""
+    return [None if math.isnan(v) else float(f"{v:.{digits}g}") for v in np.asarray(values, float).tolist()]
+
+
+def _rows(panel: Panel) -> list[list[Cell]]:
+    return [
+        [panel.title, series.label, panel.x, panel.y, _named(x, panel.names), _named(y, panel.rows), band]
+        for series in panel.series
+        for x, y, band in zip(*map(numbers, (series.x, series.y, half_widths(series))), strict=True)
+    ]
+
+
+def _named(value: float | None, names: tuple[str, ...]) -> Cell:
+    return names[round(value)] if names and value is not None else value

@@ -1,0 +1,199 @@
+"""Pictures as SVG, PNG or PDF, drawn by matplotlib, with their numbers as CSV beside them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap
+from fem_impact.figures.style import INK, QUIET, colour_of, figure, sides
+from fem_impact.files.atomic import write_text
+from fem_impact.tables.symbols import formula
+
+if TYPE_CHECKING:
+    from matplotlib.artist import Artist
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+LETTERS = 110
+"""Letters of a legend that fit across a picture."""
+
+SAMPLE = 8
+"""Width of the sample and the space of a legend entry, letters."""
+
+LOOKS: dict[str, dict[str, Any]] = {
+    "line": {"linestyle": "-", "linewidth": 1.4},
+    "thin": {"linestyle": (0, (4, 2)), "linewidth": 0.7},
+    "dashed": {"linestyle": (0, (5, 1.5)), "linewidth": 1.4},
+    "points": {"linestyle": "none", "marker": "o", "markersize": 3.6},
+    "rings": {"linestyle": "none", "marker": "o", "markersize": 5.6, "mfc": "none"},
+    "joined": {"linestyle": "-", "linewidth": 1.0, "marker": "o", "markersize": 3.2},
+    "diamonds": {"linestyle": "none", "marker": "D", "markersize": 4.6, "mfc": "none"},
+    "squares": {"linestyle": "none", "marker": "s", "markersize": 4.6},
+    "triangles": {"linestyle": "none", "marker": "^", "markersize": 5.0},
+    "crosses": {"linestyle": "none", "marker": "x", "markersize": 5.0},
+    "interval": {"linestyle": "none", "elinewidth": 3.2, "capsize": 0.0},
+    "spread": {"linestyle": "none", "elinewidth": 1.0, "capsize": 0.0},
+}
+ERROR = {"capsize": 1.8, "elinewidth": 0.9, "capthick": 0.9}
+"""How the band of a point looks."""
+
+
+def draw(picture: Picture, path: str | Path) -> Path:
+    """Draw a picture over one legend that names more than one series; its numbers go beside it as CSV.
+
+    Parameters
+    ----------
+    picture : Picture
+    path : path
+        Its suffix is the format.
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib is not installed.
+    OutputPathError
+        The place cannot be written.
+    """
+    path, panels = Path(path), picture.panels
+    write_text(path.with_suffix(".csv"), picture.table().csv())
+    across = max(1, min(picture.columns, len(panels)))
+    down = math.ceil(len(panels) / across)
+    labels = {series.label for panel in panels for series in panel.series}
+    beside = max(1, LETTERS // (max(map(len, labels), default=0) + SAMPLE))
+    height = max(map(_height, panels), default=1.0) * down
+    with figure(path, height + 0.18 * math.ceil(len(labels) / beside) + 0.1) as drawn:
+        grid = list(drawn.subplots(down, across, squeeze=False).flat)
+        for at, (axes, panel) in enumerate(zip(grid, panels, strict=False)):
+            _panel(axes, panel)
+            if at % across and panel.rows == panels[at - 1].rows:
+                axes.tick_params(axis="y", labelleft=not panel.rows)
+        for axes in grid[len(panels) :]:
+            axes.set_visible(False)
+        _legend(drawn, grid, beside)
+    return path
+
+
+def _height(panel: Panel) -> float:
+    """Return the height of a panel, inches."""
+    if panel.rows:
+        return 0.95 + 0.27 * len(panel.rows)
+    return 4.8 if panel.shaded else 3.8 if panel.names or _areas(panel) else 3.2
+
+
+def _areas(panel: Panel) -> bool:
+    return any(series.drawn == "area" for series in panel.series)
+
+
+def _panel(axes: Axes, panel: Panel) -> None:
+    title = formula(panel.title).replace(" in ", "\nin ") if panel.rows else formula(panel.title)
+    axes.set(title=title, xlabel=formula(panel.x), ylabel=formula(panel.y))
+    if panel.shaded:
+        _shade(axes, panel.shaded)
+    below = np.zeros(max(1, len(panel.rows)))
+    for at, series in enumerate(panel.series):
+        below = _series(axes, series, colour_of(series.colour, at), below, panel.lies)
+    for level in panel.levels:
+        axes.axhline(level.at, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
+        look: dict[str, Any] = {"va": "bottom", "fontsize": 7.5, "color": INK}
+        axes.text(0.01, level.at, level.label, transform=axes.get_yaxis_transform(), **look)
+    _axes(axes, panel)
+    _marks(axes, panel)
+    for part in panel.intervals:
+        axes.axvspan(part.start, part.end, color="#eef2f6", zorder=0)
+        look = {"ha": "center", "va": "bottom", "fontsize": 7.5, "color": QUIET}
+        at_top = axes.get_xaxis_transform()
+        axes.text((part.start + part.end) / 2, 1.005, part.label, transform=at_top, **look)
+    axes.grid(axis="x" if panel.rows else "both")
+
+
+def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, lies: bool) -> np.ndarray:
+    """Draw a series over what is stacked so far; return what the next area or bar stands on."""
+    label = formula(series.label)
+    if series.drawn == "area":
+        above: np.ndarray = below + np.asarray(series.y, float)
+        axes.fill_between(series.x, below, above, color=colour, linewidth=0, label=label)
+        return above
+    if series.drawn == "bars":
+        widths, at = np.asarray(series.x, float), np.asarray(series.y, int)
+        edge: dict[str, Any] = {"edgecolor": "white", "linewidth": 0.4}
+        bars = axes.barh(at, widths, left=below[at], height=0.7, color=colour, label=label, **edge)
+        if series.texts:
+            axes.bar_label(bars, list(map(formula, series.texts)), padding=4, fontsize=8.5)
+        below[at] += np.nan_to_num(widths)
+        return below
+    look = LOOKS[series.drawn]
+    if series.band is None:
+        axes.plot(series.x, series.y, color=colour, label=label, **look)
+    else:
+        bands: dict[str, Any] = {"xerr" if lies else "yerr": series.band}
+        axes.errorbar(series.x, series.y, **bands, color=colour, label=label, **ERROR | look)
+    return below
+
+
+def _shade(axes: Axes, shaded: ShadedMap) -> None:
+    look: dict[str, Any] = {"cmap": "RdBu_r", "rasterized": True, "shading": "nearest"}
+    look |= {"vmin": -shaded.limit, "vmax": shaded.limit}
+    drawn = axes.pcolormesh(shaded.x, shaded.y, shaded.values, **look)
+    bar = axes.figure.colorbar(drawn, ax=axes, extend="both", pad=0.02)
+    bar.set_label(formula(shaded.label), color=QUIET)
+
+
+def _axes(axes: Axes, panel: Panel) -> None:
+    if panel.names:
+        axes.set_xticks(range(len(panel.names)), panel.names, rotation=35, ha="right", rotation_mode="anchor")
+    if panel.rows:
+        axes.set_yticks(range(len(panel.rows)), map(formula, panel.rows))
+        axes.set_ylim(len(panel.rows) - 0.5, -0.5)
+        axes.tick_params(axis="y", length=0)
+        axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.margins(x=0.22 if any(series.texts for series in panel.series) else 0.05)
+    if panel.logarithmic:
+        _logarithmic(axes)
+    if panel.x_range:
+        axes.set_xlim(panel.x_range)
+    if panel.y_range:
+        axes.set_ylim(panel.y_range)
+
+
+def _logarithmic(axes: Axes) -> None:
+    from matplotlib.ticker import MaxNLocator, NullFormatter
+
+    axes.set(xscale="log", yscale="log")
+    low, high = axes.get_ylim()
+    if high < 10 * low:  # less than a decade: ticks at even round steps
+        axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+
+
+def _marks(axes: Axes, panel: Panel) -> None:
+    """Draw the marks, their words under the curves."""
+    for mark in panel.marks:
+        axes.axvline(mark.at, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
+    look: dict[str, Any] = {"rotation": 90, "va": "top", "fontsize": 7.0, "color": QUIET, "zorder": 1.5}
+    for mark, side in sides(panel.marks, *axes.get_xlim()):
+        axes.text(mark.at, 0.99, formula(mark.label), transform=axes.get_xaxis_transform(), ha=side, **look)
+
+
+def _legend(drawn: Figure, grid: Sequence[Axes], beside: int) -> None:
+    """Draw one legend under all panels with ``beside`` columns, none for a single series or named bars."""
+    named: dict[str, Artist] = {}
+    for axes in grid:
+        for handle, label in zip(*axes.get_legend_handles_labels(), strict=True):
+            named.setdefault(label, handle)
+    if len(named) > 1:
+        drawn.legend(
+            list(named.values()),
+            list(named),
+            loc="outside lower center",
+            ncols=min(beside, len(named)),
+            labelcolor=INK,
+        )

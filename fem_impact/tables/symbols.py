@@ -1,0 +1,66 @@
+"""Symbols and units of plain texts, such as ``E_vib`` and ``gamma``, typeset for a page and for a picture."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from html import escape
+
+GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}
+"""Letters whose English name stands for them in plain texts."""
+
+SYMBOL = re.compile(
+    r"(?<![\w`.^/\\-])(?P<base>E|W|V|T|T1|d|e|u|k|f|t|n|mu|gamma|Omega|alpha|tau)"
+    r"(?:_(?P<index>0|[A-Za-z]{1,4}))?(?![\w`^\\])"
+    r"|(?<=/)(?P<under>E_0|tau)(?!\w)"
+    r"|(?<=\bm)\^(?P<power>-?[\d.]*\d)"
+)
+"""A letter with an index, the name of a Greek letter, and a power of a metre."""
+
+STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
+MICRO = re.compile(r"(?<=\d )us\b")
+
+
+def markup(text: str) -> str:
+    """Return a text as HTML, escaped: indices, powers, Greek letters, ``**strong**`` and `` `code` ``.
+
+    Examples
+    --------
+    >>> markup("E_vib < 1 at gamma = 26 m^-0.3815 after 3 us: `E_vib`")
+    '<i>E</i><sub>vib</sub> &lt; 1 at γ = 26 m<sup>−0.3815</sup> after 3 µs: <code>E_vib</code>'
+    """
+
+    def shown(base: str, index: str, power: str) -> str:
+        if power:
+            return f"<sup>{power}</sup>"
+        return f"<i>{base}</i><sub>{index}</sub>" if index else base
+
+    parts = CODE.split(escape(text))  # code at the odd places
+    return "".join(
+        f"<code>{part}</code>" if at % 2 else STRONG.sub(r"<strong>\1</strong>", _replaced(part, shown))
+        for at, part in enumerate(parts)
+    )
+
+
+def formula(text: str) -> str:
+    """Return a text for matplotlib: indices and powers between dollar signs, its own dollar signs escaped."""
+
+    def shown(base: str, index: str, power: str) -> str:
+        if power:
+            return f"$^{{{power}}}$"
+        return rf"${base}_{{\mathrm{{{index}}}}}$" if index else base
+
+    return _replaced(text.replace("$", r"\$"), shown)
+
+
+def _replaced(text: str, shown: Callable[[str, str, str], str]) -> str:
+    def one(match: re.Match[str]) -> str:
+        base, _, index = (match["under"] or match["base"] or "").partition("_")
+        index = index or match["index"] or ""
+        if base == "T1":
+            base, index = "T", "1"
+        if not index and base not in GREEK and not match["power"]:
+            return match[0]
+        return shown(GREEK.get(base, base), index, (match["power"] or "").replace("-", "−"))
+
+    return SYMBOL.sub(one, MICRO.sub("µs", text))
