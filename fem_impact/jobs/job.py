@@ -8,8 +8,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.errors import FemImpactError, ResultError
+from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.plan.plan import plan
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
 from fem_impact.scene.write import digest
@@ -52,7 +53,17 @@ class Job:
     @property
     def kind(self) -> Kind:
         """Fidelity and tip size, m (0 without a mesh): jobs of one kind cost about the same."""
-        return self.fidelity, (self.scene.accuracy.tip_size or 0.0) if self.fidelity == "solid" else 0.0
+        return self.fidelity, _tip_size(self.scene) if self.fidelity == "solid" else 0.0
+
+
+def _tip_size(scene: Scene) -> float:
+    """Return the tip size, m, as stated, else as planned; 0 where no mesh is possible: the run is refused."""
+    if scene.accuracy.tip_size is not None:
+        return scene.accuracy.tip_size
+    try:
+        return plan(scene).zones.tip_size
+    except SceneError:
+        return 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
 """Assumed time of a job, s, until one of its fidelity was measured."""
 
+REFUSED = 0.05
+"""Time of a solid job, s, whose scene is refused."""
+
 STEEPNESS = 3.0
 """A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm."""
 
@@ -35,7 +38,8 @@ STEEPNESS = 3.0
 def expected_costs(jobs: Iterable[Job], measured: Mapping[Kind, list[float]]) -> dict[str, float]:
     """Return the expected wall time, s, of each job by name, from the times of measured kinds.
 
-    A solid job of a tip size that was not measured is scaled from the nearest one that was.
+    A solid job of a tip size that was not measured is scaled from the nearest one that was; one whose scene
+    no mesh fits is refused at once.
     """
     return {job.name: _expected(job.kind, measured) for job in jobs}
 
@@ -44,6 +48,8 @@ def _expected(kind: Kind, measured: Mapping[Kind, list[float]]) -> float:
     if kind in measured:
         return median(measured[kind])
     fidelity, size = kind
+    if fidelity == "solid" and size == 0:
+        return REFUSED
     sizes = [other for name, other in measured if name == fidelity and other > 0]
     if not sizes:
         return GUESS[fidelity]

@@ -124,18 +124,28 @@ class Frames:
         return False
 
 
+REBOUND = 1.5  # impulse of a contact over that which stops the approach: e mostly lies between 0.2 and 0.8
+
+
 @dataclass(slots=True)
 class ProgressObserver:
-    """Observer that reports progress towards ``end``, s, when rod and barrier are expected to be apart."""
+    """Observer that reports progress towards the time at which rod and barrier are apart.
+
+    That time follows the normal impulse so far: a contact whose force is half a sine wave in time T has given
+    the share sin^2(pi t / 2 T) of its impulse at the time t. The smaller the share, the more counts ``end``,
+    s, expected before the run. ``stopping`` is the impulse, N s, that stops the approach of the contact point.
+    """
 
     moving: ClassVar[tuple[str, ...]] = ()
     show: Callable[[Progress], None]
     watch: Watch
     model: Model
     end: float
+    stopping: float
     note: str
     every: int = 200
-    begun: tuple[float, float] | None = None
+    reports: int = 0
+    begun: tuple[float, float] = (0.0, 0.0)
 
     def observe(self, state: State) -> bool:
         """Report the progress."""
@@ -149,17 +159,26 @@ class ProgressObserver:
         return False
 
     def _end(self, time: float) -> float:
-        """Return the time, s, at which the contact is expected to be over; after a contact it ends soon."""
+        """Return the time, s, at which the run is expected to end; after a contact it ends soon."""
         book = self.model.book
-        over = bool(book.intervals) and not book.touching
-        return book.last_touch + QUIET if over else self.end
+        if book.intervals and not book.touching:
+            return book.last_touch + QUIET
+        share = min(2 * float(book.impulse[1]) / (REBOUND * self.stopping), 1.0)
+        if share <= 0:
+            return self.end
+        half_sine = time * 0.5 * np.pi / float(np.arcsin(np.sqrt(share))) + QUIET
+        return (1 - share) * self.end + share * half_sine
 
     def _eta(self, time: float, end: float) -> float | None:
-        """Return the wall time, s, to the expected end; None in the first 2 % and where it has passed."""
-        # a resumed run does not begin at time 0
-        self.begun = self.begun or (clock.monotonic(), time)
+        """Return the wall time, s, to the expected end; None in the first two reports and once it has passed.
+
+        The steps between these two do not count for the pace: kernels are loaded in them.
+        """
+        self.reports += 1
+        if self.reports == 2:  # a resumed run does not begin at time 0
+            self.begun = clock.monotonic(), time
         spent, done = clock.monotonic() - self.begun[0], time - self.begun[1]
-        return spent * (end - time) / done if done > 0.02 * self.end and time < end else None
+        return spent * (end - time) / done if self.reports > 2 and time < end else None
 
 
 @dataclass(slots=True)

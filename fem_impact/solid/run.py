@@ -13,6 +13,7 @@ from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
+from fem_impact.physics.contact import approach, effective_mass
 from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
@@ -141,7 +142,8 @@ def _progress_observer(
     end = plan.size.steps * plan.size.step
     if not compiled_before():
         show(compiling(end, 20))
-    return ProgressObserver(show, watchers.watch, model, end, plan.scene.id)
+    stopping = effective_mass(plan.bodies) * approach(plan.scene)
+    return ProgressObserver(show, watchers.watch, model, end, stopping, plan.scene.id)
 
 
 def _checkpoint(

@@ -7,7 +7,8 @@ from scale_tasks import Acting, Here, job
 
 from fem_impact.jobs.forecast import estimate
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import GUESS, STEEPNESS, Eta, expected_costs, makespan, run_jobs
+from fem_impact.jobs.run import GUESS, REFUSED, STEEPNESS, Eta, expected_costs, makespan, run_jobs
+from fem_impact.plan.plan import plan
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace
 
@@ -24,6 +25,19 @@ def test_costs_come_from_the_same_kind_or_scale_with_the_tip():
         {"same": 10.0, "finer": 10.0 * 2**STEEPNESS, "coarser": 1.0 / 2**STEEPNESS, "r": 0.5}
     )
     assert expected_costs([solid("new", 0.3)], {}) == {"new": GUESS["solid"]}
+
+
+def test_a_scene_that_leaves_the_tip_size_out_counts_with_the_planned_one():
+    stated, planned = solid("stated", 0.6), Job("planned", load("t5b"))
+    assert load("t5b").accuracy.tip_size is None
+    size = plan(load("t5b")).zones.tip_size
+    costs = expected_costs([stated, planned], {stated.kind: [10.0]})
+    assert costs == pytest.approx({"stated": 10.0, "planned": 10.0 * (0.6e-3 / size) ** STEEPNESS})
+
+
+def test_a_scene_without_a_mesh_is_refused_at_once():
+    deep = Job("deep", replace(load("t5b"), "impact.v_n", "-400 m/s"))
+    assert expected_costs([deep], {("solid", 0.6e-3): [10.0]}) == {"deep": REFUSED}
 
 
 @given(st.lists(st.floats(0.1, 100.0), min_size=1, max_size=30), st.integers(1, 40))
