@@ -98,7 +98,7 @@ EXIT_CODES: dict[int, str] = {
     OutputPathError.exit_code: "the output place cannot be written, or the disk is full",
     ResultError.exit_code: "a result handed in cannot be read",
     RunError.exit_code: "a run stopped early or its ledger did not close, or `verify` failed",
-    MissingLibraryError.exit_code: "a library for pictures or films is missing; results are kept",
+    MissingLibraryError.exit_code: "a library that this command needs is missing; results are kept",
     130: "interrupted; what was computed is kept",
 }
 

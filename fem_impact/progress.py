@@ -1,4 +1,4 @@
-"""Progress of a run or a study, and the meters that show it: a live line, plain lines, or nothing."""
+"""Progress of a run or a study, and the meters that show it in plain lines or not at all."""
 
 from __future__ import annotations
 
@@ -66,36 +66,6 @@ class NullMeter:
         """Do nothing."""
 
 
-class TerminalMeter:
-    """One live line on a terminal, rewritten at most ten times a second."""
-
-    def __init__(self, stream: TextIO, clock: Callable[[], float] = time.monotonic, width: int = 100) -> None:
-        self._stream, self._clock, self._width = stream, clock, width
-        self._next, self._dirty = 0.0, False
-
-    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
-        """Rewrite the line when a tenth of a second has passed; a notice gets a line of its own."""
-        if isinstance(progress, Notice):
-            self.close()
-            self._stream.write(f"{progress.text}\n")
-            self._dirty = False
-            return
-        now = self._clock()
-        if now < self._next:
-            return
-        self._next, self._dirty = now + 0.1, True
-        line = describe(progress)[: self._width]
-        self._stream.write("\r")  # alone: `commands.terminal` escapes one within a text
-        self._stream.write(f"{line:<{self._width}}")
-        self._stream.flush()
-
-    def close(self) -> None:
-        """Leave the last line standing and go to the next."""
-        if self._dirty:
-            self._stream.write("\n")
-            self._stream.flush()
-
-
 class LineMeter:
     """Plain lines for a log: one at the start of each work, then one every few seconds."""
 
@@ -121,11 +91,6 @@ class LineMeter:
         """Do nothing: every line is complete."""
 
 
-def meter_for(stream: TextIO, width: int = 100) -> ProgressMeter:
-    """Return a live line on a terminal and plain lines everywhere else."""
-    return TerminalMeter(stream, width=width) if stream.isatty() else LineMeter(stream)
-
-
 def describe(progress: Progress | CaseProgress) -> str:
     """Return one line: t, time still needed, step, energy drift, contact state; or cases done and that time.
 
@@ -133,11 +98,11 @@ def describe(progress: Progress | CaseProgress) -> str:
     """
     if isinstance(progress, CaseProgress):
         done = f"{progress.done} of {progress.total} runs done"
-        return f"{done}, last {progress.note}, ETA {clock_text(progress.eta_s)}"
+        return f"{done}, about {clock_text(progress.eta_s)} left, last {progress.note}"
     parts = (
         progress.note,
         f"t {progress.time_s * 1e6:.0f}/{progress.end_time_s * 1e6:.0f} us",
-        f"ETA {clock_text(progress.eta_s)}" if progress.eta_s is not None else "",
+        f"about {clock_text(progress.eta_s)} left" if progress.eta_s is not None else "",
         f"step {progress.step}  energy drift {progress.energy_drift:+.1e}" if progress.step else "",
         progress.contact,
     )

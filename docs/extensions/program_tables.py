@@ -9,7 +9,8 @@ from typing import get_args
 
 from sphinx.util.docutils import SphinxDirective
 
-from fem_impact.commands.parser import REPORT, STUDIES, build_parser
+from fem_impact.commands.about_studies import REPORT, STUDIES
+from fem_impact.commands.parser import build_parser, every_command
 from fem_impact.cost.document import summary_markdown
 from fem_impact.effects.registry import EFFECTS
 from fem_impact.errors import EXIT_CODES
@@ -130,10 +131,8 @@ def outcome_keys() -> str:
 
 def commands() -> str:
     """Return the help of every command."""
-    parser = build_parser()
-    (several,) = (a for a in parser._actions if isinstance(a, argparse._SubParsersAction))
     parts = []
-    for name, command in several.choices.items():
+    for name, command in every_command(build_parser()):
         command.formatter_class = _wide(command.formatter_class)
         parts += [f"## {name}", f"```text\n{command.format_help().rstrip()}\n```"]
     return "\n\n".join(parts)
@@ -149,9 +148,11 @@ def _wide(base: type[argparse.HelpFormatter]) -> type[argparse.HelpFormatter]:
 
 
 def studies() -> str:
-    """Every study."""
-    rows = [(f"`{name}`", words) for name, words in {**STUDIES, **REPORT}.items()]
-    return Table.of(("study", "what it is about"), rows, left=range(2)).markdown()
+    """Every study with its size."""
+    rows = [(f"`{name}`", study.about, study.size, study.quick) for name, study in STUDIES.items()]
+    rows += [("`report`", f"{REPORT[0].upper()}{REPORT[1:]}.", "computes nothing", "")]
+    head = ("study", "what it does", "size and processor time", "with `--quick`")
+    return Table.of(head, rows, left=range(4)).markdown()
 
 
 def cost() -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import changed_scene, checked_out, print_json
-from fem_impact.commands.parser import Options
+from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
 

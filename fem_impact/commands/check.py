@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import changed_scene, print_json, say_fall, size_text
-from fem_impact.commands.parser import Options
+from fem_impact.commands.options import Options
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import intervals_of, source_of, stated_keys

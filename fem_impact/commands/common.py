@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import shutil
 import sys
 import tempfile
 import tomllib
@@ -12,11 +11,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.parser import Options
+from fem_impact.commands.options import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
 from fem_impact.files.lock import LOCK
 from fem_impact.files.run_directory import COMPUTED
-from fem_impact.progress import NullMeter, ProgressMeter, meter_for
 
 if TYPE_CHECKING:
     from fem_impact.plan.size import RunSize
@@ -59,13 +57,6 @@ def _changed_value(key: str, text: str) -> Any:
         return tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):
         return text
-
-
-def chosen_meter(options: Options) -> ProgressMeter:
-    """Return a meter on standard error, or a silent one."""
-    if options.quiet:
-        return NullMeter()
-    return meter_for(sys.stderr, width=max(40, shutil.get_terminal_size((100, 24)).columns - 1))
 
 
 def checked_out(out: Path) -> Path:

@@ -9,8 +9,9 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json
-from fem_impact.commands.parser import Options
+from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.options import Options
+from fem_impact.commands.terminal import chosen_meter
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.tables.text import wrapped
 

@@ -13,9 +13,10 @@ import threading
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from fem_impact.commands.parser import Options, build_parser, read_line
+from fem_impact.commands.options import Options
+from fem_impact.commands.parser import build_parser, read_line
 from fem_impact.commands.terminal import printable_streams
-from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError
+from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -30,7 +31,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _called(argv: Sequence[str] | None) -> int:
-    options = read_line(argv)
+    try:
+        options = read_line(argv)
+    except UsageError as error:
+        asked = sys.argv[1:] if argv is None else argv
+        return _complain(str(error), error.exit_code, Options(json="--json" in asked))
     if options.version:
         return _version()
     if not options.handler:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import checked_file, print_json
-from fem_impact.commands.parser import Options
+from fem_impact.commands.options import Options
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.atomic import write_text
 from fem_impact.tables.text import wrapped

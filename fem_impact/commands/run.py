@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.commands.common import (
     changed_scene,
     checked_out,
-    chosen_meter,
     print_json,
     say_fall,
     size_text,
 )
-from fem_impact.commands.parser import Options
+from fem_impact.commands.options import Options
+from fem_impact.commands.terminal import chosen_meter, print_table
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
@@ -62,7 +62,7 @@ def run(options: Options) -> int:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
         print_outcome(outcome, out)
-        _say_comparison(scene, outcome)
+        _say_comparison(scene, outcome, options)
         _say_screening(scene, options)
     if outcome.validity.finished:
         return 0
@@ -71,7 +71,7 @@ def run(options: Options) -> int:
     return RunError.exit_code
 
 
-def _say_comparison(scene: Scene, outcome: Outcome) -> None:
+def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     """Print the outcome beside the tests that its scene names."""
     from fem_impact.run.tests import tests_of
     from fem_impact.study.compare import compare
@@ -90,7 +90,8 @@ def _say_comparison(scene: Scene, outcome: Outcome) -> None:
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     told = f"beside {len(tests.motion['v_n'])} measured tests ({scene.measured}):"
-    sys.stdout.write(f"{told}\n{Table.of(head, rows, left=(0, 4)).terminal(indent='  ')}\n")
+    sys.stdout.write(f"{told}\n")
+    print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
 
 
 def _say_screening(scene: Scene, options: Options) -> None:
@@ -159,7 +160,7 @@ def scenes(options: Options) -> int:
         print_json({"scenes": listed})
     else:
         rows = [[scene[key] for key in ("id", "speed", "title")] for scene in listed]
-        sys.stdout.write(Table.of(("id", "speed", "title"), rows, left=range(3)).terminal() + "\n")
+        print_table(Table.of(("id", "speed", "title"), rows, left=range(3)), options)
     return 0
 
 

@@ -6,8 +6,9 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fem_impact.commands.about_results import FILMED
 from fem_impact.commands.common import checked_file, checked_result, print_json
-from fem_impact.commands.parser import FILMED, Options
+from fem_impact.commands.options import Options
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 
 if TYPE_CHECKING:
@@ -89,3 +90,12 @@ def _missing_film(result: Path, options: Options) -> list[str]:
         return list(films.render(result).notes)
     except (MissingLibraryError, ResultError) as error:
         return [f"The page has no film: {error}"]
+
+
+def schema(options: Options) -> int:
+    """Print the JSON Schema of an outcome."""
+    from fem_impact.outcome.check import json_schema
+    from fem_impact.outcome.record import KEYS
+
+    print_json(json_schema(KEYS))
+    return 0

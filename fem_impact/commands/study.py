@@ -9,8 +9,10 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.commands.common import checked_out, chosen_meter, print_json
-from fem_impact.commands.parser import Options
+from fem_impact.commands.about_studies import OWN_TESTS
+from fem_impact.commands.common import checked_out, print_json
+from fem_impact.commands.options import Options
+from fem_impact.commands.terminal import chosen_meter, print_markdown
 from fem_impact.errors import RunError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
@@ -19,13 +21,9 @@ if TYPE_CHECKING:
     from fem_impact.study.document import Request
 
 
-ABOUT_SETS = ("sets", "validation", "convergence", "effects")
-
-
 def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
-    _check_options(options)
-    ids = _checked_ids(options.ids, own=options.name == "sets")
+    ids = _checked_ids(options.ids, own=options.name in OWN_TESTS)
     out = checked_out(options.out or Path("results") / options.name)
     from fem_impact.files.lock import directory_lock
     from fem_impact.study.document import Request
@@ -74,7 +72,8 @@ def _study(
         print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
     else:
         sys.stderr.writelines(f"note: {note}\n" for note in notes)
-        sys.stdout.write(f"{result.text.rstrip()}\nresults: {request.out}\n")
+        print_markdown(result.text, options)
+        sys.stdout.write(f"results: {request.out}\n")
     return RunError.exit_code if result.document["failures"] else 0
 
 
@@ -122,17 +121,6 @@ def _workers(options: Options) -> Iterator[Executor]:
     lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
     with lent as executor:
         yield executor
-
-
-def _check_options(options: Options) -> None:
-    """Refuse what the named study would not look at."""
-    if options.name == "report" and (options.quick or options.estimate or options.scheduler or options.page):
-        remedy = "Leave out --quick, --estimate, --scheduler and --page."
-        raise UsageError("reads what others have computed.", key="study report", remedy=remedy)
-    if options.ids and options.name not in ABOUT_SETS:
-        problem, remedy = f"is nothing to study {options.name}.", f"It is for {', '.join(ABOUT_SETS)}."
-        given = " ".join(options.ids)
-        raise UsageError(problem, key="ID", value=given, remedy=f"Leave it out. {remedy}")
 
 
 def _page(options: Options) -> Path | None:

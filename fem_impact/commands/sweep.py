@@ -8,8 +8,9 @@ from contextlib import closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, checked_out, chosen_meter, print_json
-from fem_impact.commands.parser import Options
+from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.options import Options
+from fem_impact.commands.terminal import chosen_meter, print_markdown
 from fem_impact.errors import RunError, UsageError
 from fem_impact.jobs.executors import cores, on_scheduler
 
@@ -35,7 +36,8 @@ def sweep(options: Options) -> int:
     if options.json:
         print_json(_document(results, out))
     else:
-        sys.stdout.write(f"{made.text.rstrip()}\nresults: {out}\nreport: fem-impact report {out}\n")
+        print_markdown(made.text, options)
+        sys.stdout.write(f"results: {out}\nreport: fem-impact report {out}\n")
     return RunError.exit_code if made.document["failures"] else 0
 
 

@@ -9,8 +9,9 @@ from dataclasses import asdict
 from pathlib import Path
 
 from fem_impact.commands.common import checked_out, print_json
+from fem_impact.commands.options import Options
 from fem_impact.commands.page import checked_page, write_page
-from fem_impact.commands.parser import Options
+from fem_impact.commands.terminal import print_markdown, print_table
 from fem_impact.errors import RunError, UsageError, did_you_mean
 from fem_impact.hard_cases.run import Row, page, row_line, run_cases
 from fem_impact.hard_cases.scenes import CASES
@@ -38,7 +39,8 @@ def verify(options: Options) -> int:
     chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
     done = []
     for one in chosen:
-        sys.stderr.write(f"{one.name}: {one.words} ...\n")
+        if not options.quiet:
+            sys.stderr.write(f"{one.name}: {one.words} ...\n")
         done.append(one.run(changes))
         if not options.json:
             sys.stdout.write(_text(done[-1]))
@@ -67,7 +69,8 @@ def _write_page(options: Options) -> int:
     path, done = checked_page(options.page), []
     for name in PROBLEMS:
         done.append(problem(name).run())
-        sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
+        if not options.quiet:
+            sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
     write_page(path, *VERIFICATION, "fem-impact verify --page FILE", catalogue.page(done))
     if options.json:
         print_json([verification.document() for verification in done])
@@ -96,16 +99,16 @@ def _show_parameters(options: Options) -> int:
             ]
         )
     else:
-        sys.stdout.write(_parameter_text(chosen))
+        sys.stdout.write(f"{chosen.name}: {chosen.words}\n")
+        print_table(_parameter_table(chosen), options)
     return 0
 
 
-def _parameter_text(chosen: Problem) -> str:
+def _parameter_table(chosen: Problem) -> Table:
     rows = [
         (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in chosen.parameters
     ]
-    table = Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
-    return f"{chosen.name}: {chosen.words}\n{table.terminal(200)}\n"
+    return Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
 
 
 def _text(verification: Verification) -> str:
@@ -135,7 +138,8 @@ def stress(options: Options) -> int:
     if options.json:
         print_json([asdict(row) for row in rows])
     else:
-        sys.stdout.write(f"{text}\n\nresults: {out}\n")
+        print_markdown(text, options)
+        sys.stdout.write(f"\nresults: {out}\n")
     return 0 if all(row.passed for row in rows) else RunError.exit_code
 
 

@@ -33,7 +33,7 @@ import numpy as np
 import meshes
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_estimate
-from fem_impact.scene.fields import ACCURACY
+from fem_impact.scene.fields import TIP_SIZE
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
 
@@ -42,7 +42,7 @@ ADVISED = {"elastic": 4.0, "yielding": 5.0}  # e and mu within 2 and 5 %
 ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number of cells
 RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
 COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
-FINEST = next(f.low for f in ACCURACY if f.key == "tip_size")  # m
+FINEST = TIP_SIZE.low  # m
 
 
 def kind(bodies: ContactBodies) -> str:

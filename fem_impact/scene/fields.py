@@ -225,24 +225,22 @@ BARRIER = (
     Parameter("v_n", "velocity of the barrier along the normal", "speed", -500.0, 500.0, default=0.0),
     Parameter("v_t", "velocity of the barrier up the slope", "speed", -500.0, 500.0, default=0.0),
 )
+TIP_SIZE = Parameter(
+    "tip_size",
+    "element size at the contact",
+    "length",
+    1e-5,
+    1e-2,
+    derived="5 elements over the estimated radius of a yielding contact, 4 over that of an elastic one",
+    source="chosen for this package: the two-mesh band of every result says what it costs",
+)
 ACCURACY = (
-    Parameter(
-        "tip_size",
-        "element size at the contact",
-        "length",
-        1e-5,
-        1e-2,
-        derived="5 elements over the estimated radius of a yielding contact, 4 over that of an elastic one",
-        source="chosen for this package: the two-mesh band of every result says what it costs",
-    ),
-    Parameter(
-        "barrier_size",
-        "element size of a meshed barrier at the contact",
-        "length",
-        1e-5,
-        1e-2,
+    TIP_SIZE,
+    replace(
+        TIP_SIZE,
+        key="barrier_size",
+        meaning="element size of a meshed barrier at the contact",
         derived="accuracy.tip_size",
-        source="chosen for this package: the two-mesh band of every result says what it costs",
     ),
     Parameter(
         "mass_scaling",
@@ -381,11 +379,6 @@ class Default:
     source: str
 
 
-_ELEMENT = Default(
-    "accuracy.element",
-    "incompatible",
-    "chosen for this package: on t5b other elements change e by less than .001",
-)
 DEFAULTS: tuple[Default, ...] = (
     *(
         Default(f"{section}.{f.key}", f.derived if f.default is None else f.write(f.default), f.source)
@@ -398,5 +391,9 @@ DEFAULTS: tuple[Default, ...] = (
         for f in fields
         if f.default is not None or f.derived
     ),
-    _ELEMENT,
+    Default(
+        "accuracy.element",
+        "incompatible",
+        "chosen for this package: on t5b other elements change e by less than .001",
+    ),
 )

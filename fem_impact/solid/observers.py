@@ -133,7 +133,7 @@ class ProgressObserver:
 
     That time follows the normal impulse so far: a contact whose force is half a sine wave in time T has given
     the share sin^2(pi t / 2 T) of its impulse at the time t. The smaller the share, the more counts ``end``,
-    s, expected before the run. ``stopping`` is the impulse, N s, that stops the approach of the contact point.
+    s, expected before the run. ``stopping`` is the impulse, N s, that stops the contact point's approach.
     """
 
     moving: ClassVar[tuple[str, ...]] = ()

@@ -181,11 +181,14 @@ class Table:
 
     def terminal(self, width: int = 120, indent: str = "") -> str:
         """Return aligned lines; the widest column of texts is broken where ``width`` letters are too few."""
-        rows = [[STRONG.sub(r"\1", CODE.sub(r"\1", text)) for text in row] for row in self._shown()]
-        rows.insert(0, [column.title for column in self.columns])
+        rows = [[column.title for column in self.columns], *self.plain_rows()]
         widths = self._widths(rows, width - len(indent))
         lines = [line for row in rows for line in self._lines(row, widths)]
         return "\n".join((indent + line).rstrip() for line in lines)
+
+    def plain_rows(self) -> list[list[str]]:
+        """Return the cells as texts without marks."""
+        return [[STRONG.sub(r"\1", CODE.sub(r"\1", text)) for text in row] for row in self._shown()]
 
     def _shown(self) -> list[list[str]]:
         return [

@@ -1,12 +1,15 @@
 """A wrong command line is exit code 2; what is understood and refused is 3."""
 
-import argparse
 import json
+import re
 import shlex
+from importlib import import_module
 
 import pytest
 
-from fem_impact.commands.parser import EXAMPLES, build_parser, read_line
+from fem_impact.commands.about_studies import STUDIES
+from fem_impact.commands.parser import build_parser, every_command, read_line
+from fem_impact.study.document import Request
 
 ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
 DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
@@ -19,10 +22,14 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("check", "nowhere/qick.toml"), "there is no such file. Did you mean quick?"),
         (("run", "t5b", "--set", "accuracy.tip_size"), "is not of the form key=value"),
         (("run", "t5b", "--fidelity", "modal", "--resume"), "is of finite elements"),
-        (("study", "nope"), "invalid choice"),
+        (("study", "gama"), "there is no 'gama'. Did you mean gamma?"),
+        (("run", "t5b", "--stet"), "there is no option --stet. Did you mean --set?"),
+        (("runn", "t5b"), "there is no 'runn'. Did you mean run?"),
+        (("run",), "the following arguments are required: SCENE"),
+        (("run", "t5b", "--fidelity", "sold"), "there is no 'sold'. Did you mean solid?"),
         (("study", "sets", "t3-machned"), "Did you mean t3-machined?"),
-        (("study", "gamma", "t4"), "is nothing to study gamma"),
-        (("study", "report", "--quick"), "reads what others have computed"),
+        (("study", "gamma", "t4"), "study gamma: 't4' is not expected here"),
+        (("study", "report", "--estimate"), "there is no option --estimate"),
         (("cost", "paper", "--target", "5 %"), "are about one scene"),
         (("cost", "t5b", "--target", "2"), "--target"),
         (("cost", "t5b", "--budget", "30"), "has no unit"),
@@ -62,17 +69,64 @@ def test_what_is_understood_and_refused_is_three(cli, line):
     assert cli(*line)[0] == 3
 
 
-def test_the_help_of_every_command_shows_examples_that_are_understood():
-    (several,) = (a for a in build_parser()._actions if isinstance(a, argparse._SubParsersAction))
-    assert set(several.choices) == set(EXAMPLES)
-    for name, lines in EXAMPLES.items():
-        assert lines
-        assert all(f"\n  {line}" in several.choices[name].format_help() for line in lines)
-        assert all(read_line(shlex.split(line.replace("\\\n", ""))[1:]).handler for line in lines)
+COMMANDS = dict(every_command(build_parser()))
 
 
-def test_an_error_under_json_is_json_as_well(cli):
-    code, out, err = cli("check", "t5bb", "--json")
+@pytest.mark.parametrize("name", COMMANDS)
+def test_the_help_of_every_command_shows_examples_that_are_understood(name):
+    text = COMMANDS[name].format_help().replace("\\\n", "")
+    examples = re.findall(r"^  (fem-impact .*|eval .*)$", text.partition("\nexample")[2], re.MULTILINE)
+    assert examples
+    for line in examples:
+        words = shlex.split(re.sub(r'^eval "\$\((.*)\)"$', r"\1", line).partition(" > ")[0])[1:]
+        assert words[: len(name.split())] == name.split()
+        assert read_line(words).handler
+
+
+@pytest.mark.parametrize("name", STUDIES)
+def test_the_help_of_a_study_tells_what_is_its_own(cli, name):
+    code, text, _ = cli("study", name, "--help")
+    assert code == 0
+    others = [COMMANDS[f"study {other}"].format_help() for other in STUDIES if other != name]
+    about = " ".join(text.partition("\n\n")[2].partition("options:")[0].split())
+    assert STUDIES[name].about in about and f"{STUDIES[name].runs} runs" in about
+    assert not any(STUDIES[name].about in " ".join(other.split()) for other in others)
+    assert ("ID" in text) == bool(STUDIES[name].sets)
+
+
+@pytest.mark.parametrize("quick", [True, False])
+@pytest.mark.parametrize("name", STUDIES)
+def test_the_help_of_a_study_counts_its_runs(tmp_path, name, quick):
+    told = STUDIES[name].quick_runs if quick else STUDIES[name].runs
+    assert f"{told} runs" in (STUDIES[name].quick if quick else STUDIES[name].size)
+    jobs = import_module(f"fem_impact.study.{name}").plan(Request(tmp_path, quick=quick), {})
+    assert len(jobs) == told
+
+
+def test_what_follows_an_option_is_taken_where_it_may_be_left_out():
+    assert read_line(["study", "sets", "--quick", "t4"]).ids == ["t4"]
+    assert read_line(["study", "sets", "t3-machined", "--quick", "t4"]).ids == ["t3-machined", "t4"]
+    assert read_line(["assess", "--fidelity", "modal", "t5b"]).scene == "t5b"
+    assert read_line(["verify", "--set", "length=1", "bar"]).problem == "bar"
+
+
+@pytest.mark.parametrize(
+    ("line", "complaint"),
+    [
+        (("check", "t5bb"), "Did you mean t5b?"),
+        (("run", "t5b", "--stet"), "Did you mean --set?"),
+        (("study", "nope"), "there is no 'nope'"),
+        (("render",), "are required: RESULT"),
+    ],
+)
+def test_an_error_under_json_is_json_as_well(cli, line, complaint):
+    code, out, err = cli(*line, "--json")
     told = json.loads(out)["error"]
     assert (told["exit_code"], code) == (code, 2)
-    assert "Did you mean t5b?" in told["message"] and told["message"] in err
+    assert complaint in told["message"] and told["message"] in err
+
+
+def test_the_schema_of_an_outcome_is_printed(cli):
+    code, out, err = cli("schema")
+    assert (code, err) == (0, "")
+    assert json.loads(out)["properties"]["mu"]["type"] == ["number", "null"]

@@ -13,12 +13,13 @@ import outcome_maker
 import pytest
 
 import fem_impact
+from fem_impact.commands.options import Options
 from fem_impact.commands.outcome import print_outcome
-from fem_impact.commands.terminal import printable_streams
+from fem_impact.commands.terminal import chosen_meter, printable_streams
 from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.fields_write import FieldWriter
-from fem_impact.progress import Progress, TerminalMeter
+from fem_impact.progress import Progress
 
 HOSTILE = "a\x1b[31mred\x00\u202egnp\r\x9b"
 
@@ -89,12 +90,16 @@ def _code(path):
     return "".join(token.string for token in tokens if token.type != tokenize.STRING)
 
 
-def test_a_progress_line_is_rewritten_and_cannot_be_forged(capsys):
+def test_a_progress_line_cannot_be_forged(capsys, monkeypatch):
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.setenv("COLUMNS", "120")
+    monkeypatch.delenv("NO_COLOR", raising=False)
     with printable_streams():
-        meter = TerminalMeter(sys.stderr)
-        meter(Progress(1e-6, 1e-3, 7, 0.0, "free", note="a\rb\x1b[2K"))
-    err = capsys.readouterr().err
-    assert err.startswith(r"\ra\rb\u001b[2K  t 1/1000 us".replace(r"\r", "\r", 1))
+        meter = chosen_meter(Options())
+        meter(Progress(1e-6, 1e-3, 7, 0.0, "free", note="a\rb\x1b[2K[bold]"))
+        meter.close()
+    assert r"a\rb\u001b[2K[bold]  t 1/1000 us" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -18,6 +18,7 @@ from fem_impact.jobs import job as job_module
 from fem_impact.jobs.job import Failure
 from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import Store
+from fem_impact.plan.plan import plan
 from fem_impact.progress import Notice, NullMeter
 from fem_impact.run.program import source_digest, stamp
 from fem_impact.scene.shipped import load, replace
@@ -174,7 +175,7 @@ def test_costs_are_kept_by_fidelity_and_tip_size(tmp_path):
     run(store, job("a", "sleep 0.02"), job("b", "fail"), job_module.Job("s", job("s").scene, "solid"))
     with Store.open(store) as base:
         costs = base.costs()
-    assert set(costs) == {("rigid", 0.0), ("solid", 0.0)}
+    assert set(costs) == {("rigid", 0.0), ("solid", plan(job("s").scene).zones.tip_size)}
     assert len(costs["rigid", 0.0]) == 1
     assert 0.02 <= costs["rigid", 0.0][0] < 0.2
 

@@ -1,4 +1,4 @@
-"""The time that a run still needs follows the impulse of the contact, not the latest time at which it may end."""
+"""The time that a run still needs follows the impulse of the contact, not the latest time of its end."""
 
 from types import SimpleNamespace
 
@@ -16,9 +16,7 @@ def told(monkeypatch):
     """Report at a time of the run and of the clock; return what was shown. Kernels load until 10 s."""
     shown, clock = [], SimpleNamespace(monotonic=lambda: clock.now, now=0.0)
     monkeypatch.setattr(observers, "clock", clock)
-    book = SimpleNamespace(
-        step=np.zeros(9), intervals=[], touching=True, last_touch=0.0, impulse=np.zeros(3)
-    )
+    book = SimpleNamespace(step=np.zeros(9), intervals=[], touching=True, last_touch=0.0, impulse=np.zeros(3))
     watch = SimpleNamespace(drift=0.0)
     observer = ProgressObserver(shown.append, watch, SimpleNamespace(book=book), EXPECTED, STOPPING, "")
 
