@@ -21,6 +21,7 @@ _BARRIER = (
     ("V_n of the barrier after", "V_bn_m_per_s", "m/s"),
     ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
 )
+_TURNED = (("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"),)
 _IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -33,7 +34,9 @@ def print_outcome(outcome: Outcome, out: Path) -> None:
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
     barrier = outcome.barrier
     moved = any((barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))
-    lines += [_motion(outcome, *row) for row in (restitution, *_MOTION, *(_BARRIER if moved else ()))]
+    turned = or_none(barrier.Omega_b) is not None
+    rows = (restitution, *_MOTION, *(_BARRIER if moved else ()), *(_TURNED if turned else ()))
+    lines += [_motion(outcome, *row) for row in rows]
     lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]

@@ -12,7 +12,10 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import (
+    AWAY_N,
+    AWAY_T,
     BASE_N,
+    BASE_SPIN,
     BASE_T,
     FLOWED,
     HARDEST,
@@ -52,7 +55,8 @@ class ModalResult:
         motion's, skin friction and plastic work of the sheared surface, stored what the contact still holds
         elastically where the run was cut off
     plate : work on a plate that bends, J; ``barrier`` : what the motion of a free barrier holds, J
-    V_bn, V_bt : velocity of the barrier, m/s, as seen from where it was before
+    V_bn, V_bt, Omega_b : velocity of the barrier, m/s, as seen from where it was before, and its spin, rad/s
+    away : (n, t) rod's mass centre from the barrier's at the end, m
     fallen : what gravity added to these and to the vibration, J
     energies : (k,) vibration of each mode, J
     contacts : (m, 4) start, end, s, impulses along n and t, N s
@@ -76,6 +80,8 @@ class ModalResult:
     barrier: float
     V_bn: float
     V_bt: float
+    Omega_b: float
+    away: tuple[float, float]
     residual: float
     fallen: float
     contacts: Array
@@ -128,8 +134,9 @@ def _result(
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
     skin, friction = tally[SHEARED] + tally[RUBBED], tally[RUBBED]
     plastic = tally[FLOWED] + tally[SHEARED]
-    base_n, base_t = end.motion.rigid[[BASE_N, BASE_T]]
+    base_n, base_t, base_spin = end.motion.rigid[[BASE_N, BASE_T, BASE_SPIN]]
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
+    barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
     given = barrier + tally[WORK_P]
     spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held) + given
     fell = fall(plan.slots.gravity, end.time, contacts[: end.touches, :2])
@@ -151,6 +158,8 @@ def _result(
         barrier=barrier,
         V_bn=base_n,
         V_bt=base_t,
+        Omega_b=base_spin,
+        away=(float(end.motion.rigid[AWAY_N]), float(end.motion.rigid[AWAY_T])),
         residual=E_0 + tally[WORK_G] - spent,
         fallen=tally[WORK_G] + kinetic - _kinetic(rod, *motion),
         contacts=contacts[: end.touches],
@@ -187,7 +196,7 @@ def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
 
 def _start(plan: Plan, rod: ModalRod) -> Start:
     g, impact = plan.slots.gravity or 0.0, plan.scene.relative
-    mass = plan.scene.barrier.mass
+    struck = plan.scene.barrier
     return Start(
         rod.mass,
         rod.k2,
@@ -199,8 +208,11 @@ def _start(plan: Plan, rod: ModalRod) -> Start:
         impact.omega,
         -g * sin(impact.angle),
         -g * cos(impact.angle),
-        1 / mass if mass else 0.0,
+        1 / struck.mass if struck.mass else 0.0,
         1 / plan.slots.plate if plan.slots.plate else 0.0,
+        1 / struck.inertia if struck.inertia else 0.0,
+        struck.centre_depth or 0.0,
+        struck.centre_offset,
     )
 
 

@@ -22,8 +22,12 @@ SPRINGS = 100
 LOOK = 8  # steps between looks at the rod's other points
 TILT = 0.5  # of the largest depth: a face has tipped over where an edge is so much lower than its middle
 
-# of the rigid motion: m/s, m/s, rad/s, m and m from the barrier, rad; the barrier's velocities, m/s
-V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T = range(8)
+# of the rigid motion: m/s, m/s, rad/s, m and m from the barrier's surface under the contact, rad; the
+# velocities of the barrier's mass centre, m/s, its spin, rad/s, and velocities of its surface, m/s; the rod's
+# mass centre from the barrier's, m
+V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T, BASE_SPIN, SURFACE_N, SURFACE_T, AWAY_N, AWAY_T = range(
+    13
+)
 # of the tally: m, N; J of the forces, gravity and a plate; J of flow, of the sheared skin, of friction
 PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P, FLOWED, SHEARED, RUBBED = range(9)
 NOTHING, TIP = -1, -2  # of what strikes
@@ -33,7 +37,8 @@ class Start(NamedTuple):
     """Rigid rod at first contact: kg, m2, m, m/s, rad/s, m/s2 along t and n.
 
     ``lightness`` is 1 / the barrier's mass, 1/kg; ``give`` is 1 / the impedance of a plate that bends,
-    m/(N s); both are 0 for a massive barrier.
+    m/(N s); both are 0 for a massive barrier. ``ease`` is 1 / the moment of inertia, 1/(kg m2), of a free
+    barrier about its mass centre, ``deep``, m, under the struck point and ``beside``, m, up the slope of it.
     """
 
     mass: float
@@ -48,6 +53,9 @@ class Start(NamedTuple):
     g_n: float
     lightness: float = 0.0
     give: float = 0.0
+    ease: float = 0.0
+    deep: float = 0.0
+    beside: float = 0.0
 
 
 class Modes(NamedTuple):
@@ -89,7 +97,7 @@ class Bounds(NamedTuple):
 
 
 class ModalState(NamedTuple):
-    """What moves: (8,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
+    """What moves: (13,) rigid motion; (k,) modal amplitudes and their rates, sqrt(kg) m, sqrt(kg) m/s."""
 
     rigid: Array
     q: Array
@@ -216,8 +224,10 @@ def fly(
     """Move on by a step of free flight; return the work of gravity, J/kg."""
     (rigid, q, rate), (cosine, sine) = now, turns
     lift = g_n * (rigid[V_N] + 0.5 * dt * g_n) + g_t * (rigid[V_T] + 0.5 * dt * g_t)
-    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[BASE_N])
-    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[BASE_T])
+    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[SURFACE_N])
+    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[SURFACE_T])
+    rigid[AWAY_N] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[BASE_N])
+    rigid[AWAY_T] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[BASE_T])
     rigid[TURN] += dt * rigid[SPIN]
     rigid[V_N] += dt * g_n
     rigid[V_T] += dt * g_t
@@ -241,10 +251,16 @@ def push(
     """Change the motion by an impulse at the followed point, N s, and book its work on both bodies."""
     (c, s, arm_t, arm_n), (rigid, _, rate) = arm, now
     w_n, w_t = rigid[V_N] - rigid[SPIN] * arm_t, rigid[V_T] + rigid[SPIN] * arm_n
-    w_n -= 2 * rigid[BASE_N] - p_n * start.lightness
-    w_t -= 2 * rigid[BASE_T] - p_t * start.lightness
+    # arm from the barrier's mass centre to the same point
+    deep_t, deep_n = rigid[AWAY_T] + arm_t, rigid[AWAY_N] + arm_n
+    turned = start.ease * (deep_t * p_n - deep_n * p_t)
+    w_n -= 2 * (rigid[BASE_N] - rigid[BASE_SPIN] * deep_t) - p_n * start.lightness - turned * deep_t
+    w_t -= 2 * (rigid[BASE_T] + rigid[BASE_SPIN] * deep_n) - p_t * start.lightness + turned * deep_n
     rigid[BASE_N] -= p_n * start.lightness
     rigid[BASE_T] -= p_t * start.lightness
+    rigid[BASE_SPIN] += turned
+    rigid[SURFACE_N] = rigid[BASE_N] - rigid[BASE_SPIN] * deep_t
+    rigid[SURFACE_T] = rigid[BASE_T] + rigid[BASE_SPIN] * deep_n
     rigid[V_N] += p_n / start.mass
     rigid[V_T] += p_t / start.mass
     rigid[SPIN] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
@@ -326,7 +342,9 @@ def drop(
     """
     dt, k, tally = bounds.step, len(modes.omega), np.zeros(9)
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
-    rigid = np.array([start.v_n, start.v_t, start.omega, start.radius - start.centre_n, 0.0, 0.0, 0.0, 0.0])
+    rigid = np.zeros(13)
+    rigid[:4] = start.v_n, start.v_t, start.omega, start.radius - start.centre_n
+    rigid[AWAY_N:] = rigid[HEIGHT] + start.deep, -start.centre_t - start.beside
     now = ModalState(rigid, np.zeros(k), np.zeros(k))
     springs, furrow = springs_over(bounds.reach), smooth(bounds.reach)
     gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), 0.0, False, 0.0

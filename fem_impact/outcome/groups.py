@@ -125,6 +125,15 @@ class BarrierMotion:
     v_bt: float = key("v_bt_m_per_s", "m/s", "Tangential velocity of the barrier at first contact.")
     V_bn: float = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.")
     V_bt: float = key("V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.")
+    Omega_b: Num = key(
+        "barrier_Omega_rad_per_s", "rad/s", "Spin of a free barrier after the last separation, from n to t."
+    )
+    angular_momentum_error: Num = key(
+        "angular_momentum_error",
+        "-",
+        "Change of the angular momentum of rod and barrier about their common mass centre, less gravity's "
+        "part, over the rod's momentum at first contact times the distance between the mass centres.",
+    )
     momentum_error: Num = key(
         "momentum_error",
         "-",
@@ -150,7 +159,7 @@ class Restitution:
     """Impulse ratio, and the coefficients with three sets of contact arms."""
 
     mu: Num = key("mu", "-", "Impulse ratio: tangential over normal impulse (Eq 17).", True)
-    mu_c: float = key(
+    mu_c: Num = key(
         "mu_c", "-", "Critical impulse ratio, at which the tip stops sliding without reversal (Eq 11)."
     )
     paper: ArmCoefficients = part("paper", "the paper's arms for this set")

@@ -162,8 +162,9 @@ def reduced(scene: Scene) -> tuple[float, float]:
 def effective_mass(bodies: ContactBodies) -> float:
     """Return m*, kg, at least that of a frictionless contact."""
     (mass, k2), (d_c, d_d) = reduced(bodies.scene), arms(bodies.scene)
-    frictionless = 1 + d_c**2 / k2
-    return float(mass / min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / k2)))
+    barrier, frictionless = bodies.scene.barrier, 1 + d_c**2 / k2
+    turning = mass * barrier.centre_offset**2 / barrier.inertia if barrier.inertia else 0.0
+    return float(mass / (min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / k2)) + turning))
 
 
 def start_energy(scene: Scene) -> float:

@@ -156,6 +156,17 @@ def require_plate(bodies: ContactBodies) -> None:
         )
 
 
+def require_still(scene: Scene, fidelity: str) -> None:
+    """Refuse a barrier that turns where a fidelity has none (SceneError)."""
+    if scene.barrier.inertia is not None and fidelity != "modal":
+        raise SceneError(
+            f"lets the barrier turn, which the {fidelity} fidelity does not hold.",
+            key="barrier.inertia",
+            value=f"{scene.barrier.inertia:.3g} kg m2",
+            remedy="Use the modal fidelity, or leave out inertia and centre_depth: it then only translates.",
+        )
+
+
 def require_point(bodies: ContactBodies) -> None:
     """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
     scene, body = bodies.scene, projectile(bodies.scene)

@@ -17,6 +17,7 @@ from fem_impact.plan.limits import (
     require_plate,
     require_point,
     require_shallow,
+    require_still,
     validity,
 )
 from fem_impact.plan.metals import unknowns
@@ -91,6 +92,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+    require_still(scene, fidelity)
     require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
     bodies = bodies_of(in_model)

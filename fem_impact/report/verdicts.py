@@ -102,10 +102,10 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
     series = (
         Series("measured mu", at, measured, "rings"),
         Series("computed mu", at, [known(row.restitution.mu) for row in rows], "points"),
-        Series("mu_c", at, [row.restitution.mu_c for row in rows], "points"),
+        Series("mu_c", at, [known(row.restitution.mu_c) for row in rows], "points"),
     )
     ratios = [row.restitution for row in rows]
-    most = [max(mu, known(r.mu)) / r.mu_c for r, mu in zip(ratios, measured, strict=True)]
+    most = [max(mu, known(r.mu)) / known(r.mu_c) for r, mu in zip(ratios, measured, strict=True)]
     above = [name for name, ratio in zip(_names(rows), most, strict=True) if ratio > 1.02]
     sentence = (
         "Stands with a limit: mu_c is the ratio at which the tip stops without turning back, and no upper "

@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
 MASSIVE = Unknown("the barrier is massive")
+UPRIGHT = Unknown("the barrier does not turn")
+TURNING = Unknown("the barrier turns: rigid theory's arms are those of one that does not")
 UNBENT = Unknown("the plate-bending effect is off")
 HARDER = Unknown("the contact law lets the softer body alone flow: what the harder one takes is in its share")
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
@@ -165,6 +167,8 @@ def barrier_motion(scene: Scene, base_n: float, base_t: float, error: Num) -> Ba
         v_bt=barrier.v_t,
         V_bn=barrier.v_n + float(base_n),
         V_bt=barrier.v_t + float(base_t),
+        Omega_b=UPRIGHT,
+        angular_momentum_error=UPRIGHT,
         momentum_error=MASSIVE if barrier.mass is None else error,
     )
 
@@ -180,6 +184,26 @@ def momentum_error(
     gained_n = motion.mass * (motion.V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
     gained_t = motion.mass * (motion.V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
     return hypot(gained_n, gained_t) / (motion.mass * hypot(before.v_n, before.v_t))
+
+
+def angular_momentum_error(
+    scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b: float, away: tuple[float, float]
+) -> float:
+    """Return the change of the angular momentum of rod and barrier about their common mass centre.
+
+    It is over the rod's momentum as seen from the barrier times the distance of the mass centres before.
+    ``away`` (n, t), m, is the rod's mass centre from the barrier's after the impact.
+    """
+    before, struck, (d_c, d_d) = scene.relative, scene.barrier, arms(scene)
+    inertia, M = struck.inertia or 0.0, struck.mass or 0.0
+    reduced_mass = motion.mass * M / (motion.mass + M)
+    # the mass centre of the rod lies d_d above and d_c up the slope from the struck point
+    start_n, start_t = d_d + (struck.centre_depth or 0.0), d_c - struck.centre_offset
+    V_n, V_t = motion.V_n - barrier.V_bn, motion.V_t - barrier.V_bt
+    orbit = reduced_mass * (away[0] * V_t - away[1] * V_n - start_n * before.v_t + start_t * before.v_n)
+    spun = motion.mass * motion.k_squared * (motion.Omega - before.omega) + inertia * Omega_b
+    scale = motion.mass * hypot(before.v_n, before.v_t) * hypot(start_n, start_t)
+    return abs(orbit + spun) / scale
 
 
 def as_on_massive(scene: Scene, motion: RodMotion, barrier: BarrierMotion) -> RodMotion:
@@ -204,6 +228,8 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
     The centre of the impulse is the point at the height of the geometric contact where the moment
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
+    if not isinstance(barrier.Omega_b, Unknown):
+        return _on_turning(scene, motion, barrier, barrier.Omega_b)
     (d_c, d_d), omega, m = arms(scene), scene.impact.omega, as_on_massive(scene, motion, barrier)
     before = m.v_n, m.v_t
     e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
@@ -221,6 +247,32 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
         edge=_with_arms(d_c, d_d, omega, m, E_0),
         impulse=_with_arms(centre, d_d, omega, m, E_0),
     )
+
+
+def _on_turning(scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b: float) -> Restitution:
+    """Return the coefficients on a barrier that turns: of the velocities of the two points that touch.
+
+    The works of the normal and the tangential impulse are those of the mean relative velocity of the points.
+    """
+    (d_c, d_d), omega, struck = arms(scene), scene.impact.omega, scene.barrier
+    depth, offset = struck.centre_depth or 0.0, struck.centre_offset
+    P_n, P_t = motion.mass * (motion.V_n - motion.v_n), motion.mass * (motion.V_t - motion.v_t)
+    before_n = motion.v_n - barrier.v_bn + d_c * omega
+    before_t = motion.v_t - barrier.v_bt - d_d * omega
+    after_n = motion.V_n + d_c * motion.Omega - barrier.V_bn - Omega_b * offset
+    after_t = motion.V_t - d_d * motion.Omega - barrier.V_bt - Omega_b * depth
+    seen = scene.relative
+    E_0 = float(rigid.kinetic_energy(seen.v_n, seen.v_t, omega, mass=motion.mass, k2=motion.k_squared))
+    edge = ArmCoefficients(
+        d_c=d_c,
+        d_d=d_d,
+        e=-after_n / before_n,
+        e_m=TURNING,
+        E_ln=-0.5 * P_n * (before_n + after_n) / E_0,
+        E_lt=-0.5 * P_t * (before_t + after_t) / E_0,
+    )
+    other = unknown(ArmCoefficients, TURNING.reason)
+    return Restitution(mu=P_t / P_n, mu_c=TURNING, paper=other, edge=edge, impulse=other)
 
 
 def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -> ArmCoefficients:

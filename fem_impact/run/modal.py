@@ -18,6 +18,7 @@ from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
     MASSIVE,
     UNBENT,
+    angular_momentum_error,
     barrier_motion,
     gravity_warning,
     momentum_error,
@@ -46,6 +47,9 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     fallen = (plan.slots.gravity or 0.0) * between(contacts)
     base = result.V_bn, result.V_bt
     struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base, fallen))
+    if scene.barrier.inertia is not None:
+        error = angular_momentum_error(scene, moved, struck, result.Omega_b, result.away)
+        struck = replace(struck, Omega_b=result.Omega_b, angular_momentum_error=error)
     coefficients, energy = restitution(scene, moved, struck, fallen), _energy(plan, result)
     origin = provenance(plan, CHOICES, WITHOUT)
     failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
@@ -57,8 +61,13 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
             failed or result.reason,
             result.V_n - result.V_bn,
             "the reduced model has no second mesh",
-            (*ASSUMPTIONS, *beside_solid(scene)),
-            [*doubts(origin, moved, coefficients, energy), *gravity_warning(plan, contacts), *plan.unknown],
+            (*ASSUMPTIONS, *([LEVEL] if scene.barrier.inertia else []), *beside_solid(scene)),
+            [
+                *doubts(origin, moved, coefficients, energy),
+                *gravity_warning(plan, contacts),
+                *_tilted(result),
+                *plan.unknown,
+            ],
         ),
         motion=moved,
         barrier=struck,
@@ -68,6 +77,14 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
         heat=unknown(Heat, "heat is followed on the finite elements only"),
         cost=_cost(result),
     )
+
+
+def _tilted(result: ModalResult) -> list[str]:
+    """Warn where a barrier turns so far in contact that its surface is not level any more."""
+    turned = abs(result.Omega_b) * float(result.contacts[-1, 1])
+    if turned <= TILT_TOLD:
+        return []
+    return [f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."]
 
 
 def _energy(plan: Plan, result: ModalResult) -> Energy:
@@ -124,6 +141,8 @@ def _cost(result: ModalResult) -> RunCost:
     )
 
 
+TILT_TOLD = 0.01  # rad, as for the rod's own rotation
+LEVEL = "A barrier that turns moves the struck point with it, but the surface there keeps its direction."
 ASSUMPTIONS = (
     "Contact by Hertz or, with a yielding body, by cells across a furrow with Tabor's hardness of the softer "
     "body; the elliptic contact is replaced by a round one of the same sqrt(R1 R2).",

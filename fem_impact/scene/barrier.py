@@ -19,8 +19,9 @@ class Barrier:
     around it, or a rigid frame (``fixed``), as in plain models of other codes.
     A plate of ``thickness``, m, has the ``support`` of a base that it is bonded to (``backed``), or is free
     underneath and so wide that bending waves run away (``infinite``); ``span``, m, says how wide, at least.
-    A barrier of ``mass``, kg, is free to move and does not turn. ``v_n`` and ``v_t``, m/s, are its velocity
-    before the impact.
+    A barrier of ``mass``, kg, is free to move. It turns if its ``inertia``, kg m2, is stated, too: about its
+    mass centre, which lies ``centre_depth``, m, below the struck surface and ``centre_offset``, m, up the
+    slope of the struck point. ``v_n`` and ``v_t``, m/s, are its velocity before the impact.
     """
 
     material: Material
@@ -29,6 +30,9 @@ class Barrier:
     support: fields.Support = "backed"
     span: float | None = None
     mass: float | None = None
+    inertia: float | None = None
+    centre_depth: float | None = None
+    centre_offset: float = 0.0
     v_n: float = 0.0
     v_t: float = 0.0
 
@@ -37,11 +41,26 @@ class Barrier:
         check_choice(self.support, get_args(fields.Support), "support")
         check_numbers(self, fields.BARRIER)
         _check_support(self)
+        _check_turning(self)
 
     @property
     def bends(self) -> bool:
         """Whether it is a plate whose bending waves run away."""
         return self.support == "infinite"
+
+
+def _check_turning(barrier: Barrier) -> None:
+    """Refuse a barrier that turns of which something is missing, and the place of a centre without a turn."""
+    placed = barrier.centre_depth is not None or barrier.centre_offset != 0.0
+    if barrier.inertia is None and placed:
+        key = "centre_offset" if barrier.centre_depth is None else "centre_depth"
+        remedy = "Add its mass and inertia, or leave this out."
+        raise SceneError("means nothing for a barrier that does not turn.", key=key, remedy=remedy)
+    if barrier.inertia is not None and barrier.mass is None:
+        raise SceneError("is that of a free barrier: state its mass, too.", key="inertia")
+    if barrier.inertia is not None and barrier.centre_depth is None:
+        problem = "is missing: friction turns the barrier by it. State how deep its mass centre lies."
+        raise SceneError(problem, key="centre_depth")
 
 
 def _check_support(barrier: Barrier) -> None:
