@@ -53,6 +53,7 @@ def test_a_ball_that_rubs_turns_the_block_by_its_depth():
     P_n = outcome.motion.mass * (outcome.motion.V_n + 1.0)
     torque = -P_n * OFFSET - mu * P_n * DEPTH
     assert known(outcome.barrier.Omega_b) == pytest.approx(torque / J, rel=5e-3)
+    assert abs(outcome.energy.residual) < 1e-6
 
 
 @pytest.mark.parametrize("effects", ["auto", ["friction", "rod-plasticity", "barrier-elastoplastic"]])
