@@ -23,7 +23,7 @@ def add_render(commands: Commands) -> None:
     summary = "make a film of the stress waves"
     parser = add_command(commands, "render", summary, "fem_impact.commands.show:render", examples)
     several = f"{_RESULT}; several make one film side by side"
-    film = "film to write: .mp4, .webp, .gif, or .png for a folder of frames (default: beside the fields)"
+    film = "film: .mp4, .webp, .gif, .png for a folder, or .html to turn it (default: beside the fields)"
     parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
     parser.add_argument("--out", type=Path, metavar="FILE", help=film)
     parser.add_argument(

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def render(options: Options) -> int:
-    """Make a film of the stress waves of a result, or of several side by side."""
+    """Make a film of the waves of a result, or of several side by side, or a page to turn the rod on."""
     results = [checked_result(result) for result in options.results]
     out = checked_file(options.out) if options.out else None
     for result in results:
@@ -27,9 +27,16 @@ def render(options: Options) -> int:
     span = _span(options)
     if len(results) > 1 and options.field != FILMED[0]:
         raise UsageError("shows the strain only, side by side.", key="--field", value=options.field)
+    turning = out is not None and out.suffix == ".html"
+    if len(results) > 1 and turning:
+        raise UsageError("shows one result only.", key="--out", value=str(out), remedy="Name one RESULT.")
     if not options.quiet:
         sys.stderr.write("drawing the film ...\n")
-    if len(results) > 1:
+    if out is not None and turning:
+        from fem_impact.report.turning import write_view
+
+        film = write_view(results[0], out, span, options.field)
+    elif len(results) > 1:
         film = render_side_by_side(results, out, span, options.size)
     else:
         film = films.render(results[0], out, span, options.field, options.size)

@@ -34,7 +34,7 @@ class _View:
         import pyvista
 
         self.motion = motion
-        self.surface = _surface(motion)
+        self.surface = outer_surface(motion)
         self.nodes = np.asarray(self.surface.point_data["vtkOriginalPointIds"])
         self.cells = np.asarray(self.surface.cell_data["vtkOriginalCellIds"])
         self.plotter: Any = pyvista.Plotter(off_screen=True, window_size=list(size), lighting="light kit")
@@ -131,7 +131,8 @@ def _corners(motion: FilmData) -> tuple[np.ndarray, np.ndarray]:
     return points.min(axis=0), points.max(axis=0)
 
 
-def _surface(motion: FilmData) -> pyvista.PolyData:
+def outer_surface(motion: FilmData) -> pyvista.PolyData:
+    """Return the outside of the half model, with the numbers of its points and cells in the mesh."""
     import pyvista
 
     cells = {pyvista.CellType.HEXAHEDRON: motion.fields.cells}

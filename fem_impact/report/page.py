@@ -111,21 +111,22 @@ def figure(picture: Picture, figures: Path, since: Path | None = None) -> Markup
     drawn = figures / f"{picture.name}.svg"
     if not since or not drawn.is_file() or drawn.stat().st_mtime <= since.stat().st_mtime:
         draw(picture, drawn)
-    return _figure(live(picture))
+    return live_figure(live(picture))
 
 
 def stored_figure(stem: Path) -> Markup:
     """Return a figure that a study stored, ``stem.json``. Raises ResultError where it is none."""
     path = stem.with_suffix(".json")
     try:
-        return _figure(json.loads(_bytes(path)))
+        return live_figure(json.loads(_bytes(path)))
     except (ValueError, LookupError, TypeError, AttributeError) as error:
         raise ResultError(f"{path}: not a figure of this version; run the study again ({error}).") from error
 
 
-def _figure(shown: dict[str, Any]) -> Markup:
-    """Return panels that the page's script draws, their legend and caption."""
-    drawn = [{"data": panel["data"], "layout": panel["layout"]} for panel in shown["panels"]]
+def live_figure(shown: dict[str, Any]) -> Markup:
+    """Return panels that the page's script draws, their legend and caption, of `fem_impact.figures.live`."""
+    parts = ("data", "layout", "frames")
+    drawn = [{name: panel[name] for name in parts if name in panel} for panel in shown["panels"]]
     # no text within can end the element
     text = json.dumps(drawn, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
     panels = "\n".join(map(_panel, shown["panels"]))

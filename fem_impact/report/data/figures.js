@@ -11,8 +11,10 @@ const draw = (figure) => {
   figure.dataset.drawn = "yes";
   const panels = JSON.parse(figure.querySelector("script").textContent);
   figure.querySelectorAll(".plot").forEach((place, at) => {
-    const { data, layout } = panels[at];
-    Plotly.newPlot(place, data, { ...layout, dragmode: touch ? false : layout.dragmode || "zoom" }, settings);
+    const layout = { ...panels[at].layout, dragmode: touch ? false : "zoom" };
+    const eye = place.clientWidth < 600 && layout.scene?.camera.eye;
+    if (eye) for (const axis in eye) eye[axis] *= 1.5; // the whole rod on a phone
+    Plotly.newPlot(place, { ...panels[at], layout, config: settings });
   });
 };
 const drawAll = () => document.querySelectorAll("figure.live").forEach(draw);
