@@ -5,7 +5,9 @@ from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
-from meshes.quality import Quality, quality, volume
+from meshes.moments import CellMoments, cell_moments
+from meshes.own import own_half, read_own
+from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
 from meshes.sphere import sphere
@@ -16,6 +18,7 @@ __all__ = [
     "OUTER",
     "SKIN",
     "SYMMETRY",
+    "CellMoments",
     "HexMesh",
     "MeshError",
     "MeshFile",
@@ -23,12 +26,17 @@ __all__ = [
     "RodMesh",
     "Zone",
     "block",
+    "cell_moments",
     "contact_radius",
+    "edge_lengths",
+    "own_half",
     "quality",
     "read",
+    "read_own",
     "refine",
     "rod",
     "sphere",
+    "thicknesses",
     "thin_skin_rise",
     "turned",
     "volume",

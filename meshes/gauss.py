@@ -6,7 +6,7 @@ from meshes.arrays import FloatArray
 from meshes.hexmesh import HexMesh
 from meshes.topology import CORNERS
 
-__all__ = ["GRADIENTS", "jacobians"]
+__all__ = ["GRADIENTS", "SHAPES", "jacobians"]
 
 _SIGNS = 2.0 * CORNERS - 1.0
 _POINTS = _SIGNS / np.sqrt(3.0)
@@ -16,6 +16,9 @@ _FACTORS = 1.0 + _POINTS[:, None, :] * _SIGNS[None, :, :]
 GRADIENTS: FloatArray = np.stack(
     [_SIGNS[:, d] * np.delete(_FACTORS, d, axis=2).prod(axis=2) / 8.0 for d in range(3)], axis=2
 )
+
+#: (8, 8) value of each shape function at each Gauss point.
+SHAPES: FloatArray = _FACTORS.prod(axis=2) / 8.0
 
 
 def jacobians(mesh: HexMesh) -> FloatArray:

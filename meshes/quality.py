@@ -4,13 +4,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from meshes.arrays import FloatArray
+from meshes.arrays import FloatArray, IntArray
 from meshes.errors import MeshError
 from meshes.gauss import jacobians
 from meshes.hexmesh import HexMesh
 from meshes.topology import CORNERS, EDGES
 
-__all__ = ["Quality", "aspects", "edge_lengths", "quality", "require_positive", "scaled_jacobians", "volume"]
+__all__ = [
+    "Quality",
+    "aspects",
+    "edge_lengths",
+    "quality",
+    "require_positive",
+    "scaled_jacobians",
+    "thicknesses",
+    "volume",
+]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,9 +61,9 @@ def corner_jacobians(x: FloatArray) -> FloatArray:
     return np.asarray(_SIGN * np.linalg.det(arms))
 
 
-def edge_lengths(mesh: HexMesh) -> FloatArray:
-    """(m, 12) edges of every cell, m."""
-    ends = mesh.points[mesh.cells[:, EDGES]]
+def edge_lengths(mesh: HexMesh, cells: IntArray | slice = slice(None)) -> FloatArray:
+    """(m, 12) edges, m, of every cell, or of those chosen."""
+    ends = mesh.points[mesh.cells[cells][:, EDGES]]
     return np.asarray(np.linalg.norm(ends[:, :, 1] - ends[:, :, 0], axis=-1))
 
 
@@ -62,6 +71,11 @@ def aspects(mesh: HexMesh) -> FloatArray:
     """(m,) longest over shortest edge."""
     edges = edge_lengths(mesh)
     return np.asarray(edges.max(axis=1) / edges.min(axis=1))
+
+
+def thicknesses(mesh: HexMesh) -> FloatArray:
+    """(m,) least thickness of every cell, m: what a wave has to cross, least over the Gauss points."""
+    return np.asarray(2.0 * np.linalg.svd(jacobians(mesh), compute_uv=False)[:, :, -1].min(axis=1))
 
 
 def volume(mesh: HexMesh) -> float:

@@ -15,6 +15,7 @@ from .closure import closure_defect
 from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
 from .errors import DataError, ImpactError, RigidError, ShapeError
+from .faceted import Faceted
 from .finite import FreeMotion, solve_free
 from .general import General
 from .losses import Losses, PredictedLosses, kinetic_energy, losses, predicted_losses
@@ -28,7 +29,7 @@ from .turned import Turned
 from .uncertainty import Errors, Estimate, bootstrap, first_order
 from .worst import WorstCase, worst_case
 
-Body = Projectile | Turned
+Body = Projectile | Turned | Faceted
 """What strikes a barrier."""
 
 __all__ = [
@@ -43,6 +44,7 @@ __all__ = [
     "End",
     "Errors",
     "Estimate",
+    "Faceted",
     "FreeMotion",
     "General",
     "ImpactError",

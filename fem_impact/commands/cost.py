@@ -27,6 +27,7 @@ PAPER = "paper"
 def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     from fem_impact.cost.quantities import chosen
+    from fem_impact.plan.limits import require_turned
     from fem_impact.scene.units import option_quantity
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
@@ -38,6 +39,7 @@ def cost(options: Options) -> int:
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
+    require_turned(scene, "a ladder of costs")
     names, family = chosen(asked, scene), _family(scene, options.finest)
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.cost.document import text_table, write_cost

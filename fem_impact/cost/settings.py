@@ -41,7 +41,7 @@ class Mesh:
         """Return the element sizes of rod and barrier at the contact, m."""
         diameter = scene.projectile.diameter
         stateless = replace(scene.accuracy, across=OWN, tip_size=None, barrier_size=None)
-        levels, _ = levels_of(plan(replace(scene, accuracy=stateless), "modal").bodies)
+        levels, _ = levels_of(plan(replace(scene, accuracy=stateless), "rigid").bodies)
         tip, barrier = (diameter / self.across / 2 ** (levels + more) for more in (self.tip, self.barrier))
         return tip, barrier
 

@@ -28,6 +28,7 @@ from fem_impact.physics.contact import pressure_speed, projectile
 from fem_impact.plan.plan import Plan
 from fem_impact.scene.material import Material
 from meshes import OUTER, HexMesh, RodMesh
+from rigid import Faceted, Turned
 
 HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
 
@@ -55,6 +56,7 @@ class MeshedBody:
     element, yielding : element types of the cells that cannot yield, and of those that may
     mass : (m, 8) lumped masses of each cell at its nodes, kg
     others : materials of cells that are not of ``material``, each with the mask (m,) of its cells
+    touching : (m,) bool, cells that may touch the other body, the finest unless stated
     """
 
     name: str
@@ -67,6 +69,7 @@ class MeshedBody:
     mass: Array
     yielding: Kind = "bbar"
     others: tuple[tuple[Material, Bools], ...] = ()
+    touching: Bools | None = None
 
     @property
     def parts(self) -> list[tuple[Elastic, Bools]]:
@@ -174,7 +177,9 @@ class MeshedBodies:
         """Return the mass, kg, of half the rigid body behind the nose; 0 where the rod vibrates."""
         if self.spec.vibrating:
             return 0.0
-        return projectile(self.scene).moments_behind(self.geometry.rod.body_start)[0] / 2
+        body = projectile(self.scene)
+        assert not isinstance(body, Faceted), "the plan refuses a mesh of its own that cannot vibrate"
+        return body.moments_behind(self.geometry.rod.body_start)[0] / 2
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -207,10 +212,10 @@ class MeshedBodies:
         steel, accuracy = self.materials["rod"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
-        rod = self._segmented(rod)
+        rod, cut = replace(self._segmented(rod), touching=g.touching), self.cut_off
         missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
-        cut = self.cut_off
-        rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
+        if cut.any():
+            rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
         return rod
 
     def _segmented(self, rod: MeshedBody) -> MeshedBody:
@@ -314,9 +319,9 @@ class MeshedBodies:
     @cached_property
     def drawn(self) -> MassPoints:
         """Return the mass points of the rod's slices."""
-        rod = self.scene.projectile
+        rod, body = self.scene.projectile, projectile(self.scene)
         tail = rod.segments[-1].material if rod.segments else rod.material
-        bore = float(rod.body().inner_radius(np.array(rod.length))) if rod.bore else 0.0
+        bore = float(body.inner_radius(np.array(rod.length))) if isinstance(body, Turned) else 0.0
         return MassPoints.of_rod(self.geometry.rod, self.rod.mass, tail.rho, bore=bore)
 
     @cached_property

@@ -15,7 +15,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
-from rigid import Turned
+from rigid import Faceted, Projectile, Turned
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -43,6 +43,7 @@ class Geometry:
     conforming : whether the barrier flows under the whole contact, see `SurfaceContact`
     skin_rows : number of thin rows of cells at the top of the barrier
     may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
+    touching : (m,) bool, cells of the rod that may touch a meshed barrier
     """
 
     rod: RodMesh
@@ -53,6 +54,7 @@ class Geometry:
     conforming: bool = False
     skin_rows: int = 0
     may_yield: Mapping[str, Bools] = field(default_factory=dict)
+    touching: Bools | None = None
 
 
 def to_barrier_frame(alpha: float) -> Array:
@@ -80,13 +82,19 @@ def build_geometry(
     points = (rod.mesh.points - lowest) @ turn.T
     _require_tip_first(points, zones.base)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
-    may_yield = {"rod": _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(scene, rod.mesh)}
+    touching, fine = _touching(rod.mesh, points, zones)
+    may_yield = {
+        "rod": fine
+        & _round(points[rod.mesh.cells], zones.reach, zones.half)
+        & _first_segment(scene, rod.mesh)
+    }
     barrier = None
     if meshed_barrier:
         barrier = _block(scene, zones)
-        may_yield["barrier"] = _round(barrier, barrier.points, zones.along, zones.half)
+        split = barrier.level > 0
+        may_yield["barrier"] = split & _round(barrier.points[barrier.cells], zones.along, zones.half)
     sizes = zones.tip_size, zones.barrier_size
-    return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield)
+    return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching)
 
 
 def rest_points(scene: Scene, start: float) -> Array:
@@ -94,7 +102,9 @@ def rest_points(scene: Scene, start: float) -> Array:
 
     They lie at its radius of gyration on either side of its centre.
     """
-    _, centre, k2 = projectile(scene).moments_behind(start)
+    body = projectile(scene)
+    assert not isinstance(body, Faceted), "the plan refuses a mesh of its own that cannot vibrate"
+    _, centre, k2 = body.moments_behind(start)
     return np.array([[0.0, 0.0, centre - sqrt(k2)], [0.0, 0.0, centre + sqrt(k2)]])
 
 
@@ -102,6 +112,9 @@ def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
     body, across = projectile(scene), scene.accuracy.across
     try:
+        if own := scene.projectile.own_mesh:
+            half = own.half()
+            return RodMesh.plain(meshes.refine(half, zones, buffer=BUFFER) if zones else half)
         if isinstance(body, Turned):
             return meshes.turned(
                 body.outline,
@@ -112,6 +125,7 @@ def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
                 contact=lowest,
                 buffer=BUFFER,
             )
+        assert isinstance(body, Projectile), "a body with facets has a mesh of its own"
         return meshes.rod(body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER)
     except meshes.MeshError as error:
         remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
@@ -147,14 +161,26 @@ def _first_segment(scene: Scene, mesh: HexMesh) -> Bools:
     return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)
 
 
-def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
-    """Return the mask (m,) of the split cells that reach into an ellipsoid about the contact.
+def _touching(mesh: HexMesh, points: Array, zones: Zones) -> tuple[Bools, Bools]:
+    """Return the masks (m,) of the rod's cells that may touch, and of those fine enough to yield.
+
+    They are the finest and the split ones; of a user's mesh that is fine as it is, those about the contact.
+    """
+    if mesh.level.any():
+        return mesh.finest, np.asarray(mesh.level > 0)
+    near = Zone(np.zeros(3), np.eye(3), *zones.whole).gap(points[mesh.cells], np.zeros(len(mesh.cells))) <= 0
+    return np.asarray(near), np.asarray(near)
+
+
+def _round(corners: Array, along: float, radii: tuple[float, float, float]) -> Bools:
+    """Return the mask (m,) of the cells with ``corners`` (m, 8, 3), m, that reach into an ellipsoid.
+
+    It lies about the contact.
 
     The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
     """
     core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
-    away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
-    return np.asarray((mesh.level > 0) & (away < ROUND))
+    return np.asarray(core.gap(corners / radii, np.zeros(len(corners))) < ROUND)
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:

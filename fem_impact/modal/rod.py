@@ -19,6 +19,7 @@ from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Accuracy, Scene, Surface
+from rigid import Faceted
 
 COARSEST = next(f.high for f in ACCURACY if f.key == "tip_size")  # m
 AROUND = 0.4  # diameters around the contact point over which a mode is taken as affine
@@ -53,6 +54,7 @@ class ModalRod:
 def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
     """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
     body, alpha = projectile(scene), scene.impact.angle
+    assert not isinstance(body, Faceted), "the plan refuses the modal fidelity of a mesh of its own"
     d_c, d_d = arms(scene)
     radius = principal_radii(scene)[0]
     edges = body.other_edges(alpha)

@@ -70,9 +70,13 @@ class ContactEstimate:
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
     """Return (R1, R2), m, of the tip at its lowest point."""
+    from rigid import Faceted
+
     rod, alpha = projectile(scene), scene.impact.angle
     rho, _ = rod.contact_point(alpha)
     R1 = rod.tip_curvature(alpha) or rod.diameter / 200
+    if isinstance(rod, Faceted):
+        return R1, min(max(rod.curvature_around(alpha), R1), FLATTEST)
     at_pole = FLATTEST if rod.face > 0 else R1
     around = float(rho) / sin(alpha) if alpha > 0 else at_pole
     return R1, min(max(around, R1), FLATTEST)

@@ -1,4 +1,4 @@
-"""Bending and stretching of a turned body of any profile: linear elements of Timoshenko's beam and of a bar.
+"""Bending and stretching of a body of any profile: linear elements of Timoshenko's beam and of a bar.
 
 Shear is integrated at the middle of each element, so that slender bodies do not lock; `ELEMENTS` of them give
 the first frequencies of uniform beams within 2e-4.
@@ -14,7 +14,9 @@ import numpy as np
 from fem_impact.arrays import Array
 
 if TYPE_CHECKING:
+    from fem_impact.scene.material import Material
     from fem_impact.scene.projectile import ProjectileSpec
+    from rigid import Faceted
 
 
 ELEMENTS = 120
@@ -63,12 +65,16 @@ def shear_coefficient(nu: Array, hollow: Array) -> Array:
 
 
 def sections(rod: ProjectileSpec) -> Sections:
-    """Return the elements of a turned projectile, ends of segments and bore among their ends."""
+    """Return the elements of a projectile, ends of segments and bore among their ends."""
+    from rigid import Faceted
+
     body, parts = rod.body(), rod.segments
     ends = np.array([part.to for part in parts]) if parts else np.array([rod.length])
     steels = [part.material for part in parts] or [rod.material]
     bore = np.array([z for z, _ in rod.bore])
     z = np.unique(np.concatenate([np.linspace(0.0, rod.length, ELEMENTS + 1), ends[:-1], bore]).round(12))
+    if isinstance(body, Faceted):
+        return _faceted(body, z, ends, steels)
     x, weight = np.polynomial.legendre.leggauss(3)
     place = 0.5 * (z[1:] + z[:-1])[:, None] + 0.5 * np.diff(z)[:, None] * x
     outer, inner = body.radius(place), body.inner_radius(place)
@@ -78,6 +84,15 @@ def sections(rod: ProjectileSpec) -> Sections:
     shear = shear_coefficient(nu, np.divide(inner, outer, out=np.zeros_like(outer), where=outer > 0))
     means = [E * second, E * area, shear * E / (2 * (1 + nu)) * area, rho * area, rho * second]
     return Sections(z, *(mean @ weight / 2 for mean in means))
+
+
+def _faceted(body: Faceted, z: Array, ends: Array, steels: list[Material]) -> Sections:
+    """Return the elements of a body of any section, with the shear coefficient of a solid round one."""
+    of = np.minimum(np.searchsorted(ends, 0.5 * (z[1:] + z[:-1])), len(steels) - 1)
+    E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
+    mass, turning = body.sections(z).T
+    shear = shear_coefficient(nu, np.zeros_like(nu)) / (2 * (1 + nu))
+    return Sections(z, E * turning / rho, E * mass / rho, shear * E * mass / rho, mass, turning)
 
 
 @lru_cache(maxsize=32)

@@ -36,12 +36,14 @@ from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_
 from fem_impact.scene.fields import TIP_SIZE
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
+from rigid import Turned
 
 LEAST = {"elastic": 1.6, "yielding": 2.0}  # below it e, mu and all shares are not given
 ADVISED = {"elastic": 4.0, "yielding": 5.0}  # e and mu within 2 and 5 %
 ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number of cells
 RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
 COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
+THIN = 10.0  # median thickness of a user\'s cells over that of one that makes the step small
 FINEST = TIP_SIZE.low  # m
 
 
@@ -60,19 +62,34 @@ def body_cell(scene: Scene) -> float:
     """Return the edge, m, of the body's cells where it touches, before they are split.
 
     As many lie over the diameter of a rod as ``accuracy.across`` says; over that of the nose or section that
-    touches if the projectile has a shape of its own.
+    touches if the projectile has a shape of its own. A meshed barrier has cells of the same size; under a
+    projectile with a mesh of its own, as many over its largest width.
     """
     rod = scene.projectile
-    width = (
-        rod.diameter if rod.is_rod else 2 * _contact_radius(rod, scene.impact.angle, scene.accuracy.across)
-    )
+    plain = rod.is_rod or rod.own_mesh is not None
+    width = rod.diameter if plain else 2 * _contact_radius(rod, scene.impact.angle, scene.accuracy.across)
     return width / scene.accuracy.across
+
+
+def rod_cell(scene: Scene) -> float:
+    """Return the edge, m, of the projectile's cells where it touches, before they are split.
+
+    Of a mesh of its own it is the mean edge of the cells at the point that touches first.
+    """
+    mesh = scene.projectile.own_mesh
+    if mesh is None:
+        return body_cell(scene)
+    half, (x, z) = mesh.half(), scene.projectile.body().contact_point(scene.impact.angle)
+    here = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * scene.projectile.length
+    touching = np.flatnonzero(here[half.cells].any(axis=1))
+    return float(meshes.edge_lengths(half, touching).mean())
 
 
 @lru_cache(maxsize=256)
 def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
     """Return the radius, m, of the nose or section of a turned projectile that touches."""
     body = rod.body()
+    assert isinstance(body, Turned), "a mesh of its own has its own cells"
     place = np.array([float(part) for part in body.contact_point(angle)])
     try:
         return meshes.contact_radius(body.outline, place, across, body.bore)
@@ -81,15 +98,15 @@ def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
 
 
 def levels_of(bodies: ContactBodies) -> tuple[int, int]:
-    """Return how often the body's cells are split at the contact, for the rod and for a meshed barrier.
+    """Return how often the cells are split at the contact, for the rod and for a meshed barrier.
 
     Splitting comes as near to a stated size as halving can; the rod's is `ADVISED` where none is stated, the
     barrier's that of the rod.
     """
     scene = bodies.scene
-    base = body_cell(scene)
     tip = scene.accuracy.tip_size or max(size_for(bodies, ADVISED[kind(bodies)]), FINEST)
-    rod, barrier = (max(0, round(log2(base / size))) for size in (tip, scene.accuracy.barrier_size or tip))
+    edges = (rod_cell(scene), tip), (body_cell(scene), scene.accuracy.barrier_size or tip)
+    rod, barrier = (max(0, round(log2(base / size))) for base, size in edges)
     return rod, barrier
 
 
@@ -99,8 +116,10 @@ def contact_edge(bodies: ContactBodies) -> float:
     A barrier that takes the rod's form resolves it with its own cells, else the larger ones count.
     """
     rod, barrier = levels_of(bodies)
-    level = barrier if barrier_conforms(bodies) else min(rod, barrier) if bodies.compliant else rod
-    return float(body_cell(bodies.scene) / 2**level)
+    of_rod, of_barrier = rod_cell(bodies.scene) / 2**rod, body_cell(bodies.scene) / 2**barrier
+    if barrier_conforms(bodies):
+        return float(of_barrier)
+    return float(max(of_rod, of_barrier) if bodies.compliant else of_rod)
 
 
 def expected_cells(bodies: ContactBodies) -> float:
@@ -132,6 +151,24 @@ def widest_tip_size(bodies: ContactBodies) -> float:
     Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
     """
     return float(f"{size_for(bodies, LEAST[kind(bodies)]) / sqrt(2):.1e}")
+
+
+def thin_cells(scene: Scene) -> tuple[str, ...]:
+    """Return a sentence when a cell of the user's mesh is so thin that it makes the time step small."""
+    mesh = scene.projectile.own_mesh
+    if mesh is None:
+        return ()
+    thick = meshes.thicknesses(mesh.half())
+    thinnest, median = float(thick.min()), float(np.median(thick))
+    if thinnest * THIN > median:
+        return ()
+    count, place = int((thick * THIN < median).sum()), mesh.half().points[mesh.half().cells[thick.argmin()]]
+    x, y, z = 1e3 * place.mean(axis=0)
+    return (
+        f"The thinnest cell of the mesh, {thinnest * 1e6:.3g} um about ({x:.4g}, {y:.4g}, {z:.4g}) mm, allows"
+        f" {thinnest / median:.1g} of the time step of the median cell, {median * 1e6:.3g} um; {count} "
+        f"{'cell is' if count == 1 else 'cells are'} thinner than a tenth of that.",
+    )
 
 
 def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from fem_impact.physics.contact import (
     approach,
     arms,
     contact_estimate,
+    principal_radii,
     projectile,
     touch_point,
 )
@@ -20,8 +21,9 @@ from fem_impact.scene import library
 from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
-from rigid import Turned
+from rigid import Faceted, Projectile
 
+BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
 FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
@@ -39,6 +41,7 @@ def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
         _section(scene),
         _segments(scene),
+        _own_mesh(scene),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -77,6 +80,15 @@ def _segments(scene: Scene) -> str:
     if not scene.projectile.segments:
         return ""
     return "idealised: only the first segment of the projectile may yield; the others and joints stay elastic"
+
+
+def _own_mesh(scene: Scene) -> str:
+    if scene.projectile.own_mesh is None:
+        return ""
+    return (
+        "idealised: the flat facets of the user's mesh are the projectile's surface; cells that are split at "
+        "the contact keep them"
+    )
 
 
 def _fall(scene: Scene) -> str:
@@ -170,7 +182,7 @@ def require_still(scene: Scene, fidelity: str) -> None:
 def require_point(bodies: ContactBodies) -> None:
     """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
     scene, body = bodies.scene, projectile(bodies.scene)
-    if not isinstance(body, Turned):
+    if isinstance(body, Projectile):
         return
     segments, touch = scene.projectile.segments, touch_point(scene)[1]
     if segments and touch > segments[0].to:
@@ -180,6 +192,9 @@ def require_point(bodies: ContactBodies) -> None:
             value=f"{segments[0].to * 1e3:.3g} mm",
             remedy="The first segment must touch: only its material may yield.",
         )
+    if isinstance(body, Faceted):
+        _require_tip(bodies, body)
+        return
     size, (length, height) = contact_estimate(bodies), body.flank(scene.impact.angle)
     if length > 2 * size.a_t and height < FLAT * size.depth:
         raise SceneError(
@@ -188,6 +203,56 @@ def require_point(bodies: ContactBodies) -> None:
             value=f"{math.degrees(scene.impact.angle):.4g} deg",
             remedy=f"Change it by {math.degrees(FLAT * size.depth / length):.2g} deg or more.",
         )
+
+
+def require_turned(scene: Scene, asked: str) -> None:
+    """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
+    if scene.projectile.own_mesh is not None:
+        raise SceneError(
+            f"is fixed, but {asked} rests on meshes of the program's own and on a rod that cannot vibrate.",
+            key="projectile.mesh",
+            value=scene.projectile.own_mesh.path,
+            remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
+        )
+
+
+def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:
+    """Refuse what the model cannot do with a user's mesh as the projectile (SceneError)."""
+    if scene.projectile.own_mesh is None:
+        return
+    value: object = list(scene.effects)
+    if scene.accuracy.target is not None:
+        require_turned(scene, "accuracy.target")
+    if fidelity == "modal":
+        problem = (
+            "has no radii of a smooth tip and no outline, on which the reduced model's contact law rests."
+        )
+        remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
+        raise SceneError(problem, key="projectile.mesh", value=scene.projectile.own_mesh.path, remedy=remedy)
+    if fidelity == "solid" and "vibration" not in active:
+        problem = (
+            "leaves vibration out, but a mesh of its own has no rear part that could move as a rigid body."
+        )
+        remedy = 'Add it: effects = ["auto", "vibration"].'
+        raise SceneError(problem, key="effects", value=value, remedy=remedy)
+    if fidelity == "solid" and "machined-skin" in active:
+        problem = (
+            "has the effect machined-skin, but how deep a node lies under a mesh's facets is not computed."
+        )
+        raise SceneError(problem, key="effects", value=value, remedy='Add "-machined-skin" to effects.')
+
+
+def _require_tip(bodies: ContactBodies, body: Faceted) -> None:
+    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
+    scene, size = bodies.scene, contact_estimate(bodies)
+    value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
+    if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
+        problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
+        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
+    _, flank, _ = body.spread(scene.impact.angle, FLAT * size.depth, principal_radii(scene))
+    if flank > 2 * size.a_t:
+        problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
+        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
 
 
 def require_approach(scene: Scene) -> None:

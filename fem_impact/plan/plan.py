@@ -10,10 +10,11 @@ from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
-from fem_impact.plan.cells import coarse_tip
+from fem_impact.plan.cells import coarse_tip, thin_cells
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.limits import (
     require_approach,
+    require_own_mesh,
     require_plate,
     require_point,
     require_shallow,
@@ -69,7 +70,7 @@ class Plan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return sentences on what the reader should distrust on finite elements."""
-        return (*neglected(self.scene), *coarse_tip(self.bodies), *self.unknown)
+        return (*neglected(self.scene), *coarse_tip(self.bodies), *thin_cells(self.scene), *self.unknown)
 
     @property
     def size(self) -> RunSize:
@@ -95,6 +96,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     require_still(scene, fidelity)
     require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
+    require_own_mesh(scene, in_model.effects, fidelity)
     bodies = bodies_of(in_model)
     require_plate(bodies)
     require_point(bodies)

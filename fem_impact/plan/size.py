@@ -115,7 +115,7 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
 
 def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
     for levels in range(len(zones.rod) - 1, 0, -1):
-        size = float(f"{zones.base / 2**levels:.2g}")
+        size = float(f"{zones.rod_base / 2**levels:.2g}")
         accuracy = replace(bodies.scene.accuracy, tip_size=size)
         coarser = replace(bodies, scene=replace(bodies.scene, accuracy=accuracy))
         if run_size(slots, coarser, zones_of(coarser)).memory <= there:
@@ -158,7 +158,7 @@ def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
     """Return the elements of half the rod, without slices if it cannot vibrate."""
     boxes, end = zones.rod_boxes, scene.projectile.length
     count = _coarse_elements(scene, end if vibrating else min(_body_start(scene, zones, boxes), end))
-    for edge, lowest, highest in _split_boxes(zones.base, boxes):
+    for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
         count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
     return count
 
@@ -166,6 +166,8 @@ def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
 def _coarse_elements(scene: Scene, end: float) -> float:
     """Return the elements of half the coarse body from its tip up to a height, m."""
     rod, across = scene.projectile, scene.accuracy.across
+    if rod.own_mesh is not None:
+        return float(len(rod.own_mesh.half().cells))
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
     radius = rod.diameter / 2 if rod.is_rod else np.maximum(rod.body().radius(z), 0.05 * rod.diameter)
     return float(len(section(across).quads) * end * np.mean(across / (2 * radius)))
@@ -216,7 +218,9 @@ def _yielding_rod(scene: Scene, zones: Zones) -> float:
     """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
     radii = _radii(zones, zones.tip_size)
     points, volume = _inside_rod(scene, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
-    return _yielding(points, volume / max(len(points), 1), zones.reach, radii, zones.base, zones.rod_boxes)
+    return _yielding(
+        points, volume / max(len(points), 1), zones.reach, radii, zones.rod_base, zones.rod_boxes
+    )
 
 
 def _yielding_block(zones: Zones) -> float:

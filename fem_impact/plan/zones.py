@@ -15,13 +15,15 @@ from fem_impact.physics.contact import (
     approach,
     barrier_conforms,
     contact_estimate,
+    principal_radii,
     projectile,
     sliding,
 )
 from fem_impact.physics.hardening import Skin
-from fem_impact.plan.cells import body_cell, contact_radius, levels_of
+from fem_impact.plan.cells import body_cell, contact_radius, levels_of, rod_cell
 from fem_impact.scene.types import Scene
 from meshes import thin_skin_rise
+from rigid import Faceted
 
 Corners = tuple[Array, Array]  # lowest and highest corner of a box, m
 Extents = tuple[float, float, float]
@@ -53,7 +55,7 @@ class Zones:
 
     Attributes
     ----------
-    base : edge of the body's cells
+    base : edge of the barrier's cells; rod_base : of the rod's, at the contact, the same but in a user's mesh
     rod, barrier : for each level of splitting, the coarsest first: half-widths along t and b, depth along n
     half : those of the zone in which cells may yield
     reach : how far the rod's zone follows its flat face along -t; along : how far the barrier's goes along -t
@@ -62,6 +64,7 @@ class Zones:
     """
 
     base: float
+    rod_base: float
     rod: tuple[Extents, ...]
     barrier: tuple[Extents, ...]
     half: Extents
@@ -73,7 +76,7 @@ class Zones:
     @property
     def tip_size(self) -> float:
         """Return the finest cell edge of the rod, m."""
-        return self.base * 0.5 ** len(self.rod)
+        return self.rod_base * 0.5 ** len(self.rod)
 
     @property
     def barrier_size(self) -> float:
@@ -81,10 +84,16 @@ class Zones:
         return self.base * 0.5 ** len(self.barrier)
 
     @property
+    def whole(self) -> Corners:
+        """Return the box, from the contact along t, b and n, in which the rod may touch and yield."""
+        t, b, n = self.half
+        return np.array([-t - self.reach, 0.0, -n]), np.array([t, b, n])
+
+    @property
     def rod_boxes(self) -> list[Corners]:
         """Return the box of the rod's zone of each level, from the contact along t, b and n."""
         return [
-            (np.array([-t - self.reach, 0.0, -self.base / 2**level]), np.array([t, b, n]))
+            (np.array([-t - self.reach, 0.0, -self.rod_base / 2**level]), np.array([t, b, n]))
             for level, (t, b, n) in enumerate(self.rod, 1)
         ]
 
@@ -108,22 +117,22 @@ class Zones:
 def zones_of(bodies: ContactBodies) -> Zones:
     """Return the fine zones of two bodies that touch."""
     scene, size = bodies.scene, contact_estimate(bodies)
-    base, rho = body_cell(scene), float(lowest_point(scene)[0])
+    base, rod_base = body_cell(scene), rod_cell(scene)
     levels, below = levels_of(bodies)
-    reach = face_reach(bodies, rho)
+    reach, wide = face_reach(bodies)
     conforming = barrier_conforms(bodies)
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.f > 0 else 0
 
-    def extents(level: int, shares: Shares) -> Extents:
-        h = base / 2**level
+    def extents(h: float, shares: Shares) -> Extents:
         t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares))
-        return t, max(b, rho) if reach > 0 else b, n
+        return t, max(b, wide), n
 
     return Zones(
         base,
-        rod=tuple(extents(level, ROD_SHARES) for level in range(1, levels + 1)),
-        barrier=tuple(extents(level, BARRIER_SHARES) for level in range(1, below + 1)),
-        half=extents(max(levels, below), ()),
+        rod_base,
+        rod=tuple(extents(rod_base / 2**level, ROD_SHARES) for level in range(1, levels + 1)),
+        barrier=tuple(extents(base / 2**level, BARRIER_SHARES) for level in range(1, below + 1)),
+        half=extents(min(rod_base / 2**levels, base / 2**below), ()),
         reach=reach,
         along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
         conforming=conforming,
@@ -160,14 +169,19 @@ def skin_rows(bodies: ContactBodies, h: float) -> int:
     return min(max(halvings, 0), most)
 
 
-def face_reach(bodies: ContactBodies, rho: float) -> float:
-    """Return how far the fine zone must follow the flat face, m: 0 unless the face nearly lies flat.
+def face_reach(bodies: ContactBodies) -> tuple[float, float]:
+    """Return how far the fine zone must follow a face that nearly lies flat, along -t and to the side, m.
 
-    The face rises from the contact by tan(alpha); if its middle stands no higher than `FLAT` depths of the
-    estimated indentation, all of it may touch.
+    The face of a turned body rises from the contact by tan(alpha); if its middle stands no higher than `FLAT`
+    depths of the estimated indentation, all of it may touch. Of a body with facets, all nodes up to that
+    height may that lie further out than those of the round surface of the estimate.
     """
-    depth, alpha = contact_estimate(bodies).depth, bodies.scene.impact.angle
-    return 2 * rho * cos(alpha) if rho * sin(alpha) <= FLAT * depth else 0.0
+    size, alpha = contact_estimate(bodies), bodies.scene.impact.angle
+    body, rho = projectile(bodies.scene), float(lowest_point(bodies.scene)[0])
+    if isinstance(body, Faceted):
+        reach, _, side = body.spread(alpha, FLAT * size.depth, principal_radii(bodies.scene))
+        return reach, side + AROUND * size.a_b if side > 0 else 0.0
+    return (2 * rho * cos(alpha), rho) if rho * sin(alpha) <= FLAT * size.depth else (0.0, 0.0)
 
 
 def slide(bodies: ContactBodies, t: float) -> float:
@@ -195,8 +209,9 @@ def require_layer(skin: Skin, zones: Zones) -> None:
 
 def require_fine_zone(bodies: ContactBodies) -> None:
     """Refuse a tip without a fine zone where one is needed (SceneError)."""
-    scene = bodies.scene
-    if levels_of(bodies)[0] == 0 and (bodies.compliant or bodies.rod_yields):
+    scene, (levels, below) = bodies.scene, levels_of(bodies)
+    split = below if scene.projectile.own_mesh else levels  # a mesh of its own is as fine as the user made it
+    if split == 0 and (bodies.compliant or bodies.rod_yields):
         base = body_cell(scene)
         raise SceneError(
             "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",

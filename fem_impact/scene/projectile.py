@@ -10,6 +10,7 @@ from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import OwnMesh, faceted_body
 from fem_impact.scene.shapes import (
     NamedShape,
     Point,
@@ -21,7 +22,7 @@ from fem_impact.scene.shapes import (
 )
 
 if TYPE_CHECKING:
-    from rigid import Turned
+    from rigid import Faceted, Turned
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,8 +37,9 @@ class Segment:
 class ProjectileSpec:
     """The projectile: length, diameter and tip_radius in m; tip A (round nose), B (rounded edge) or plain.
 
-    A ``shape`` of its own takes the place of the tip, see `turned`; ``bore`` holds points (z, radius), m, of
-    the inner surface. ``segments`` follow each other from the tip; ``material`` is that of the first.
+    A ``shape`` of its own takes the place of the tip, see `turned` and `meshed`; ``bore`` holds points
+    (z, radius), m, of the inner surface. ``segments`` follow each other from the tip; ``material`` is that of
+    the first.
     """
 
     length: float
@@ -45,7 +47,7 @@ class ProjectileSpec:
     tip: str
     tip_radius: float
     material: Material
-    shape: NamedShape | Profile | None = None
+    shape: NamedShape | Profile | OwnMesh | None = None
     bore: tuple[Point, ...] = ()
     segments: tuple[Segment, ...] = ()
 
@@ -62,16 +64,38 @@ class ProjectileSpec:
         length, diameter = float(line[-1, 1]), 2.0 * float(line[:, 0].max())
         return cls(length, diameter, "shape", 0.0, material, shape, bore, segments)
 
+    @classmethod
+    def meshed(cls, mesh: OwnMesh, material: Material, segments: tuple[Segment, ...] = ()) -> ProjectileSpec:
+        """Return a projectile whose shape is a mesh; length and largest width follow from it."""
+        points = mesh.half().points
+        wide = max(float(points[:, 0].max() - points[:, 0].min()), 2.0 * float(points[:, 1].max()))
+        try:
+            return cls(float(points[:, 2].max()), wide, "shape", 0.0, material, mesh, (), segments)
+        except SceneError as error:
+            if error.key not in ("length", "diameter"):
+                raise
+            problem = f"has a {error.key} of {error.value}. Is its unit {mesh.unit}?"
+            remedy = f'State the unit of its coordinates, such as mesh_unit = "mm". {error.problem}'
+            raise SceneError(problem, key="mesh", value=mesh.path, remedy=remedy) from None
+
     @property
     def is_rod(self) -> bool:
         """Return whether this is a solid rod of one material with one of the tips."""
         return self.shape is None and not self.bore and not self.segments
 
-    def body(self) -> Turned:
-        """Return the rigid body of revolution."""
-        shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
+    @property
+    def own_mesh(self) -> OwnMesh | None:
+        """Return the user's mesh that is its shape, None where it is a body of revolution."""
+        return self.shape if isinstance(self.shape, OwnMesh) else None
+
+    def body(self) -> Turned | Faceted:
+        """Return the rigid body."""
         parts = self.segments or (Segment(self.length, self.material),)
-        return turned_body(shape, self.bore, tuple((part.to, part.material.rho) for part in parts))
+        density = tuple((part.to, part.material.rho) for part in parts)
+        if isinstance(self.shape, OwnMesh):
+            return faceted_body(self.shape, density)
+        shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
+        return turned_body(shape, self.bore, density)
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.PROJECTILE)

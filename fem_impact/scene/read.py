@@ -12,10 +12,11 @@ from typing import Any, TypeVar
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.checks import check_choice, check_names
+from fem_impact.scene.checks import check_choice, check_names, check_text
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec, Segment
 from fem_impact.scene.shapes import (
     HEIGHT,
@@ -43,16 +44,18 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
-    return read_dict(
-        _with_points(_beside(_parse(_load(Path(path)), str(path)), Path(path)), Path(path)), str(path)
-    )
+    place = Path(path)
+    return read_dict(_with_points(_beside(_parse(_load(place), str(path)), place), place), str(path))
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """Return the tables with the file of own tests found from the place of the scene's file."""
-    name = data.get("measured")
-    own = isinstance(name, str) and name.endswith(OWN)
-    return data | {"measured": str((path.parent / str(name)).resolve())} if own else data
+    """Return the tables with files of own tests and of an own mesh found from the place of the scene's file."""
+    name, rod = data.get("measured"), data.get("projectile")
+    if isinstance(name, str) and name.endswith(OWN):
+        data = data | {"measured": str((path.parent / name).resolve())}
+    if isinstance(rod, Mapping) and isinstance(rod.get("mesh"), str):
+        data = data | {"projectile": {**rod, "mesh": str((path.parent / rod["mesh"]).resolve())}}
+    return data
 
 
 def _with_points(data: dict[str, Any], place: Path) -> dict[str, Any]:
@@ -180,7 +183,7 @@ def _check_measured(scene: Scene) -> None:
 
 
 def _projectile(table: Table) -> ProjectileSpec:
-    """Read a rod with a tip, a named shape or a profile, each with a bore and segments or without."""
+    """Read a rod with a tip, a named shape, a profile or a mesh, with a bore and segments or without."""
     own = {
         "bore": stated_points(table.get("bore", ()), "bore"),
         "segments": _segments(table["segments"]) if "segments" in table else (),
@@ -190,6 +193,8 @@ def _projectile(table: Table) -> ProjectileSpec:
         if "material" in known:
             raise SceneError("stands beside segments, which have their own.", key="material")
         known["material"] = table["segments"][0]["material"]
+    if "mesh" in known:
+        return _of_mesh(known, own)
     if "profile" in known:
         return _of_profile(known, own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
@@ -200,6 +205,15 @@ def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     points = stated_points(table["profile"], "profile")
     shape = Profile(points, table.get("profile_smooth", False))
     return ProjectileSpec.turned(shape, _within(table, "material", _material), **own)
+
+
+def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+    _check_keys(table, ("mesh", "mesh_unit", "mesh_content", "material"))
+    if own["bore"]:
+        raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
+    path = check_text(table["mesh"], "mesh", 1000)
+    mesh = OwnMesh.of(path, table.get("mesh_unit", "m"), table.get("mesh_content"))
+    return ProjectileSpec.meshed(mesh, _within(table, "material", _material), own["segments"])
 
 
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:

@@ -13,6 +13,7 @@ from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
 from fem_impact.scene.types import Accuracy, Scene
@@ -65,6 +66,8 @@ def _shape(rod: ProjectileSpec) -> dict[str, Any]:
         return {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
     if isinstance(shape, Profile):
         return {"profile": _points(shape.points), "profile_smooth": shape.smooth}
+    if isinstance(shape, OwnMesh):
+        return {"mesh": shape.path, "mesh_unit": shape.unit, "mesh_content": shape.content}
     return {"tip": rod.tip, **_written(rod, fields.PROJECTILE)}
 
 

@@ -36,6 +36,7 @@ from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
 from meshes import SKIN
+from rigid import Faceted
 
 if TYPE_CHECKING:
     from fem_impact.solid.elastic import ModalDamping
@@ -131,15 +132,16 @@ def yielding_zone(
 
 
 def facing_skin(body: MeshedBody) -> Ints:
-    """Return the skin quads (m, 4) of the finest cells, all nodes free, facing the other body."""
+    """Return the skin quads (m, 4) of the cells that may touch, all nodes free, facing the other body."""
     quads = body.mesh.faces_with(SKIN)
     corners = body.points[quads]
     normal = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
     steep = normal[:, 2] / np.linalg.norm(normal, axis=1)
     facing = steep < -STEEP if body.name == "rod" else steep > STEEP
-    finest = np.isin(quads, body.mesh.cells[body.mesh.finest]).all(axis=1)
+    touching = body.mesh.finest if body.touching is None else body.touching
+    near = np.isin(quads, body.mesh.cells[touching]).all(axis=1)
     # rod quads look down: turn them so that both patches turn the same way seen from above
-    chosen = quads[facing & finest & ~body.mesh.is_hanging[quads].any(axis=1)]
+    chosen = quads[facing & near & ~body.mesh.is_hanging[quads].any(axis=1)]
     return np.asarray(chosen[:, ::-1] if body.name == "rod" else chosen)
 
 
@@ -257,6 +259,7 @@ class Builder:
         under = -body.points[:, 2]
         if body.name == "rod":
             rod = projectile(self.scene)
+            assert not isinstance(rod, Faceted), "the plan refuses a hardened layer on a mesh of its own"
             outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
             under = below_outline(self.meshed.geometry.rod.mesh.points, outline)
         return strengths(body.mesh.cells[body.yields], under, self.spec.skin)

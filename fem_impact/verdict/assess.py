@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.errors import RunError, SceneError
+from fem_impact.plan.limits import require_turned
 from fem_impact.verdict.change import (
     Answer,
     Change,
@@ -121,6 +122,7 @@ def assess(
         No model gives a restitution at the scene's inclination.
     """
     _check(fidelity, tolerance, budget_s)
+    require_turned(scene, "a verdict")
     tell("the reduced model, at this inclination and at others ...")
     pair, notes = modal_pair(scene), list[str]()
     failed = unfinished(pair)

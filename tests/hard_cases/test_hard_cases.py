@@ -74,8 +74,8 @@ def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     outcome = Outcome.read(tmp_path / "upright-edge" / "outcome.json")
     assert not [words for words in outcome.validity.warnings if "outside its fine zone" in words]
     upright, tilted = (replace(CASES[name].scene(), id="x") for name in ("upright-edge", "angle-17"))
-    assert face_reach(plan(upright).bodies, 6.5e-3) == pytest.approx(13e-3)
-    assert face_reach(plan(tilted).bodies, 6.5e-3) == 0.0
+    assert face_reach(plan(upright).bodies) == pytest.approx((13e-3, 6.5e-3))
+    assert face_reach(plan(tilted).bodies) == (0.0, 0.0)
 
 
 def test_a_rod_that_comes_down_nearly_flat_is_detected(tmp_path):

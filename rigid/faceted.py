@@ -1,0 +1,202 @@
+"""A projectile bounded by flat facets, of any shape with a plane of symmetry, such as that of a mesh."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .arms import Arms, point_arms
+from .arrays import Floats, floats
+from .errors import ShapeError, refuse
+from .slenderness import slenderness
+from .turned import CORNER
+
+LEVEL = 1e-9
+"""Share of the length within which places count as equally low."""
+HEIGHTS = 400
+"""Heights at which the width of the body is tabulated."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Faceted:
+    """The half y >= 0 of a body whose tip stands at z = 0; its side x > 0 comes down first.
+
+    Parameters
+    ----------
+    points : (k, 3) float64, m
+        Nodes of the outer surface.
+    facets : (m, 4) int64
+        Their numbers at the corners of each facet.
+    parts : (n, 7) float64
+        Of each part of the half body: least and greatest z, m; mass, kg; first moments over x and z, kg m;
+        second moments over x and z, kg m2.
+
+    Examples
+    --------
+    >>> corners = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (0, 6.0)]) / 100
+    >>> face = np.array([[0, 2, 6, 4]])
+    >>> bar = Faceted(corners, face, np.array([[0, 0.06, 0.1, 0, 0.003, 1e-5 / 3, 12e-5]]))
+    >>> f"{bar.mass:.2f} kg, k2 {bar.k2:.4e} m2, z_c {1e3 * bar.z_c:.1f} mm"
+    '0.20 kg, k2 3.3333e-04 m2, z_c 30.0 mm'
+    """
+
+    points: Floats
+    facets: NDArray[np.int64]
+    parts: Floats
+    _outline: Floats = field(init=False)
+    _half_widths: tuple[Floats, Floats] = field(init=False)
+
+    def __post_init__(self) -> None:
+        if not (self.parts[:, 2] > 0).all() or not np.isfinite(self.parts).all():
+            raise ShapeError("each part of a body needs a mass above 0, and finite moments")
+        object.__setattr__(self, "_outline", _hull(self.points[:, [0, 2]]))
+        object.__setattr__(self, "_half_widths", self._widths())
+
+    @property
+    def length(self) -> float:
+        """Length, m."""
+        return float(self.points[:, 2].max())
+
+    @property
+    def diameter(self) -> float:
+        """Largest width, m, along x or y."""
+        return float(max(np.ptp(self.points[:, 0]), 2.0 * self.points[:, 1].max()))
+
+    @property
+    def mass(self) -> float:
+        """Mass of the whole body, kg."""
+        return 2.0 * float(self.parts[:, 2].sum())
+
+    @property
+    def x_c(self) -> float:
+        """Place of the mass centre along x, m."""
+        return float(self.parts[:, 3].sum() / self.parts[:, 2].sum())
+
+    @property
+    def z_c(self) -> float:
+        """Distance of the mass centre from the tip, m."""
+        return float(self.parts[:, 4].sum() / self.parts[:, 2].sum())
+
+    @property
+    def k2(self) -> float:
+        """Squared radius of gyration about an axis along y through the mass centre, m2."""
+        return float(self.parts[:, 5:].sum() / self.parts[:, 2].sum()) - self.x_c**2 - self.z_c**2
+
+    @property
+    def gamma(self) -> float:
+        """Slenderness coefficient (Eq 29) with the largest width, m^-0.3815."""
+        return float(slenderness(self.length, self.diameter))
+
+    @property
+    def face(self) -> float:
+        """Half width along x of the flat face at the tip, m; 0 where there is none."""
+        low = self.points[self.points[:, 2] <= LEVEL * self.length, 0]
+        return 0.5 * float(np.ptp(low))
+
+    def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
+        """Lowest point (x, z), m, at inclination `alpha` (rad); of equally low ones that of largest x."""
+        (alpha,) = floats(alpha)
+        outside = ~((alpha >= 0) & (alpha < np.pi / 2))
+        refuse(outside, "the inclination must lie in 0 <= alpha < pi/2 rad, got {value}", alpha)
+        place = self._outline[self._lowest(alpha)]
+        return place[..., 0][()], place[..., 1][()]
+
+    def arms(self, alpha: ArrayLike) -> Arms:
+        """Arms d_c, d_d, m, of the lowest point about the mass centre."""
+        x, z = self.contact_point(alpha)
+        return point_arms(self.z_c, x - self.x_c, z, alpha)
+
+    def off_axis(self) -> float:
+        """Distance, m, of the middle of the lowest places of the upright body from its mass centre's axis."""
+        low = self.points[self.points[:, 2] <= LEVEL * self.length, 0]
+        return abs(0.5 * float(low.min() + low.max()) - self.x_c)
+
+    def tip_curvature(self, alpha: float) -> float:
+        """Radius of curvature, m, of the outline in the plane of motion at the lowest point; 0 on an edge.
+
+        Facets that meet at an angle above `CORNER` make an edge.
+        """
+        k = int(self._lowest(np.array(alpha)))
+        before, after = (self._outline[[k - 1, (k + 1) % len(self._outline)]] - self._outline[k]) * [
+            [-1],
+            [1],
+        ]
+        lengths = np.hypot(*before), np.hypot(*after)
+        turn = math.acos(float(np.clip(before @ after / (lengths[0] * lengths[1]), -1.0, 1.0)))
+        return float(min(lengths)) / turn if 0.0 < turn < CORNER else 0.0
+
+    def curvature_around(self, alpha: float) -> float:
+        """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.
+
+        It is the largest that a node of a facet there stands for, b^2 / (2 n) at b beside and n above it.
+        """
+        height = self.heights(alpha)
+        here = np.flatnonzero((height < LEVEL * self.length) & (self.points[:, 1] <= LEVEL * self.length))
+        near = np.unique(self.facets[np.isin(self.facets, here).any(axis=1)])
+        near = near[self.points[near, 1] > LEVEL * self.length]
+        ratio = self.points[near, 1] ** 2 / np.maximum(2.0 * height[near], 1e-300)
+        return math.inf if (height[near] < LEVEL * self.length).any() else float(ratio.max(initial=0.0))
+
+    def heights(self, alpha: float) -> Floats:
+        """(k,) heights, m, of the nodes of the surface over the lowest of them."""
+        height = self.points[:, 2] * math.cos(alpha) - self.points[:, 0] * math.sin(alpha)
+        return np.asarray(height - height.min())
+
+    def spread(self, alpha: float, height: float, radii: tuple[float, float]) -> tuple[float, float, float]:
+        """How far, m, nodes no higher than `height`, m, lie beyond a round surface: along -t, t and b.
+
+        `radii` are its principal radii, m, along t and b.
+        """
+        over = self.heights(alpha)
+        low = over <= max(height, LEVEL * self.length)
+        near, (along, side) = self.points[low], np.sqrt(2.0 * np.outer(radii, over[low]))
+        x, z = (float(part) for part in self.contact_point(alpha))
+        t = (near[:, 0] - x) * math.cos(alpha) + (near[:, 2] - z) * math.sin(alpha)
+        beyond = (-t - along, t - along, near[:, 1] - side)
+        back, ahead, beside = (max(float(part.max()), 0.0) for part in beyond)
+        return back, ahead, beside
+
+    def radius(self, z: Floats) -> Floats:
+        """Half width, m, along x at heights `z`, m."""
+        return np.asarray(np.interp(z, *self._half_widths))
+
+    def holds(self, rho: Floats, z: Floats) -> NDArray[np.bool_]:
+        """Whether points at distances `rho` from the axis and heights `z`, m, lie within the outer width."""
+        return np.asarray((rho <= self.radius(z)) & (z >= 0.0) & (z <= self.length))
+
+    def sections(self, z: Floats) -> Floats:
+        """Mass, kg/m, and second moment over x about its centre, kg m, of a metre, (k, 2), of the whole body.
+
+        They are means between heights `z` (k + 1,), m; each part is spread evenly over its own height.
+        """
+        low, high = self.parts[:, 0], self.parts[:, 1]
+        share = np.clip((np.asarray(z)[:, None] - low) / (high - low), 0.0, 1.0)
+        mass, x, xx = 2.0 * (np.diff(share @ self.parts[:, [2, 3, 5]], axis=0) / np.diff(z)[:, None]).T
+        return np.column_stack([mass, xx - x**2 / mass])
+
+    def _lowest(self, alpha: Floats) -> NDArray[np.int64]:
+        """Return the vertex of the outline that is lowest; of those equally low, the one of largest x."""
+        x, z = self._outline.T
+        height = z * np.cos(alpha)[..., None] - x * np.sin(alpha)[..., None]
+        low = height <= height.min(axis=-1)[..., None] + LEVEL * self.length
+        return np.asarray(np.argmax(np.where(low, x, -np.inf), axis=-1))
+
+    def _widths(self) -> tuple[Floats, Floats]:
+        """Return heights and the half width along x there, m, of the facets that cross them."""
+        z = np.linspace(0.0, self.length, HEIGHTS)
+        corners = self.points[self.facets]
+        low, high = corners[:, :, 2].min(axis=1), corners[:, :, 2].max(axis=1)
+        wide = np.abs(corners[:, :, 0]).max(axis=1)
+        slack = 0.5 * self.length / HEIGHTS
+        crossed = (low - slack <= z[:, None]) & (z[:, None] <= high + slack)
+        return z, np.where(crossed, wide, 0.0).max(axis=1)
+
+
+def _hull(places: Floats) -> Floats:
+    """Return the vertices (k, 2) of the convex hull of places (x, z), m, in order around it."""
+    from scipy.spatial import ConvexHull
+
+    return np.asarray(places[ConvexHull(places).vertices])

@@ -1,0 +1,159 @@
+"""A user's own mesh: read in any format, checked, cut to its half; its mass and shape."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from own_bodies import box, taper, write
+
+import meshes
+from meshes import MeshError, own_half, read_own
+
+
+@pytest.mark.parametrize("ending", [".msh", ".inp", ".vtu", ".vtk", ".bdf", ".mesh"])
+@pytest.mark.parametrize("whole", [False, True])
+def test_formats_of_meshio_give_the_same_half(tmp_path, ending, whole):
+    points, cells = taper(whole=whole)
+    half = read_own(write(tmp_path / f"bar{ending}", (1e3 * points).round(6), cells), 1e-3)
+    plain, same = taper()
+    assert len(half.cells) == len(same) == 80
+    assert half.points[half.cells].mean(axis=1) == pytest.approx(plain[same].mean(axis=1), abs=1e-9)
+    assert half.faces_with(meshes.SYMMETRY).shape == (40, 4)
+    assert (half.points[np.unique(half.faces_with(meshes.SYMMETRY)), 1] == 0.0).all()
+
+
+def test_a_read_mesh_keeps_numbers_and_every_bit(tmp_path):
+    points, cells = taper()
+    half = read_own(write(tmp_path / "bar.vtu", points, cells))
+    assert (half.points == points).all()
+    assert (half.cells == cells).all()
+
+
+def test_surface_cells_and_loose_points_are_left_out(tmp_path):
+    points, cells = taper()
+    quads = cells[:, [0, 1, 2, 3]]
+    path = write(tmp_path / "bar.vtu", np.vstack([points, [[9.0, 9.0, 9.0]]]), cells, quad=quads)
+    assert len(read_own(path).points) == len(points)
+
+
+@given(
+    end=st.floats(0.3, 1.0),
+    shift=st.tuples(st.floats(-1, 1), st.floats(-1, 1)),
+    cells=st.tuples(st.integers(1, 3), st.integers(1, 2), st.integers(2, 6)),
+)
+@settings(max_examples=30, deadline=None)
+def test_anywhere_along_x_and_z_a_body_has_the_same_half_and_volume(end, shift, cells):
+    points, hexes = taper(end=end, cells=cells, whole=True)
+    half = own_half(points + np.array([shift[0], 0.0, shift[1]]), hexes)
+    a, b, length = 12e-3 * end, 12e-3, 60e-3
+    assert 2 * meshes.volume(half) == pytest.approx(length / 3 * (a * a + a * b + b * b), rel=0.01)
+    moment = meshes.cell_moments(half)
+    assert moment.volume.sum() == pytest.approx(meshes.volume(half), rel=1e-12)
+    assert abs(moment.x.sum()) < 1e-9 * moment.volume.sum()
+    assert half.points[:, 2].min() == 0.0
+    assert (half.points[:, 1] >= 0.0).all()
+
+
+def with_node(move):
+    points, cells = taper()
+    points[cells[7, 6]] += move
+    return points, cells
+
+
+def doubled(factor):
+    points, cells = taper()
+    return np.vstack([points, points + factor]), np.vstack([cells, cells + len(points)])
+
+
+def stacked():
+    """Two equal boxes, one on the other, whose nodes between them were not merged."""
+    points, cells = box(4, 4, 5, (0, 0, 0), (1, 1, 3))
+    return np.vstack([points, points + np.array([0, 0, 3])]), np.vstack([cells, cells + len(points)])
+
+
+def hanging():
+    points, cells = box(1, 1, 1, (0, 0, 0), (1, 1, 1))
+    more, fine = box(2, 2, 2, (0, 0, 1), (1, 1, 2))
+    both = np.vstack([points, more])
+    places, new = np.unique(both.round(9), axis=0, return_inverse=True)
+    return places, new.reshape(-1)[np.vstack([cells, fine + len(points)])]
+
+
+def edge_to_edge():
+    """A wall of 3 by 4 cells with two holes that meet at an edge."""
+    points, cells = box(3, 1, 4, (0, 0, 0), (3, 1, 4))
+    x, _, z = np.floor(points[cells].mean(axis=1)).T
+    return points, cells[~((x == 1) & (z == 1) | (x == 0) & (z == 2))]
+
+
+REFUSED = {
+    "folded": (lambda: with_node([0, 0, 20e-3]), r"has \d+ of 80 cells that are folded or inside out"),
+    "inside out": (
+        lambda: (taper()[0], taper()[1][:, [4, 5, 6, 7, 0, 1, 2, 3]]),
+        "80 of 80 .* turn the order of their nodes",
+    ),
+    "two bodies": (lambda: doubled([0.0, 0.0, 0.1]), r"is in 2 parts .* \(of 80, 80 cells\)"),
+    "nodes not merged": (lambda: stacked(), r"has 25 pairs of nodes in one place"),
+    "hanging nodes": (hanging, "in the middle of an edge or face of another cell"),
+    "edge to edge": (edge_to_edge, "not closed: .* 4 outer faces meet"),
+    "along x": (
+        lambda: (taper()[0][:, [2, 1, 0]] * [1, 1, -1], taper()[1]),
+        "12 mm long along z and 60 mm along x",
+    ),
+    "plane within cells": (
+        lambda: (taper(whole=True, cells=(2, 1, 4))[0] + [0, 1e-3, 0], taper(whole=True, cells=(2, 1, 4))[1]),
+        r"has 8 cells across the plane y = 0",
+    ),
+    "beside the plane": (lambda: (taper()[0] + [0, 1e-3, 0], taper()[1]), "no face on the plane y = 0"),
+}
+
+
+@pytest.mark.parametrize("name", sorted(REFUSED))
+def test_what_is_no_half_body_is_refused_with_its_reason(name):
+    make, reason = REFUSED[name]
+    with pytest.raises(MeshError, match=reason):
+        own_half(*make())
+
+
+def test_an_unsymmetric_body_is_refused():
+    points, cells = taper(whole=True)
+    far = points[:, 1] > 1e-6
+    points[far, 1] *= 1.1
+    with pytest.raises(MeshError, match=r"is not symmetric about the plane y = 0: \d+ of 275 nodes"):
+        own_half(points, cells)
+
+
+def test_half_at_negative_y_is_refused():
+    points, cells = taper()
+    turned = cells[:, [1, 0, 3, 2, 5, 4, 7, 6]]
+    with pytest.raises(MeshError, match="side y < 0 alone"):
+        own_half(points * [1, -1, 1], turned)
+
+
+def test_other_cells_are_counted_and_named_with_what_to_do(tmp_path):
+    points, cells = taper()
+    tetra = cells[:3, [0, 1, 3, 4]]
+    with pytest.raises(MeshError, match=r"3 cells of type tetra beside 80 hexahedra\. Use 8-node"):
+        read_own(write(tmp_path / "a.vtu", points, cells, tetra=tetra))
+    with pytest.raises(MeshError, match="3 cells of type tetra beside 0 hexahedra"):
+        read_own(write(tmp_path / "b.inp", points, tetra, "tetra"))
+    with pytest.raises(MeshError, match="80 cells of type hexahedron20 beside 0"):
+        read_own(write(tmp_path / "c.vtu", points, np.tile(cells, 3)[:, :20], "hexahedron20"))
+    with pytest.raises(MeshError, match=r"no volume cells, only \['quad'\]"):
+        read_own(write(tmp_path / "d.vtu", points, cells[:, :4], "quad"))
+
+
+@pytest.mark.parametrize("ending", [".msh", ".inp", ".vtu", ".vtk", ".bdf", ".med"])
+def test_files_of_garbage_are_refused_in_one_sentence(tmp_path, ending):
+    path = tmp_path / f"bad{ending}"
+    path.write_bytes(b"\x00\xff garbage\n" * 50)
+    with pytest.raises(MeshError, match=r"not readable|holds no volume cells") as told:
+        read_own(path)
+    assert "\n" not in str(told.value)
+
+
+def test_missing_files_and_unknown_endings_are_refused(tmp_path):
+    with pytest.raises(MeshError, match="no such file"):
+        read_own(tmp_path / "none.vtu")
+    with pytest.raises(MeshError, match=r"ends in '.step', which no format of meshio has"):
+        read_own(tmp_path / "part.step")

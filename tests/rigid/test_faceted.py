@@ -1,0 +1,98 @@
+"""A body bounded by facets beside the turned body that it was cut from, and its own mistakes."""
+
+import numpy as np
+import pytest
+
+from meshes import SKIN, cell_moments, turned
+from rigid import Faceted, ShapeError, Turned, shapes
+
+RHO = 2700.0
+CONE = shapes.cone(0.12, 0.02, np.radians(20.0), 4e-3, 0.0)
+
+
+def of_mesh(half, rho=RHO):
+    part = cell_moments(half)
+    quads = half.faces_with(SKIN)
+    nodes, facets = np.unique(quads, return_inverse=True)
+    moments = [rho * moment for moment in (part.volume, part.x, part.z, part.xx, part.zz)]
+    parts = np.column_stack([part.low, part.high, *moments])
+    return Faceted(half.points[nodes], facets.reshape(quads.shape), parts)
+
+
+@pytest.fixture(scope="module")
+def pair():
+    return of_mesh(turned(CONE, 24).mesh), Turned(CONE, ((0.12, RHO),))
+
+
+def test_mass_centre_and_inertia_are_those_of_the_round_body(pair):
+    facets, smooth = pair
+    assert facets.mass == pytest.approx(smooth.mass, rel=2e-3)
+    assert facets.z_c == pytest.approx(smooth.z_c, rel=1e-3)
+    assert facets.k2 == pytest.approx(smooth.k2, rel=2e-3)
+    assert abs(facets.x_c) < 1e-9
+    assert facets.gamma == pytest.approx(smooth.gamma, rel=5e-3)
+
+
+@pytest.mark.parametrize("degrees", [0.0, 15.0, 40.0])
+def test_it_touches_where_the_round_body_does(pair, degrees):
+    facets, smooth = pair
+    alpha = np.radians(degrees)
+    for mine, theirs in zip(facets.arms(alpha), smooth.arms(alpha), strict=True):
+        assert mine == pytest.approx(theirs, abs=4e-4)
+    places, angles = facets.contact_point(np.array([alpha, 0.1])), np.array([alpha, 0.1])
+    assert [float(part[0]) for part in places] == [float(part) for part in facets.contact_point(alpha)]
+    assert places[0].shape == angles.shape
+
+
+def test_radii_of_a_fine_tip_are_near_those_of_its_sphere(pair):
+    ball = of_mesh(turned(shapes.ball(0.02), 40).mesh)
+    assert ball.tip_curvature(0.3) == pytest.approx(0.01, rel=0.1)
+    assert ball.curvature_around(0.3) == pytest.approx(0.01, rel=0.1)
+
+
+def bar(width=2e-2, length=0.1):
+    """A square bar of one cell."""
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (0, 1) for z in (0, 1.0)])
+    corners = corners * [width / 2, width / 2, length]
+    faces = np.array([[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [0, 2, 3, 1], [4, 5, 7, 6], [2, 6, 7, 3]])
+    m = RHO * width**2 / 2 * length
+    moments = [m, 0.0, m * length / 2, m * width**2 / 12, m * length**2 / 3]
+    return Faceted(corners, faces, np.array([[0.0, length, *moments]]))
+
+
+def test_a_square_bar_has_its_closed_form_and_stands_on_an_edge():
+    one = bar()
+    assert one.mass == pytest.approx(RHO * 4e-4 * 0.1, rel=1e-12)
+    assert one.k2 == pytest.approx((0.02**2 + 0.1**2) / 12, rel=1e-12)
+    alpha = np.radians(30.0)
+    assert one.contact_point(alpha) == (pytest.approx(0.01), 0.0)
+    d_c, d_d = one.arms(alpha)
+    assert (d_c, d_d) == (
+        pytest.approx(0.05 * np.sin(alpha) - 0.01 * np.cos(alpha)),
+        pytest.approx(0.05 * np.cos(alpha) + 0.01 * np.sin(alpha)),
+    )
+    assert one.tip_curvature(alpha) == 0.0
+    assert one.curvature_around(alpha) == np.inf
+    assert one.face == pytest.approx(0.01)
+    assert one.spread(alpha, 1e-5, (1e-4, 0.2))[2] == pytest.approx(0.01)
+    assert one.spread(0.0, 1e-5, (1e-4, 0.2))[0] == pytest.approx(0.02)
+    assert one.spread(1.5707, 1e-4, (1e-4, 0.2))[1] == pytest.approx(0.1, rel=0.02)
+
+
+def test_sections_of_a_bar_are_its_mass_and_moment_a_metre():
+    mass, turning = bar().sections(np.linspace(0.0, 0.1, 6)).T
+    assert mass == pytest.approx(RHO * 4e-4, rel=1e-12)
+    assert turning == pytest.approx(RHO * 0.02**4 / 12, rel=1e-12)
+
+
+def test_a_tip_beside_the_axis_is_seen():
+    one = bar()
+    moved = Faceted(one.points + np.array([3e-3, 0, 0]), one.facets, one.parts)
+    assert one.off_axis() == 0.0
+    assert moved.off_axis() == pytest.approx(3e-3)
+
+
+def test_a_part_without_mass_is_refused():
+    one = bar()
+    with pytest.raises(ShapeError, match="a mass above 0"):
+        Faceted(one.points, one.facets, one.parts * [1, 1, 0, 1, 1, 1, 1])

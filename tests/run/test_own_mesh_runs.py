@@ -1,0 +1,96 @@
+"""Runs of a user's own mesh: the program's rod from a file, a tapered bar that yields, free modes."""
+
+import numpy as np
+import pytest
+from own_bodies import taper, write
+
+import meshes
+from fem_impact.fem.body import MeshedBodies
+from fem_impact.physics.contact import projectile
+from fem_impact.physics.stepped_beam import beam_modes
+from fem_impact.plan.plan import plan
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+
+BUILT = {
+    "tip": "B",
+    "length": "60 mm",
+    "diameter": "19 mm",
+    "tip_radius": "3 mm",
+    "material": "rod-steel",
+}
+
+
+def scene(projectile, effects, **accuracy):
+    return read_dict(
+        {
+            "id": "own",
+            "projectile": projectile,
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": "30 deg", "v_n": "-1.73 m/s", "v_t": "-1 m/s"},
+            "effects": effects,
+            "accuracy": {"tip_size": "1.5 mm", "across": 12, "unresolved": "report", **accuracy},
+            "save": {"frames": 0},
+        }
+    )
+
+
+@pytest.mark.parametrize("ending", [".vtu", ".msh", ".inp"])
+def test_the_programs_own_rod_from_a_file_gives_its_run_again(tmp_path, ending):
+    effects = ["vibration", "friction", "barrier-rigid"]
+    built = scene(BUILT, effects)
+    mesh = MeshedBodies(plan(built)).geometry.rod.mesh
+    assert mesh.level.max() == 0
+    path = write(tmp_path / f"rod{ending}", mesh.points, mesh.cells)
+    own = scene({"mesh": str(path), "material": "rod-steel"}, effects)
+    first, again = simulate(built), simulate(own)
+    assert projectile(own).mass == pytest.approx(projectile(built).mass, rel=3e-3)
+    assert again.energy.vibration == pytest.approx(first.energy.vibration, rel=0.01)
+    assert again.restitution.impulse.e == pytest.approx(first.restitution.impulse.e, abs=2e-3)
+    assert again.restitution.mu == pytest.approx(first.restitution.mu, abs=2e-3)
+    assert again.motion.Omega == pytest.approx(first.motion.Omega, rel=0.02)
+    assert abs(again.energy.residual) < 1e-6
+
+
+def test_a_tapered_bar_that_yields_on_a_barrier_that_yields_is_balanced(tmp_path):
+    points, cells = taper(cells=(4, 2, 20))
+    path = write(tmp_path / "taper.inp", 1e3 * points, cells)
+    own = {"mesh": str(path), "mesh_unit": "mm", "material": "rod-steel"}
+    split = scene(own, ["auto", "vibration"], tip_size="0.8 mm", max_time="0.15 ms", across=8)
+    outcome = simulate(split)
+    energy = outcome.energy
+    assert abs(energy.residual) < 1e-4
+    assert energy.plastic_rod > 0.01
+    assert energy.plastic_barrier > 0.0
+    made = MeshedBodies(plan(split))
+    assert made.geometry.rod.mesh.level.max() == 1
+    assert made.true_rod.yields.any()
+    assert made.mass[made.free_nodes[:, 0]].sum() * 2 == pytest.approx(projectile(split).mass, rel=1e-9)
+
+
+def test_a_mesh_that_is_fine_already_is_used_as_it_is(tmp_path):
+    points, cells = taper(cells=(8, 4, 40))
+    path = write(tmp_path / "fine.vtu", points, cells)
+    own = {"mesh": str(path), "material": "rod-steel"}
+    made = MeshedBodies(plan(scene(own, ["auto", "vibration"], tip_size="0.9 mm", across=8)))
+    geometry, half = made.geometry, meshes.read_own(path)
+    assert len(geometry.rod.mesh.cells) == len(half.cells)
+    yields, touching = geometry.may_yield["rod"], geometry.touching
+    middle = half.points[half.cells].mean(axis=1)
+    away = np.linalg.norm(middle - [3e-3, 0.0, 0.0], axis=1)
+    assert 0 < yields.sum() < len(half.cells) / 4
+    assert yields[away.argmin()]
+    assert touching[yields].any()
+    assert not touching[half.points[half.cells, 2].min(axis=1) > 20e-3].any()
+
+
+def test_free_modes_of_a_tapered_bar_are_those_of_its_beam(tmp_path):
+    points, cells = taper(width=10e-3, length=0.2, cells=(6, 3, 60))
+    path = write(tmp_path / "taper.vtu", points, cells)
+    made = MeshedBodies(
+        plan(scene({"mesh": str(path), "material": "rod-steel"}, ["vibration", "barrier-rigid"]))
+    )
+    theory, found = beam_modes(made.scene.projectile), made.rod_modes().frequency
+    for wanted in (*theory.bent[:2], theory.stretched[0]):
+        assert np.abs(found / (wanted / (2 * np.pi)) - 1).min() < 0.01

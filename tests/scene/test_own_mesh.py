@@ -1,0 +1,155 @@
+"""A scene whose projectile is a mesh of the user's own: read, checked, written, refused."""
+
+from dataclasses import replace
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+from own_bodies import box, taper, write
+
+from fem_impact.errors import SceneError
+from fem_impact.physics.beam import bending_period, stretching_period
+from fem_impact.physics.contact import arms, projectile
+from fem_impact.plan.plan import plan
+from fem_impact.scene.impact import Impact
+from fem_impact.scene.own_mesh import OwnMesh
+from fem_impact.scene.read import read_dict, read_toml
+from fem_impact.scene.write import digest, to_dict, to_toml
+
+SCENE = """
+id = "own"
+projectile = { mesh = "bar.vtu", mesh_unit = "mm", material = "aluminium-6061-t6" }
+barrier = { material = "plate-steel" }
+surface = { state = "custom", friction = 0.2, source = "assumed" }
+impact = { angle = "30 deg", speed = "2 m/s" }
+"""
+
+
+@pytest.fixture
+def scene(tmp_path):
+    points, cells = taper(width=10e-3, length=0.1, end=1.0, cells=(6, 3, 30))
+    write(tmp_path / "bar.vtu", 1e3 * points, cells)
+    (tmp_path / "own.toml").write_text(SCENE)
+    return read_toml(tmp_path / "own.toml")
+
+
+def stated(path, **projectile):
+    rod = {"mesh": str(path), "material": "aluminium-6061-t6", **projectile}
+    rod = {key: value for key, value in rod.items() if value is not None}
+    return read_dict(
+        {
+            "id": "own",
+            "projectile": rod,
+            "barrier": {"material": "plate-steel"},
+            "effects": ["vibration", "barrier-rigid"],
+            "impact": {"angle": "30 deg", "v_n": "-1 m/s", "v_t": "0 m/s"},
+        }
+    )
+
+
+def test_mass_inertia_arms_and_periods_of_a_bar_are_those_of_closed_forms(scene):
+    body, rod = projectile(scene), scene.projectile
+    assert (rod.length, rod.diameter) == (pytest.approx(0.1), pytest.approx(0.01))
+    assert body.mass == pytest.approx(rod.material.rho * 1e-5, rel=1e-9)
+    assert body.k2 == pytest.approx((0.1**2 + 0.01**2) / 12, rel=1e-9)
+    d_c, d_d = arms(scene)
+    assert d_c == pytest.approx(0.05 * 0.5 - 0.005 * sqrt(0.75), rel=1e-9)
+    assert d_d == pytest.approx(0.05 * sqrt(0.75) + 0.005 * 0.5, rel=1e-9)
+    c0 = sqrt(rod.material.E / rod.material.rho)
+    assert stretching_period(scene) == pytest.approx(0.2 / c0, rel=2e-3)
+    slender = 2 * pi / (4.730041**2 / 0.1**2 * c0 * 0.01 / sqrt(12))
+    # a beam of a tenth of its length in depth is 4 % slower by shear and rotatory inertia
+    assert bending_period(scene) == pytest.approx(1.037 * slender, rel=0.01)
+
+
+def test_a_written_scene_reads_back_equal_and_from_anywhere(scene, tmp_path, monkeypatch):
+    other = tmp_path / "elsewhere"
+    other.mkdir()
+    monkeypatch.chdir(other)
+    (other / "copy.toml").write_text(to_toml(scene))
+    assert read_toml(other / "copy.toml") == scene
+    assert to_dict(scene)["projectile"]["mesh"] == str(tmp_path / "bar.vtu")
+
+
+def test_other_content_is_another_scene_and_a_stated_content_holds(scene, tmp_path):
+    text, before = to_toml(scene), digest(scene)
+    points, cells = taper(width=10e-3, length=0.11, end=1.0, cells=(6, 3, 30))
+    write(tmp_path / "bar.vtu", 1e3 * points, cells)
+    changed = read_toml(tmp_path / "own.toml")
+    assert digest(changed) != before
+    assert changed.projectile.length == pytest.approx(0.11)
+    (tmp_path / "kept.toml").write_text(text)
+    with pytest.raises(SceneError, match=r"projectile.mesh = .*: has changed: its SHA-256"):
+        read_toml(tmp_path / "kept.toml")
+
+
+@pytest.mark.parametrize(
+    ("unit", "reason"),
+    [
+        (None, r"projectile.mesh = .*: has a length of 1e\+05 mm\. Is its unit m\? State the unit"),
+        ("um", r"projectile.mesh = .*: has a length of 0.1 mm\. Is its unit um\?"),
+        ("inch", r'projectile.mesh_unit = "inch": is not a choice\. Use "m", "mm"'),
+    ],
+)
+def test_an_unlikely_unit_is_refused(scene, tmp_path, unit, reason):
+    with pytest.raises(SceneError, match=reason):
+        stated(tmp_path / "bar.vtu", mesh_unit=unit)
+
+
+def test_missing_files_garbage_and_what_does_not_fit_are_refused(scene, tmp_path):
+    with pytest.raises(SceneError, match=r"projectile.mesh = .*: cannot be read: there is no such file"):
+        stated(tmp_path / "none.vtu")
+    (tmp_path / "bad.msh").write_text("no mesh")
+    with pytest.raises(SceneError, match=r"projectile.mesh = .*: is not readable \(ansys"):
+        stated(tmp_path / "bad.msh")
+    with pytest.raises(SceneError, match=r"projectile.bore: stands beside a mesh"):
+        stated(tmp_path / "bar.vtu", mesh_unit="mm", bore=[["0 mm", "1 mm"], ["10 mm", "1 mm"]])
+    with pytest.raises(SceneError, match=r"tip"):
+        stated(tmp_path / "bar.vtu", mesh_unit="mm", tip="A")
+
+
+def test_segments_end_between_cells_and_weigh_what_they_are_of(scene, tmp_path):
+    def of(joint):
+        ends = (joint, "100 mm")
+        parts = [
+            {"to": to, "material": name}
+            for to, name in zip(ends, ("aluminium-6061-t6", "rod-steel"), strict=True)
+        ]
+        return stated(tmp_path / "bar.vtu", mesh_unit="mm", material=None, segments=parts)
+
+    body = projectile(of("60 mm"))
+    light, heavy = (part.material.rho for part in of("60 mm").projectile.segments)
+    assert body.mass == pytest.approx(1e-4 * (0.06 * light + 0.04 * heavy), rel=1e-9)
+    with pytest.raises(
+        SceneError, match=r"segments\[1\].to = \"58 mm\": lies within 18 cells .* 56.6667 mm|60 mm"
+    ):
+        of("58 mm")
+
+
+def test_only_what_the_model_holds_is_planned(scene):
+    for changed, fidelity, reason in (
+        (scene, "modal", "no radii of a smooth tip"),
+        (replace(scene, effects=("auto", "-vibration")), "solid", "leaves vibration out"),
+        (replace(scene, impact=Impact(1.5707, -2.0, 0.0)), "solid", "side along"),
+    ):
+        with pytest.raises(SceneError, match=reason):
+            plan(changed, fidelity)
+    assert plan(scene, "rigid").fidelity == "rigid"
+    assert any("flat facets" in sentence for sentence in plan(scene).validity)
+
+
+def test_a_thin_cell_is_told_with_its_place(tmp_path):
+    points, cells = box(4, 2, 20, (-5e-3, 0, 0), (5e-3, 5e-3, 80e-3))
+    layer = np.isclose(points[:, 2], 40e-3)
+    points[layer, 2] -= 3.9e-3
+    scene = stated(write(tmp_path / "thin.vtu", points, cells))
+    (told,) = [sentence for sentence in plan(scene).warnings if "thinnest" in sentence]
+    assert "100 um" in told
+    assert "36.05" in told
+    assert "8 cells are thinner" in told
+
+
+def test_the_same_mesh_is_read_once_and_found_by_its_content(scene, tmp_path):
+    mesh = OwnMesh.of(str(tmp_path / "bar.vtu"), "mm")
+    assert mesh == scene.projectile.own_mesh
+    assert mesh.half() is scene.projectile.own_mesh.half()
