@@ -45,11 +45,12 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
     place = Path(path)
-    return read_dict(_with_points(_beside(_parse(_load(place), str(path)), place), place), str(path))
+    data = _beside(_parse(_load(place), str(path)), place)
+    return read_dict(_with_points(data, place), str(path))
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
-    """Return the tables with files of own tests and of an own mesh found from the place of the scene's file."""
+    """Return the tables with the files of own tests and mesh found from the place of the scene's file."""
     name, rod = data.get("measured"), data.get("projectile")
     if isinstance(name, str) and name.endswith(OWN):
         data = data | {"measured": str((path.parent / name).resolve())}
@@ -67,8 +68,7 @@ def _with_points(data: dict[str, Any], place: Path) -> dict[str, Any]:
         points = read_points(place.parent / rod["profile"])
     except SceneError as error:
         raise error.under("projectile", str(place)) from None
-    written = [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]
-    return data | {"projectile": {**rod, "profile": written}}
+    return data | {"projectile": {**rod, "profile": [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]}}
 
 
 def read_dict(data: Mapping[str, Any], source: str = "scene") -> Scene:
