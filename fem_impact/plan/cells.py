@@ -43,7 +43,7 @@ ADVISED = {"elastic": 4.0, "yielding": 5.0}  # e and mu within 2 and 5 %
 ERROR = {"elastic": 0.08, "yielding": 0.25}  # of e and of mu, times the number of cells
 RIM = 0.4  # cells by which the nodes that are pressed reach beyond the estimated radius, of 38 runs
 COARSEST = 0.7  # of the body's cells: larger ones leave the tip without a fine zone
-THIN = 10.0  # median thickness of a user\'s cells over that of one that makes the step small
+THIN = 10.0  # median thickness of a user's cells over that of one that makes the step small
 FINEST = TIP_SIZE.low  # m
 
 

@@ -44,9 +44,8 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
-    place = Path(path)
-    data = _beside(_parse(_load(place), str(path)), place)
-    return read_dict(_with_points(data, place), str(path))
+    data = _beside(_parse(_load(Path(path)), str(path)), Path(path))
+    return read_dict(_with_points(data, Path(path)), str(path))
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
