@@ -89,7 +89,8 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
-    told = f"beside {len(tests.motion['v_n'])} measured tests ({scene.measured}):"
+    count = max(statistic.n for statistic in tests.statistics().values())
+    told = f"beside {count} measured tests ({scene.measured}):"
     sys.stdout.write(f"{told}\n")
     print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
 

@@ -11,12 +11,13 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
+from fem_impact.report.comparison import comparison_part
 from fem_impact.report.findings import figure_id, findings_section
 from fem_impact.report.html import Markup, bullets, details, join, section, table
 from fem_impact.report.page import data_link, page, sources
 from fem_impact.report.sections import card
 from fem_impact.report.study_data import Study, read_study
-from fem_impact.report.study_page import comparison_part, partition_part
+from fem_impact.report.study_page import partition_part
 from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_section, verdicts
 from fem_impact.study.document import LEDGER
 from fem_impact.tables.symbols import markup
@@ -65,7 +66,7 @@ def _parts(study: Study, figures: Path) -> list[Markup]:
     since = study.folder / "study.json"
     return [
         findings_section(study),
-        section("Model and measurements", comparison_part(study, since)),
+        section("Model and measurements", comparison_part(study.comparison, study.folder, since)),
         section("Where the energy went", partition_part(study, since)),
         verdict_section(verdicts(study.rows), figures),
         marker_section(study.rows),

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from html import escape
 from pathlib import Path
-from typing import Any
 
-from fem_impact.figures.partition import comparison_picture, study_partition_picture
+from fem_impact.figures.partition import study_partition_picture
 from fem_impact.files.atomic import make_directory
 from fem_impact.outcome.groups import RunCost
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.report.comparison import comparison_part, comparison_tables, is_inside
 from fem_impact.report.findings import findings_section
 from fem_impact.report.html import Markup, bullets, details, join, section, table
 from fem_impact.report.page import download, figure, page, sources
@@ -26,13 +26,13 @@ from fem_impact.report.sections import (
     unknown,
 )
 from fem_impact.report.study_data import Study, read_study
-from fem_impact.tables.table import DASH, Cell, Marked, Table
+from fem_impact.tables.table import Cell, Table
 
 
 def draw_study(folder: Path) -> None:
     """Draw comparison and partition of the study into ``folder/figures``; `study_page` can reuse them."""
     study = read_study(folder)
-    comparison_part(study)
+    comparison_part(study.comparison, study.folder)
     partition_part(study)
 
 
@@ -53,7 +53,11 @@ def study_page(folder: Path, again: bool = True) -> str:
         _cards(study),
         notices(rows),
         findings_section(study),
-        section("Model beside measurement", comparison_part(study, since), _tables(study.comparison)),
+        section(
+            "Model beside measurement",
+            comparison_part(study.comparison, study.folder, since),
+            comparison_tables(study.comparison),
+        ),
         section("Where the energy went", partition_part(study, since)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
         unknown(rows),
@@ -70,7 +74,7 @@ def _cards(study: Study) -> Markup:
     if not study.rows:
         return Markup("")
     measured = [row for row in study.comparison if row["measured_mean"] is not None]
-    inside = sum(_is_inside(row["verdict"]) for row in measured)
+    inside = sum(is_inside(row["verdict"]) for row in measured)
     residuals = [abs(row.energy.residual) for row in study.rows]
     seconds = sum(row.cost.wall for row in study.rows)
     cards = [
@@ -80,56 +84,6 @@ def _cards(study: Study) -> Markup:
         card("computing time", f"{seconds:.0f} s", "wall time of the runs, added"),
     ]
     return Markup(f'<div class="cards">{join(cards).text}</div>')
-
-
-def comparison_part(study: Study, since: Path | None = None) -> Markup:
-    """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
-    if not study.comparison:
-        return Markup("")
-    figures = make_directory(study.folder / "figures")
-    drawn = figure(comparison_picture(study.comparison), figures, since)
-    return join([drawn, download(figures / "comparison.csv", "its data")])
-
-
-def _tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
-    quantities = dict.fromkeys(row["quantity"] for row in rows)
-    return join(
-        _quantity(name, [row for row in rows if row["quantity"] == name], opened=at < 3)
-        for at, name in enumerate(quantities)
-    )
-
-
-def _quantity(name: str, rows: Sequence[Mapping[str, Any]], opened: bool) -> Markup:
-    unit = "" if rows[0]["unit"] in ("", "-") else f", {rows[0]['unit']}"
-    measured = [row for row in rows if row["measured_mean"] is not None]
-    inside = sum(_is_inside(row["verdict"]) for row in measured)
-    title = f"{name}{unit}: " + (f"{inside} of {len(measured)} inside" if measured else "not measured")
-    head = ("set", "model", "measured", "95 % interval of the mean", "n", "verdict")
-    shown = Table.of(head, map(_comparison_row, rows), left=(0, 5))
-    return details(title, table(shown, compact=True), opened=opened)
-
-
-def _comparison_row(row: Mapping[str, Any]) -> list[Cell]:
-    low, high = row["measured_low"], row["measured_high"]
-    measured = row["measured_mean"] is not None
-    style = ("inside" if _is_inside(row["verdict"]) else "outside") if measured else ""
-    spread = "" if row["measured_sd"] is None else f" ± {row['measured_sd']:.2g}"
-    return [
-        str(row["set"]),
-        Marked(_three(row["model"]) + ("" if row["band"] is None else f" ± {row['band']:.2g}"), style),
-        _three(row["measured_mean"]) + spread,
-        None if low is None or high is None else f"{_three(low)} to {_three(high)}",
-        row["n"],
-        Marked(str(row["verdict"] or DASH), style),
-    ]
-
-
-def _three(value: float | None) -> str:
-    return DASH if value is None else f"{value:#.3g}".rstrip(".").replace("-", "−")
-
-
-def _is_inside(verdict: Any) -> bool:
-    return str(verdict).startswith("inside")
 
 
 def partition_part(study: Study, since: Path | None = None) -> Markup:

@@ -13,6 +13,7 @@ from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.report.html import Markup, join, paragraph, place, section, table
 from fem_impact.report.page import download, figure
+from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import measured_set
 
@@ -31,7 +32,11 @@ class Verdict:
 
 
 def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
-    """Return the verdicts on closure, e_m, mu_c as a bound and E_lt as heat, from outcomes of the sets."""
+    """Return the verdicts on closure, e_m, mu_c as a bound and E_lt as heat, from outcomes of the sets.
+
+    They are about the paper's own sets: scenes of other tests are left out.
+    """
+    rows = [row for row in rows if row.provenance.scene_id in MEASURED_SETS]
     rows = [row for row in rows if not isinstance(row.restitution.paper.e_m, Unknown)]
     return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
 

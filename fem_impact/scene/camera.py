@@ -6,7 +6,7 @@ import csv
 import io
 import math
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -67,7 +67,7 @@ def read_camera(path: str | Path) -> Camera:
     ResultError
         Names the file, and the row and column where there is one.
     """
-    lines = list(_lines(read_text(path), path))
+    lines = list(lines_of(read_text(path), path))
     if not lines:
         raise ResultError(f"{path}: is empty. Begin it with the header {HEADER}.")
     (_, header), *rows = lines
@@ -82,7 +82,8 @@ def read_camera(path: str | Path) -> Camera:
     for name, (at, unit) in places.items():
         cells_of = [(f"{path}: line {line}, column {names[at]}", cells[at].strip()) for line, cells in rows]
         columns[name] = np.array([_number(place, text, unit) for place, text in cells_of])
-    motion, arms = {name: columns[name] for name in KINDS}, _arms(columns, path)
+    motion = {name: columns[name] for name in KINDS}
+    arms = one_pair({name: columns[name] for name in ARMS if name in columns}, path)
     _check_motion(motion, rows, names, places, path)
     used = {names[at] for at, _ in places.values()}
     labels = [
@@ -93,7 +94,7 @@ def read_camera(path: str | Path) -> Camera:
     return Camera(motion, tuple(labels), ignored, arms)
 
 
-def _lines(text: str, path: str | Path) -> Iterator[Line]:
+def lines_of(text: str, path: str | Path) -> Iterator[Line]:
     """Yield the lines that are neither blank nor comments (#)."""
     reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
     try:
@@ -113,7 +114,7 @@ def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit
             continue
         if match[1] in places:
             raise ResultError(f"{path}: {match[1]} has two columns, the second is {name!r}. Keep one.")
-        places[match[1]] = at, _unit(name, match[1], match[2] or match[3], path)
+        places[match[1]] = at, unit_of(name, {**KINDS, **ARMS}[match[1]], match[1], f"{path}: column")
     missing = [name for name in KINDS if name not in places]
     if missing:
         hint = " Separate columns by commas." if any(";" in name or "\t" in name for name in names) else ""
@@ -122,36 +123,61 @@ def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit
     return places
 
 
-def _unit(column: str, name: str, text: str | None, path: str | Path) -> Unit:
-    """Return the unit that the column's name states."""
-    kind = DIMENSIONS[{**KINDS, **ARMS}[name]]
+def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:
+    """Return the unit of a quantity that is stated as ``name_unit`` or ``name [unit]``.
+
+    Raises
+    ------
+    ResultError
+        It states none, or none of its dimension; ``place`` is for the complaint.
+    """
+    kind, match = DIMENSIONS[dimension], _NAME.fullmatch(stated)
+    text = (match[2] or match[3]) if match else None
     if not text:
         remedy = f"Name it {name}_{kind.suffix} or {name} [{kind.units[0].symbol}]"
-        raise ResultError(f"{path}: column {column!r} names no unit. {remedy} (units: {kind.symbols}).")
+        raise ResultError(f"{place} {stated!r} names no unit. {remedy} (units: {kind.symbols}).")
     unit = kind.unit(text.strip().replace("_per_", "/"))
     if unit is None:
-        wrong = f"{path}: column {column!r}: {text!r} is not a unit of {kind.name}"
+        wrong = f"{place} {stated!r}: {text!r} is not a unit of {kind.name}"
         raise ResultError(f"{wrong} ({kind.symbols}).")
     return unit
 
 
 def _number(place: str, text: str, unit: Unit) -> float:
     """Read one cell in SI; ``place`` is for complaints."""
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise ResultError(f"{place}: {text[:40]!r} is not a finite number.")
+    finite(place, text)
     value = unit.to_si(text)
     if abs(value) > LARGEST:
         raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
 
 
-def _arms(columns: Mapping[str, Floats], path: str | Path) -> tuple[float, float] | None:
-    """Return the one pair of arms that the file states, None where it states none."""
-    stated = [set(columns[name].tolist()) for name in ARMS if name in columns]
+def finite(place: str, text: str) -> float:
+    """Read one cell; ``place`` is for complaints.
+
+    Raises
+    ------
+    ResultError
+        It is not a finite number.
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ResultError(f"{place}: {text[:40]!r} is not a finite number.")
+    return number
+
+
+def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[float, float] | None:
+    """Return the one pair of arms, m, that the rows of a file state, None where they state none.
+
+    Raises
+    ------
+    ResultError
+        They state one arm only, or several values.
+    """
+    stated = [set(map(float, values)) for values in arms.values()]
     if not stated:
         return None
     if len(stated) == 1 or any(len(values) > 1 for values in stated):

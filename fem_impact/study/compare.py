@@ -8,7 +8,8 @@ from typing import Any
 from fem_impact.outcome.keys import Key, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
-from rigid.experiments import MeasuredSet, Statistic, measured_set
+from fem_impact.run.tests import Tests
+from rigid.experiments import Statistic, measured_set
 
 Row = dict[str, Any]
 
@@ -77,13 +78,15 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     if model - half <= measured.high and model + half >= measured.low:
         return "undecided: mesh band"
     away = model - measured.mean
+    if measured.sd == 0:
+        return "miss: tests without scatter"
     beyond = max(0.0, abs(away) - half) / measured.sd
     if beyond <= 2:
         return "outside, within the scatter"
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
-def compare(outcome: Outcome, tests: MeasuredSet | None = None) -> list[Row]:
+def compare(outcome: Outcome, tests: Tests | None = None) -> list[Row]:
     """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
     With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,
@@ -94,11 +97,13 @@ def compare(outcome: Outcome, tests: MeasuredSet | None = None) -> list[Row]:
     for quantity in (*MEASURED, *UNSEEN):
         key, (model, band) = quantity.key, outcome.estimate(quantity.key)
         computed = {"set": set_id, "quantity": quantity.name, "unit": key.unit, "model": or_none(model)}
-        measured = statistics[quantity.measured] if quantity.measured else None
+        measured = statistics.get(quantity.measured or "")
         if isinstance(model, Unknown):
             judged = f"not known: {model.reason}"
         elif measured is not None:
             judged = verdict(model, band, measured)
+        elif quantity.measured:
+            judged = "not measured"
         else:
             below = key.path == ("energy", "vibration") and known(outcome.energy.below_floor)
             judged = "below floor" if below else "not measurable by camera"

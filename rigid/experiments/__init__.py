@@ -5,7 +5,7 @@ from .angles import AtAngle, angle_sets, at_angle, critical_ratio_against_angle,
 from .audit import AuditRecord, audit, audit_statistics, column_arms
 from .correlation import Correlation, correlation, correlations
 from .sets import MeasuredSet, derived_columns, measured_set, measured_sets, set_ids
-from .statistics import Statistic, statistic
+from .statistics import Statistic, of_mean, statistic
 from .tables import printed_statistics, table
 
 __all__ = [
@@ -27,6 +27,7 @@ __all__ = [
     "loss_against_angle",
     "measured_set",
     "measured_sets",
+    "of_mean",
     "printed_statistics",
     "set_ids",
     "statistic",

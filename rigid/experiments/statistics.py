@@ -47,11 +47,30 @@ def statistic(values: ArrayLike, level: float = 0.95) -> Statistic:
     >>> f"{s.mean} {s.sd} [{s.low:.3f}, {s.high:.3f}] n = {s.n}"
     '2.0 1.0 [-0.484, 4.484] n = 3'
     """
-    from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
-
     x = np.asarray(values, dtype=np.float64)
     if x.ndim != 1 or x.size < 2:
         raise DataError(f"a scatter needs at least two measurements in one column, got shape {x.shape}")
-    mean, sd = float(x.mean()), float(x.std(ddof=1))
-    half = float(stdtrit(x.size - 1, (1 + level) / 2)) * sd / x.size**0.5
-    return Statistic(mean, sd, mean - half, mean + half, x.size)
+    return of_mean(float(x.mean()), float(x.std(ddof=1)), x.size, level)
+
+
+def of_mean(mean: float, sd: float, n: int, level: float = 0.95) -> Statistic:
+    """Statistics from a mean and the standard deviation of n single measurements.
+
+    Parameters
+    ----------
+    mean, sd : float
+        In the column's unit.
+    n : int
+        At least two.
+    level : float
+        Confidence of the interval of the mean.
+
+    Examples
+    --------
+    >>> of_mean(2.0, 1.0, 3) == statistic([1.0, 2.0, 3.0])
+    True
+    """
+    from scipy.special import stdtrit  # here, as a run of the solver needs the rest of this package only
+
+    half = float(stdtrit(n - 1, (1 + level) / 2)) * sd / n**0.5
+    return Statistic(mean, sd, mean - half, mean + half, n)

@@ -106,6 +106,25 @@ def test_every_output_shown_is_that_of_its_command(block, cli, files):
         assert float(a) == pytest.approx(float(b), rel=0.02, abs=2e-3)
 
 
+def test_the_example_of_own_tests_is_compared(cli, tmp_path):
+    """The page of own tests: its files, and its command lines but those that take minutes."""
+    page = "docs/how-to/own-tests.md"
+    for name in ("my_tests.csv", "my_means.csv", "my-tested-rod.toml"):
+        (tmp_path / name).write_text(marked(f"file: {name}", page) + "\n")
+    scene = (tmp_path / "my-tested-rod.toml").read_text()
+    (tmp_path / "single.toml").write_text(scene.replace("my_means.csv", "my_tests.csv"))
+    run, report, *_ = [line.split()[1:] for line in marked_lines(page)]
+    code, out, _ = cli(*run)
+    assert (code, "beside 8 measured tests" in out) == (0, True)
+    assert cli(*report)[0] == 0
+    assert "beside 3 measured tests" in cli("run", "single.toml", "--fidelity", "modal")[1]
+
+
+def marked_lines(page):
+    """Return the command lines of a page."""
+    return [line for block in blocks("sh") if block.page == page for line in block.text.splitlines()]
+
+
 def test_outputs_are_shown():
     assert {block.page for block in OUTPUTS} >= {"README.md", OWN_SCENE}
 

@@ -1,12 +1,15 @@
 """A scene that names a file of the user's own tests is compared with them as the paper's sets are."""
 
 import json
+from html import escape
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from fem_impact.errors import ResultError, SceneError
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.contact import arms as contact_arms
 from fem_impact.run.simulate import simulate
 from fem_impact.run.tests import tests_of as measured_by
 from fem_impact.scene.library import stated
@@ -112,6 +115,118 @@ def test_a_study_of_sets_takes_scene_files(tmp_path, monkeypatch):
     measured = {row["quantity"]: row["measured_mean"] for row in seen[0].comparison}
     assert measured["mu"] == pytest.approx(float(np.mean(measured_set("t5b").recomputed()["mu"])))
     json.dumps(seen[0].comparison)
+
+
+def means_of(scatter="sd"):
+    """Return a file of means of the rows of t5b."""
+    found, arms = measured_set("t5b").statistics(), measured_set("t5b").arms
+    lines = [f"quantity,mean,{scatter},n,d_c_m,d_d_m"]
+    for name, column in (("e", "e"), ("mu", "mu"), ("Omega", "Omega_rad_per_s")):
+        s = found[name]
+        spread = s.sd if scatter == "sd" else s.sd / s.n**0.5
+        lines.append(f"{column},{s.mean!r},{spread!r},{s.n},{float(arms.d_c)!r},{float(arms.d_d)!r}")
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("scatter", ["sd", "standard_error"])
+def test_means_with_their_scatter_give_what_the_single_tests_give(tmp_path, scatter):
+    scene = read_toml(write(tmp_path))
+    (tmp_path / "my_tests.csv").write_text(means_of(scatter))
+    outcome = simulate(scene, "rigid")
+    assert outcome.restitution.paper == simulate(load("t5b"), "rigid").restitution.paper
+    rows = {row["quantity"]: row for row in compare(outcome, measured_by(scene))}
+    columns = ("measured_mean", "measured_sd", "measured_low", "measured_high", "n")
+    for name in ("e", "mu", "Omega"):
+        single = measured_set("t5b").statistics()[name]
+        assert [rows[name][c] for c in columns] == pytest.approx(
+            [single.mean, single.sd, single.low, single.high, single.n]
+        )
+    assert rows["V_n"]["measured_mean"] is None
+    assert rows["V_n"]["verdict"] == "not measured"
+
+
+def test_means_may_be_in_units_and_without_arms(tmp_path):
+    scene = read_toml(write(tmp_path))
+    text = "# my tests\nquantity,mean,sd,n,remark\nOmega [deg/s],180,18,5,a\nmu,0.5,0.1,5,b\n"
+    (tmp_path / "my_tests.csv").write_text(text)
+    found = measured_by(scene)
+    assert found.statistics()["Omega"].mean == pytest.approx(np.pi)
+    assert found.statistics()["Omega"].sd == pytest.approx(np.pi / 10)
+    assert tuple(found.arms) == pytest.approx(tuple(contact_arms(scene)))
+
+
+@pytest.mark.parametrize(
+    ("text", "complaint"),
+    [
+        ("quantity,mean,n\ne,0.3,8\n", "the header must be quantity,mean,sd,n"),
+        ("quantity,mean,sd,standard_error,n\ne,0.3,0.1,0.1,8\n", "the header must be"),
+        ("quantity,mean,sd,n\n", "holds no line below its header"),
+        (
+            "quantity,mean,sd,n\nomga,3,0.1,8\n",
+            "'omga' is not a quantity of tests. Did you mean Omega?",
+        ),
+        ("quantity,mean,sd,n\nOmega,3,1,8\n", "quantity 'Omega' names no unit"),
+        ("quantity,mean,sd,n\nOmega_m_per_s,3,1,8\n", "is not a unit of angular speed"),
+        ("quantity,mean,sd,n\nmu_rad,3,1,8\n", "mu is a pure number"),
+        ("quantity,mean,sd,n\ne,0.3,0.1,1\n", "column n: 1 is not a number of tests"),
+        ("quantity,mean,sd,n\ne,0.3,0.1,2.5\n", "column n: 2.5 is not a number of tests"),
+        ("quantity,mean,sd,n\ne,0.3,0,8\n", "column sd: 0 must be above 0"),
+        ("quantity,mean,sd,n\ne,x,0.1,8\n", "line 2, column mean: 'x' is not a finite number"),
+        ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2 has 3 cells, the header 4"),
+        ("quantity,mean,sd,n\ne,0.3,0.1,8\ne,0.4,0.1,8\n", "line 3: e has a line already"),
+        ("quantity,mean,sd,n,d_c_m\ne,0.3,0.1,8,0.02\n", "not one pair"),
+        ("quantity,mean,sd,n\nmu,1e9,0.1,8\n", "too large"),
+    ],
+)
+def test_means_that_cannot_be_read_are_refused_with_their_place(tmp_path, text, complaint):
+    scene = read_toml(write(tmp_path))
+    (tmp_path / "my_tests.csv").write_text(text)
+    with pytest.raises(ResultError) as refused:
+        measured_by(scene)
+    assert complaint in str(refused.value) and "my_tests.csv" in str(refused.value)
+
+
+def test_tests_without_scatter_have_a_verdict(tmp_path):
+    scene = read_toml(write(tmp_path))
+    (tmp_path / "my_tests.csv").write_text(f"{HEADER}\n" + 2 * "-1.5,-1.5,0.9,-0.4,5\n")
+    rows = {row["quantity"]: row for row in compare(simulate(scene, "rigid"), measured_by(scene))}
+    assert rows["e"]["verdict"] == "miss: tests without scatter"
+
+
+def test_the_page_of_a_run_sets_it_beside_the_tests(cli, tmp_path):
+    write(tmp_path)
+    (tmp_path / "my_tests.csv").write_text(means_of())
+    assert cli("run", "mine.toml", "--fidelity", "modal", "--quiet", "--out", "one")[0] == 0
+    assert cli("report", "one")[0] == 0
+    page = (tmp_path / "one" / "report.html").read_text()
+    part = page.partition("Beside the measured tests")[2].partition("</section>")[0]
+    assert "(8 tests, my_tests.csv)" in part
+    found = measured_set("t5b").statistics()["mu"]
+    assert f"{found.mean:#.3g} ± {found.sd:.2g}" in part
+    assert f"{found.low:#.3g} to {found.high:#.3g}" in part
+    outcome = Outcome.read(tmp_path / "one" / "outcome.json")
+    verdicts = [row["verdict"] for row in compare(outcome, measured_by(load("mine.toml")))][:3]
+    assert all(f">{escape(verdict)}<" in part for verdict in verdicts)
+    lines = (tmp_path / "one" / "figures" / "comparison.csv").read_text().splitlines()
+    assert [line.split(",")[1] for line in lines[1:]] == ["e", "mu", "Omega"]
+    (tmp_path / "my_tests.csv").write_text("quantity,mean\n")
+    assert cli("report", "one")[0] == 0
+    assert "The tests can no longer be read" in (tmp_path / "one" / "report.html").read_text()
+
+
+def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_path, monkeypatch):
+    path = write(tmp_path)
+    request = sets.Request(tmp_path / "results" / "sets", (str(path),), True)
+    run = simulate(read_toml(path), "modal")
+    monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
+    jobs = sets.jobs_of(str(path), True, request.out)
+    (request.out / "mine").mkdir(parents=True)
+    sets.conclude(request, {job.name: run for job in jobs.values()}, None)
+    code, _, err = cli("study", "report", "--quiet")
+    assert (code, err) == (0, "")
+    page = (tmp_path / "results" / "report" / "report.html").read_text()
+    assert "Model and measurements" in page and "mine" in page
+    assert "What the paper concluded" not in page
 
 
 def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):

@@ -1,0 +1,112 @@
+"""A user's own tests as mean values with their scatter: a CSV file with one quantity a row."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from fem_impact.errors import ResultError, did_you_mean
+from fem_impact.files.atomic import read_text
+from fem_impact.scene.camera import ARMS, LARGEST, finite, lines_of, one_pair, unit_of
+
+KINDS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
+"""Quantities that a row may state, and their dimensions; empty: a pure number."""
+SCATTER = ("sd", "standard_error")
+HEADER = "quantity,mean,sd,n"
+
+
+@dataclass(frozen=True, slots=True)
+class Mean:
+    """Mean and standard deviation of single tests, SI, and the number of tests."""
+
+    mean: float
+    sd: float
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class Means:
+    """Means by quantity, and the arms of the contact point (d_c, d_d), m, where the file states them."""
+
+    means: Mapping[str, Mean]
+    arms: tuple[float, float] | None
+
+
+def holds_means(path: str | Path) -> bool:
+    """Return whether a file is one of means: its header has a column ``quantity``."""
+    header = next(lines_of(read_text(path), path), (0, []))[1]
+    return "quantity" in (name.strip() for name in header)
+
+
+def read_means(path: str | Path) -> Means:
+    """Read means with their scatter.
+
+    Parameters
+    ----------
+    path : path
+        UTF-8 CSV with the columns ``quantity``, ``mean``, ``sd`` (standard deviation of single tests) or
+        ``standard_error`` (of the mean), and ``n`` (number of tests). A quantity is ``e``, ``mu``,
+        ``Omega_rad_per_s``, ``V_n_m_per_s`` or ``V_t_m_per_s``, the last three in any unit of theirs. Columns
+        ``d_c_m`` and ``d_d_m`` may state the arms of the contact point with which ``e`` was worked out.
+
+    Raises
+    ------
+    ResultError
+        Names the file, and the line and column where there is one.
+    """
+    (_, header), *rows = list(lines_of(read_text(path), path))
+    names = [name.strip() for name in header]
+    scatter = _scatter(names, path)
+    means: dict[str, Mean] = {}
+    arms: dict[str, list[float]] = {name: [] for name in ARMS if f"{name}_m" in names}
+    for line, cells in rows:
+        place = f"{path}: line {line}"
+        if len(cells) != len(names):
+            raise ResultError(f"{place} has {len(cells)} cells, the header {len(names)}.")
+        row = dict(zip(names, (cell.strip() for cell in cells), strict=True))
+        name, mean = _read_row(row, scatter, place)
+        if name in means:
+            raise ResultError(f"{place}: {name} has a line already. Keep one.")
+        means[name] = mean
+        for arm in arms:
+            arms[arm].append(finite(f"{place}, column {arm}_m", row[f"{arm}_m"]))
+    if not means:
+        raise ResultError(f"{path}: holds no line below its header.")
+    return Means(means, one_pair(arms, path))
+
+
+def _scatter(names: Sequence[str], path: str | Path) -> str:
+    """Return the one column of the scatter; refuse a header that lacks a column or has both."""
+    missing = [name for name in ("mean", "n") if name not in names]
+    given = [name for name in SCATTER if name in names]
+    if missing or len(given) != 1:
+        raise ResultError(
+            f"{path}: the header must be {HEADER}, or have standard_error in the place of sd; it is "
+            f"{','.join(names)}."
+        )
+    return given[0]
+
+
+def _read_row(row: Mapping[str, str], scatter: str, place: str) -> tuple[str, Mean]:
+    """Return the quantity of a row, and its mean and scatter in SI."""
+    column = row["quantity"]
+    name = next((name for name in KINDS if column == name or column.startswith((f"{name}_", f"{name} "))), "")
+    if not name:
+        known = did_you_mean(column, KINDS, f"Known: {', '.join(KINDS)}.")
+        raise ResultError(f"{place}: {column!r} is not a quantity of tests. {known}")
+    factor = 1.0
+    if KINDS[name]:
+        factor = unit_of(column, KINDS[name], name, f"{place}, quantity").to_si("1")
+    elif column != name:
+        raise ResultError(f"{place}: {name} is a pure number. Write {name}, not {column!r}.")
+    mean = factor * finite(f"{place}, column mean", row["mean"])
+    spread = factor * finite(f"{place}, column {scatter}", row[scatter])
+    tests = finite(f"{place}, column n", row["n"])
+    if tests < 2 or tests != int(tests):
+        raise ResultError(f"{place}, column n: {row['n']} is not a number of tests, at least 2.")
+    if spread <= 0:
+        raise ResultError(f"{place}, column {scatter}: {row[scatter]} must be above 0: tests scatter.")
+    if abs(mean) > LARGEST or spread > LARGEST:
+        raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
+    return name, Mean(mean, spread * tests**0.5 if scatter == "standard_error" else spread, int(tests))
