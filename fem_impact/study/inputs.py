@@ -285,7 +285,7 @@ def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> lis
     for row in comparison:
         change_by_input = changes_of.get((row["set"], row["quantity"]))
         model, mean, low = row["model"], row["measured_mean"], row["measured_low"]
-        if mean is None or row["verdict"] == "inside" or change_by_input is None:
+        if None in (mean, model) or row["verdict"] == "inside" or change_by_input is None:
             continue
         shares = {name: change / (mean - model) for name, change in change_by_input.items()}
         enough = ((low if model < low else row["measured_high"]) - model) / (mean - model)

@@ -30,7 +30,7 @@ from fem_impact.study.inputs import (
 )
 from fem_impact.study.pairs import COARSER, PLACES, resized, shifted, with_limits
 from fem_impact.tables.csv import COMPARISON
-from fem_impact.tables.table import Table
+from fem_impact.tables.table import DASH, Table
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -160,11 +160,17 @@ BESIDE = (
 )
 
 
+def with_spread(value: float, spread: float | None, digits: int) -> str:
+    """Return a value with its band or standard deviation, where it has one."""
+    return f"{value:.{digits}f}" + ("" if spread is None else f" ± {spread:.{digits}f}")
+
+
 def _cell(row: Row) -> str:
     digits = 1 if row["quantity"] == "Omega" else 3
-    band = f" ± {row['band']:.{digits}f}" if row["band"] is not None else ""
-    model = f"{row['model']:.{digits}f}{band}"
-    measured = f"{row['measured_mean']:.{digits}f} ± {row['measured_sd']:.{digits}f}"
+    model, measured = (
+        DASH if row[value] is None else with_spread(row[value], row[spread], digits)
+        for value, spread in (("model", "band"), ("measured_mean", "measured_sd"))
+    )
     if row["verdict"] == "inside":
         return f"**{model}** / {measured}"
     return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"

@@ -214,8 +214,11 @@ def test_the_page_of_a_run_sets_it_beside_the_tests(cli, tmp_path):
     assert "The tests can no longer be read" in (tmp_path / "one" / "report.html").read_text()
 
 
-def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_path, monkeypatch):
+@pytest.mark.parametrize("means", [True, False])
+def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_path, monkeypatch, means):
     path = write(tmp_path)
+    if means:
+        (tmp_path / "my_tests.csv").write_text(means_of())
     request = sets.Request(tmp_path / "results" / "sets", (str(path),), True)
     run = simulate(read_toml(path), "modal")
     monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
@@ -227,6 +230,9 @@ def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_
     page = (tmp_path / "results" / "report" / "report.html").read_text()
     assert "Model and measurements" in page and "mine" in page
     assert "What the paper concluded" not in page
+    assert cli("report", "results/sets")[0] == 0
+    lines = (request.out / "beside.csv").read_text().splitlines()
+    assert lines[1].startswith("mine,") and lines[1].endswith("/ –") == means
 
 
 def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
