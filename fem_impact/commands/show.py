@@ -14,6 +14,8 @@ from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 if TYPE_CHECKING:
     from fem_impact.render.timeline import Span
 
+FIELDS = "fields.vtkhdf"
+
 
 def render(options: Options) -> int:
     """Make a film of the waves of a result, or of several side by side, or a page to turn the rod on."""
@@ -61,11 +63,23 @@ def _span(options: Options) -> Span:
 
 
 def _check_fields(result: Path) -> None:
-    if not (result / "fields.vtkhdf").is_file():
-        raise ResultError(
-            f"{result}: holds no fields.vtkhdf, which only the finite elements write. "
-            "Run its scene with --fidelity solid."
-        )
+    """Refuse a result without fields, with the reason why it has none and what to do."""
+    if (result / FIELDS).is_file():
+        return
+    runs = sorted(path.parent.name for path in result.glob(f"*/{FIELDS}"))
+    if runs:
+        raise ResultError(f"{result}: is a study. Name one of its runs, such as {result / runs[0]}.")
+    if not (result / "outcome.json").is_file():
+        raise ResultError(f"{result}: is a study of which no run has kept its fields. Run one scene itself.")
+    from fem_impact.outcome.record import Outcome
+
+    fidelity = Outcome.read(result / "outcome.json").provenance.fidelity
+    why, way = (
+        ("its scene says save.frames = 0", "Run it with --set save.frames=120.")
+        if fidelity == "solid"
+        else (f"fidelity {fidelity} has no mesh", "Run its scene with --fidelity solid.")
+    )
+    raise ResultError(f"{result}: holds no {FIELDS}, the fields that a film shows: {why}. {way}")
 
 
 def report(options: Options) -> int:
@@ -87,7 +101,7 @@ def _missing_film(result: Path, options: Options) -> list[str]:
     """Make the film of a run that has fields and no film yet; return why there is none."""
     from fem_impact.report.sections import has_film
 
-    if has_film(result) or not (result / "fields.vtkhdf").is_file():
+    if has_film(result) or not (result / FIELDS).is_file():
         return []
     from fem_impact.render import film as films
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import nullcontext
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -84,7 +85,8 @@ def sweep(
     with tempfile.TemporaryDirectory() as spare:
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
-        with directory_lock(place), executor or _engine(workers) as engine:
+        # an executor that is lent stays open
+        with directory_lock(place), nullcontext(executor) if executor else _engine(workers) as engine:
             found = run_jobs(jobs, place / STORE, progress or NullMeter(), engine)
     return Results(dict(vary), tuple(row_of(case, found.get(case.name)) for case in made))
 

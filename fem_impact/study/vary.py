@@ -101,7 +101,8 @@ def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Case]:
     _check(vary)
     made = list(_made(scene, vary))
     if all(case.scene is None for case in made):
-        raise SceneError(f"no combination is a scene; the first says: {made[0].refused}", key="vary")
+        which = "The only combination" if len(made) == 1 else f"Each of the {len(made)} combinations"
+        raise SceneError(f"{which} is refused: {made[0].refused.removeprefix('--set: ')}", key="--vary")
     return made
 
 

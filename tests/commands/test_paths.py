@@ -99,14 +99,6 @@ def test_results_that_are_none(cli, stand, command):
         assert words in err
 
 
-def test_a_film_of_a_reduced_model_is_refused_with_the_remedy(cli, stand):
-    Path("here").mkdir()
-    Path("here/outcome.json").write_text("{}")
-    code, err = refused(cli, stand, "render", "here")
-    assert code == 5
-    assert "Run its scene with --fidelity solid." in err
-
-
 def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
     Path("here").mkdir()
     for name in ("outcome.json", "fields.vtkhdf"):

@@ -2,6 +2,7 @@
 
 import json
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +56,7 @@ def test_values_of_other_units_come_in_that_of_the_first():
     [
         ({"impact.angel": ["15 deg"]}, "Did you mean angle"),
         ({"lenght": ["15 mm"]}, "Did you mean projectile.length"),
-        ({"projectile.length": ["1 mm", "2 mm"]}, "no combination is a scene"),
+        ({"projectile.length": ["1 mm", "2 mm"]}, "Each of the 2 combinations is refused: projectile.length"),
         ({}, "names no values"),
         ({"impact.angle": "15 deg"}, "one text, not a list"),
         ({"surface.friction": [0.1] * 400, "restitution": [0.1] * 400}, "160000 combinations"),
@@ -147,6 +148,70 @@ def test_the_command(cli):
     assert cli("report", "here")[0] == 0
     assert "Sweep" in Path("here/report.html").read_text(encoding="utf-8")
     assert cli("sweep", "t5b", "--vary", "impact.angle=3", "--vary", "impact.angle=4")[0] == 2
+
+
+def test_two_keys_make_all_combinations_and_a_parquet_file(cli, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    line = (
+        "--vary",
+        "impact.angle=30,45deg",
+        "--vary",
+        "projectile.tip=A,B",
+        "--vary",
+        "projectile.length=1,80mm",
+    )
+    code, out, _ = cli(
+        "sweep", "t5b", *line, "--fidelity", "rigid", "--workers", "1", "--out", "here", "--quiet"
+    )
+    assert code == 6  # rods of 1 mm are refused
+    assert "8 cases of impact.angle, projectile.tip, projectile.length; 4 failed" in out
+    kept, listed = pandas.read_parquet("here/sweep.parquet"), pandas.read_csv("here/sweep.csv")
+    assert list(kept["impact.angle [deg]"]) == [30.0] * 4 + [45.0] * 4
+    assert list(kept["projectile.tip"]) == ["A", "A", "B", "B"] * 2
+    assert list(kept.columns) == list(listed.columns)
+    assert kept["mu"].to_numpy() == pytest.approx(listed["mu"].to_numpy(), rel=1e-15, nan_ok=True)
+    assert list(kept["finished"]) == [False, True] * 4
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_parquet_is_written_where_both_packages_are(swept, tmp_path, monkeypatch, there):
+    pandas = pytest.importorskip("pandas")
+    written = []
+    monkeypatch.setattr(
+        pandas.DataFrame, "to_parquet", lambda frame, path: written.append((len(frame), path))
+    )
+    found = {"pandas": True, "pyarrow": there}
+    monkeypatch.setattr("fem_impact.study.sweep.find_spec", lambda name: found[name])
+    publish_sweep(swept[0], "t5b", "fem-impact sweep t5b", tmp_path)
+    assert written == ([(6, tmp_path / "sweep.parquet")] if there else [])
+
+
+def test_a_sweep_runs_on_a_cluster(cli):
+    distributed = pytest.importorskip("distributed")
+    line = ("sweep", "t5b", "--vary", "surface.friction=0.2,0.4", "--fidelity", "rigid", "--quiet", "--json")
+    options = {"n_workers": 1, "threads_per_worker": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as cluster:
+        code, out, err = cli(*line, "--scheduler", cluster.scheduler_address)
+    assert (code, err) == (0, "")
+    assert [row["mu"] for row in json.loads(out)["rows"]] == pytest.approx([0.2, 0.4])
+
+
+def test_an_executor_that_is_lent_stays_open():
+    with ThreadPoolExecutor(1) as lent:
+        sweep(load("t5b"), {"surface.friction": [0.2]}, fidelity="rigid", executor=lent)
+        assert lent.submit(int, 3).result() == 3
+
+
+@pytest.mark.parametrize(
+    ("vary", "nearest"),
+    [("impact.angel=15,20deg", "Did you mean angle?"), ("angle=15deg", "Did you mean impact.angle?")],
+)
+def test_a_wrong_key_is_answered_with_the_nearest_before_a_directory_is_made(cli, vary, nearest):
+    code, out, err = cli("sweep", "t5b", "--vary", vary)
+    assert (code, out) == (3, "")
+    assert nearest in err and "--set" not in err
+    assert not Path("results").exists()
 
 
 def test_the_example_of_the_page_prints_what_it_shows(capsys):

@@ -1,0 +1,35 @@
+"""A result without fields: `render` says why it has none, and what to do."""
+
+import pytest
+import result_maker
+
+
+@pytest.mark.parametrize(
+    ("fidelity", "words"),
+    [
+        ("modal", "fidelity modal has no mesh. Run its scene with --fidelity solid."),
+        ("solid", "its scene says save.frames = 0. Run it with --set save.frames=120."),
+    ],
+)
+def test_a_run_without_fields(cli, tmp_path, fidelity, words):
+    result_maker.write_result(tmp_path / "one", fidelity=fidelity)
+    (tmp_path / "one" / "fields.vtkhdf").unlink(missing_ok=True)
+    code, _, err = cli("render", "one")
+    assert code == 5
+    assert f"one: holds no fields.vtkhdf, the fields that a film shows: {words}" in err
+
+
+def test_a_study_names_a_run_that_has_them(cli, tmp_path):
+    (tmp_path / "sets" / "t4").mkdir(parents=True)
+    (tmp_path / "sets" / "study.json").write_text("{}")
+    assert "no run has kept its fields" in cli("render", "sets")[2]
+    (tmp_path / "sets" / "t4" / "fields.vtkhdf").write_bytes(b"")
+    assert "sets: is a study. Name one of its runs, such as sets/t4." in cli("render", "sets")[2]
+
+
+def test_a_file_is_answered_with_its_directory(cli, tmp_path):
+    (tmp_path / "one").mkdir()
+    (tmp_path / "one" / "fields.vtkhdf").write_bytes(b"")
+    code, _, err = cli("render", "one/fields.vtkhdf")
+    assert code == 5
+    assert "is a file. Name the directory of the results, such as one." in err
