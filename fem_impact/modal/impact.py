@@ -20,6 +20,7 @@ from fem_impact.modal.march import (
     FLOWED,
     HARDEST,
     MOST_CONTACTS,
+    MOST_ROWS,
     NOTHING,
     RUBBED,
     SHEARED,
@@ -62,6 +63,7 @@ class ModalResult:
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
     finished, reason : whether the impact is over, and why the march ended
+    record : (m, 15) what moved over time, see `fem_impact.modal.march`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
 
@@ -88,6 +90,7 @@ class ModalResult:
     force: float
     finished: bool
     reason: str
+    record: Array
     step: float
     steps: int
     wall: float
@@ -99,8 +102,13 @@ class ModalResult:
         return float(self.energies.sum())
 
 
-def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> ModalResult:
-    """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles."""
+def solve(
+    plan: Plan, progress: Callable[[Progress], None] | None = None, recorded: bool = False
+) -> ModalResult:
+    """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
+
+    Where it is ``recorded``, the result holds what moved over time.
+    """
     if progress is not None and not compiled_before("march.drop"):
         progress(compiling(plan.max_time, COMPILE))
     scene = plan.scene
@@ -113,11 +121,12 @@ def solve(plan: Plan, progress: Callable[[Progress], None] | None = None) -> Mod
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
     bounds = Bounds(dt, horizon(scene), plan.max_time, reach(law, flow, E_0))
     # compiles, or fetches what was compiled before, so that times are times of the impact
-    drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts)
+    record = np.zeros((MOST_ROWS if recorded else 0, 15))
+    drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
     wall, cpu = time.perf_counter(), time.process_time()
-    end = drop(start, law, flow, modes, rod.others, bounds, contacts)
+    end = drop(start, law, flow, modes, rod.others, bounds, contacts, record)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(plan, rod, end, E_0, contacts, bounds, (wall, cpu))
+    return _result(plan, rod, end, E_0, contacts, bounds, record, (wall, cpu))
 
 
 def _result(
@@ -127,6 +136,7 @@ def _result(
     E_0: float,
     contacts: Array,
     bounds: Bounds,
+    record: Array,
     took: tuple[float, float],
 ) -> ModalResult:
     """Return the result of a march that ``took`` wall and processor time, s."""
@@ -166,6 +176,7 @@ def _result(
         force=tally[HARDEST],
         finished=end.over,
         reason=_reason(rod, end, bounds),
+        record=record[: end.rows],
         step=bounds.step,
         steps=end.steps,
         wall=took[0],

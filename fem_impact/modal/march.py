@@ -31,6 +31,12 @@ V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T, BASE_SPIN, SURFACE_N, SURFA
 # of the tally: m, N; J of the forces, gravity and a plate; J of flow, of the sheared skin, of friction
 PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P, FLOWED, SHEARED, RUBBED = range(9)
 NOTHING, TIP = -1, -2  # of what strikes
+# of a row of the record: s, N, m/s, rad/s; J of the rod's rigid motion, its modes' motion and strain, flow,
+# friction, what the contact holds, the barrier's motion, a plate, gravity's work
+T_ROW, F_N_ROW, F_T_ROW, V_N_ROW, V_T_ROW, SPIN_ROW = range(6)
+RIGID_ROW, RATE_ROW, STRAIN_ROW, FLOW_ROW, RUB_ROW, HELD_ROW, BASE_ROW, PLATE_ROW, GRAVITY_ROW = range(6, 15)
+MOST_ROWS = 2048
+"""Rows of a record; where a run has more, every second one is dropped."""
 
 
 class Start(NamedTuple):
@@ -123,6 +129,7 @@ class ModalEnd(NamedTuple):
     time, steps, touches : s, number of steps, of contacts
     struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s
     over : nothing strikes within the horizon
+    rows : of the record that are filled
     """
 
     motion: ModalState
@@ -134,6 +141,7 @@ class ModalEnd(NamedTuple):
     struck: int
     wait: float
     over: bool
+    rows: int
 
 
 @inlined
@@ -327,6 +335,45 @@ def meet(
 
 
 @allocating_kernel
+def enter(
+    row: Array,
+    now: ModalState,
+    start: Start,
+    modes: Modes,
+    arm: tuple[float, float, float, float],
+    p: tuple[float, float],
+    tally: Array,
+) -> tuple[float, float]:
+    """Fill a row of the record with the motion half an impulse (n, t), N s, further; return works n, t, J.
+
+    The velocities are then those of the time of the places, and the energies add up.
+    """
+    mid, works = ModalState(now.rigid.copy(), now.q, now.rate.copy()), tally.copy()
+    push(mid, start, modes, arm, 0.5 * p[0], 0.5 * p[1], works)
+    V_n, V_t, spin = mid.rigid[V_N], mid.rigid[V_T], mid.rigid[SPIN]
+    row[V_N_ROW], row[V_T_ROW], row[SPIN_ROW] = V_n, V_t, spin
+    row[RIGID_ROW] = 0.5 * start.mass * (V_n**2 + V_t**2 + start.k2 * spin**2)
+    row[RATE_ROW], row[STRAIN_ROW] = 0.5 * np.sum(mid.rate**2), 0.5 * np.sum((modes.omega * mid.q) ** 2)
+    if start.lightness > 0.0:
+        row[BASE_ROW] = 0.5 * (mid.rigid[BASE_N] ** 2 + mid.rigid[BASE_T] ** 2) / start.lightness
+    if start.ease > 0.0:
+        row[BASE_ROW] += 0.5 * mid.rigid[BASE_SPIN] ** 2 / start.ease
+    row[PLATE_ROW], row[GRAVITY_ROW] = tally[WORK_P], tally[WORK_G]
+    return works[WORK_N], works[WORK_T]
+
+
+@inlined
+def thinned(record: Array, rows: int, every: int) -> tuple[int, int]:
+    """Drop every second row of a full record; return the number of rows and the steps from row to row."""
+    if rows < len(record):
+        return rows, every
+    for i in range(rows // 2):
+        for k in range(record.shape[1]):
+            record[i, k] = record[2 * i, k]
+    return rows // 2, 2 * every
+
+
+@allocating_kernel
 def drop(
     start: Start,
     law: ContactLaw,
@@ -335,11 +382,14 @@ def drop(
     others: Others,
     bounds: Bounds,
     contacts: Array,
+    record: Array,
 ) -> ModalEnd:
     """Follow a rod from first contact until nothing strikes in the free flight ahead, or another point does.
 
-    ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s.
+    ``contacts`` (MOST_CONTACTS, 4), zeros, are filled with start, end, s, and impulses along n and t, N s;
+    ``record`` (m, 15), zeros, with what moved over time; it may have no rows.
     """
+    rows, every = 0, 1
     dt, k, tally = bounds.step, len(modes.omega), np.zeros(9)
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
     rigid = np.zeros(13)
@@ -357,6 +407,15 @@ def drop(
         force = meet(law, flow, springs, furrow, depth, place, place - before)
         struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
         late = force[0] > 0.0 and time > bounds.latest
+        if len(record) and steps % every == 0:
+            row, arm = record[rows], (c, s, arm_t, arm_n - start.radius)
+            work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
+            row[T_ROW], row[F_N_ROW], row[F_T_ROW] = time, force[0], force[1]
+            held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
+            row[HELD_ROW] = held[0] + held[1]
+            row[FLOW_ROW] = furrow.works[0] + furrow.works[1] if flow.yields else 0.0
+            row[RUB_ROW] = furrow.works[2] if flow.yields else -work[1] - held[1]
+            rows, every = thinned(record, rows + 1, every)
         if force[0] > 0.0:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
             arm = (c, s, arm_t, arm_n - start.radius)
@@ -390,4 +449,4 @@ def drop(
         # the normal spring gives back what it stores by itself, the tangential ones out of friction
         tally[RUBBED] = -tally[WORK_T] - held[1]
     over = struck in (NOTHING, TIP) and not late
-    return ModalEnd(now, tally, held, time, steps, count, struck, wait, over)
+    return ModalEnd(now, tally, held, time, steps, count, struck, wait, over, rows)

@@ -94,5 +94,8 @@ ACCOUNTS = (
 )
 """Accounts of history.csv from bottom to top of the stacked figure, without gravity and the residual."""
 
-OF_SOME = (LedgerAccount("W_plate_J", "bending of the plate", "brown"),)
-"""Accounts that history.csv has only of runs with their effect."""
+OF_SOME = (
+    LedgerAccount("W_plate_J", "bending of the plate", "brown"),
+    LedgerAccount("E_contact_J", "held by the contact", "ink"),
+)
+"""Accounts that history.csv has only of runs with their effect, or of the reduced model."""

@@ -78,8 +78,8 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
 
     With ``again`` False, figures newer than history.csv are not drawn again.
     """
-    if outcome.provenance.fidelity != "solid":
-        return section("Over time", paragraph("No curves over time: only the finite elements write them."))
+    if outcome.provenance.fidelity == "rigid":
+        return section("Over time", paragraph("No curves over time: a rigid impact takes no time."))
     since = None if again else folder / "history.csv"
     try:
         history = read_history(folder / "history.csv")

@@ -292,9 +292,14 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -
     )
 
 
+def rod_flows(bodies: ContactBodies) -> bool:
+    """Return whether it is the rod that flows at the contact, by the contact law of the softer body."""
+    return bool(bodies.rod_yields and softer(bodies) == bodies.scene.projectile.material)
+
+
 def plastic_shares(bodies: ContactBodies, share: float) -> tuple[Num, Num]:
     """Return the plastic work of rod and barrier; that of a harder body that may yield is not known."""
-    in_rod = bodies.rod_yields and softer(bodies) == bodies.scene.projectile.material
+    in_rod = rod_flows(bodies)
     other = HARDER if bodies.rod_yields and bodies.barrier_yields else 0.0
     return (share, other) if in_rod else (other, share)
 

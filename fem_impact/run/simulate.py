@@ -26,8 +26,8 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         contact law, some ten milliseconds once the modes of the rod are known; ``solid``, the explicit
         finite-element model, seconds to minutes
     options : where the files go: scene.toml, outcome.json, contacts.csv where contacts have a duration, and
-        history.csv and fields.vtkhdf of the solid fidelity; none of them is written without ``out``. What
-        an older run left there is moved to a directory ``earlier-...`` within
+        history.csv except of the rigid and fields.vtkhdf of the solid one; none is written without ``out``.
+        What an older run left there is moved to a directory ``earlier-...`` within
 
     Raises
     ------
@@ -92,8 +92,12 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
     if plan.fidelity == "modal":
         from fem_impact.modal.impact import solve as solve_modal
         from fem_impact.run.modal import reduce as reduce_modal
+        from fem_impact.run.modal_history import write_history
 
-        return reduce_modal(plan, solve_modal(plan, options.progress))
+        result = solve_modal(plan, options.progress, recorded=options.out is not None)
+        if options.out is not None:
+            write_history(plan, result, options.out / "history.csv")
+        return reduce_modal(plan, result)
     from fem_impact.run.program import stamp
     from fem_impact.run.solid import reduce
     from fem_impact.solid.run import solve

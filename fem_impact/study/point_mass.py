@@ -29,7 +29,7 @@ def contact_time(law: ContactLaw, flow: FlowLaw, mass: float, speed: float) -> f
     start = Start(mass, 1.0, 0.0, 0.0, 0.0, 0.0, -speed, 0.0, 0.0, 0.0)
     bounds = Bounds(STEP, FREE, LATEST, reach(law, flow, 0.5 * mass * speed**2))
     contacts = np.zeros((MOST_CONTACTS, 4))
-    drop(start, law, flow, RIGID, ALONE, bounds, contacts)
+    drop(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
     return float(contacts[0, 1] - contacts[0, 0])
 
 

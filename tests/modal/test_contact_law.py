@@ -61,7 +61,7 @@ def strike(contact, v_n, v_t=0.0, omega=0.0, steps=1000, flows=None):
     bounds = Bounds(
         60e-6 / v_n**0.2 / steps, 1e-4, 1e-3, reach(contact, flows, 0.5 * MASS * (v_n**2 + v_t**2))
     )
-    end = drop(start, contact, flows, RIGID, ALONE, bounds, contacts)
+    end = drop(start, contact, flows, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
     assert end.over
     if flows.yields:
         return end.motion.rigid[:3], end.tally, contacts[: end.touches]

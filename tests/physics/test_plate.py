@@ -49,7 +49,7 @@ def test_the_reduced_model_obeys_zeners_equation(number):
     start = Start(m, 1.0, 0.0, 0.0, 0.0, 0.0, -v, 0.0, 0.0, 0.0, give=number * T / m)
     contacts = np.zeros((MOST_CONTACTS, 4))
     bounds = Bounds(T / 300, T, 1.0, reach(law, flow, 0.5 * m * v**2))
-    end = drop(start, law, flow, RIGID, ALONE, bounds, contacts)
+    end = drop(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
     assert end.motion.rigid[0] == pytest.approx(exact.restitution * v, abs=1e-3)
     assert end.tally[HARDEST] == pytest.approx(exact.peak * law.stiffness * (v * T) ** 1.5, rel=2e-3)
     kept = 0.5 * m * end.motion.rigid[0] ** 2 + end.tally[WORK_P]
