@@ -229,10 +229,13 @@ def _harm(effect: EffectChoice) -> str:
     Empty for a barrier that is not in use. Of vibration the verdict says it, by models that resolve it.
     """
     from fem_impact.effects.registry import BARRIERS
+    from fem_impact.plan.choose import UNFELT
     from fem_impact.plan.measured import estimate_errors
 
     if effect.name in BARRIERS and not effect.on:
         return ""
+    if effect.name in UNFELT:
+        return "the motion does not feel it"
     if effect.name == "vibration":
         return "what leaving it out changes: `fem-impact assess`"
     scenes, e, E_vib = estimate_errors().get(effect.name, (0, 0.0, 0.0))

@@ -88,13 +88,33 @@ def the_way(keys: Collection[str]) -> tuple[str, ...]:
     raise SceneError(problem, remedy=_KEEP)
 
 
+def _refuse_one_of_two(old: Impact, new: Collection[str]) -> None:
+    """Refuse one new velocity beside a height or speed: the other would silently be that of the old fall."""
+    velocities = set(WAYS[2]) & set(new)
+    if old.stated == WAYS[2] or len(velocities) != 1 or {"height", "speed"} & set(new):
+        return
+    (key,), (way,) = velocities, old.stated
+    (other,) = set(WAYS[2]) - velocities
+    raise SceneError(
+        f"is one of two velocities, but the scene states its impact by {way} along the rod's axis.",
+        key=f"impact.{key}",
+        remedy=f"Change impact.{way}, or state both velocities: add --set impact.{other}=...",
+    )
+
+
 def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> dict[str, Any]:
     """Return the table of a changed impact, in which the changed keys state the velocities.
 
     A new height or speed takes the place of velocities, and they of it. A new angle alone leaves a fall a
     fall: a rod that came along its axis still does, as fast as before.
+
+    Raises
+    ------
+    SceneError
+        One velocity alone is changed of an impact that a height or speed states.
     """
     new = set(changed)
+    _refuse_one_of_two(old, new)
     if not new & {key for way in WAYS for key in way}:
         if "angle" not in new or old.stated != WAYS[2] or abs(old.beside) > BESIDE:
             return table

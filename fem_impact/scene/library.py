@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
 from math import inf
@@ -46,9 +47,18 @@ def material(name: str) -> Material:
         if name in group["names"]:
             raise SceneError(group["reason"], value=name, remedy=group["remedy"])
     if name not in known:
-        remedy = did_you_mean(name, known, f"Known: {', '.join(known)}; or give a table of values.")
+        remedy = _nearest_material(name, known)
         raise SceneError("is not a shipped material.", value=name, remedy=remedy)
     return known[name]
+
+
+def _nearest_material(name: str, known: Collection[str]) -> str:
+    """Return the shipped materials that a name is a part of, in either spelling, else the nearest name."""
+    part = name.lower().replace("aluminum", "aluminium")
+    family = [one for one in known if part in one]
+    if family not in ([], [part]):
+        return f"Shipped are {', '.join(family)}; or give a table of values."
+    return did_you_mean(part, known, f"Known: {', '.join(known)}; or give a table of values.")
 
 
 def surfaces() -> dict[str, Surface]:

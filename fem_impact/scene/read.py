@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from math import isclose
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, NoReturn, TypeVar
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
@@ -25,6 +25,7 @@ from fem_impact.scene.shapes import (
     NamedShape,
     Profile,
     read_points,
+    refuse_as_tip,
     sizes_of,
     stated_points,
 )
@@ -249,6 +250,7 @@ def _segment(table: Table, place: str) -> Segment:
 
 
 def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
+    refuse_as_tip(table.get("tip"))
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = _numbers(table, fields.PROJECTILE, ("tip", "material"), plain)
     return ProjectileSpec(
@@ -366,12 +368,19 @@ def _number(table: Table, field: Parameter, default: Any) -> Any:
             )
         return parse_number(table[field.si_key], field.si_key)
     if field.key not in table:
-        return default if default is not None or field.derived else _needed(table, field.key)
+        return default if default is not None or field.derived else _stated(field)
     value = table[field.key]
     if field.dimension:
         return parse_quantity(value, field.dimension, field.key)
     parse_number(value, field.key)
     return value
+
+
+def _stated(field: Parameter) -> NoReturn:
+    """Refuse a table without a number that nothing else stands for."""
+    how = "with its unit" if field.dimension else "as a bare number"
+    remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
+    raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)
 
 
 def _within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:

@@ -55,6 +55,19 @@ def sizes_of(shape: str) -> tuple[Parameter, ...]:
     return tuple(next(size for size in SIZES if size.key == key) for key in NEEDS[shape])
 
 
+def refuse_as_tip(tip: object) -> None:
+    """Refuse the name of a shape as that of a tip (SceneError), and say how a shape is written."""
+    from fem_impact.scene.tips import tips
+
+    if isinstance(tip, str) and tip in NEEDS and tip not in tips():
+        raise SceneError(
+            "is a shape, not one of the published tips.",
+            key="tip",
+            value=tip,
+            remedy=f'Write shape = "{tip}" with {" and ".join(NEEDS[tip])} in place of tip and tip_radius.',
+        )
+
+
 @dataclass(frozen=True, slots=True)
 class NamedShape:
     """A shape by name with its sizes, SI, in the order of `NEEDS`."""

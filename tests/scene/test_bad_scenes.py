@@ -10,13 +10,14 @@ from hypothesis import strategies as st
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.library import materials
+from fem_impact.scene.library import material, materials
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.scene.write import to_dict, to_toml
 
+ROD = {"length": "80 mm", "diameter": "19 mm", "tip": "B", "tip_radius": "3 mm", "material": "rod-steel"}
 NAN, INF = float("nan"), float("inf")
 MISTAKES = [
     ("impact.v_n", "2.1 m/s", ["impact.v_n = 2.1 m/s", "at most -0.000001 m/s", "out of the barrier"]),
@@ -261,3 +262,42 @@ def test_any_wrong_value_is_refused_or_gives_a_sound_scene(place, value):
         assert section in str(error)
         return
     assert read_dict(to_dict(scene)) == scene
+
+
+@pytest.mark.parametrize("shape", ["hemisphere", "ogive", "ball"])
+def test_a_shape_that_is_given_as_a_tip_is_told_where_it_belongs(shape):
+    data = to_dict(load("tube")) | {"projectile": {**ROD, "tip": shape}}
+    with pytest.raises(
+        SceneError, match=rf'projectile\.tip = "{shape}".*Write shape = "{shape}" with .*diameter'
+    ):
+        read_dict(data)
+
+
+@pytest.mark.parametrize(
+    ("key", "words"), [("nu", "Poisson's ratio"), ("E", "Young's modulus"), ("rho", "density")]
+)
+def test_a_material_of_ones_own_without_a_constant_is_told_which(key, words):
+    metal = {"name": "mine", "E": "70 GPa", "nu": 0.3, "rho": "2700 kg/m3"} | {
+        "yield_stress": "200 MPa",
+        "ultimate_stress": "300 MPa",
+    }
+    del metal[key]
+    data = to_dict(load("quick")) | {"projectile": {**ROD, "material": metal}}
+    with pytest.raises(SceneError, match=rf"projectile\.material\.{key}: is missing: the {words}.*Give it"):
+        read_dict({k: v for k, v in data.items() if k != "measured"})
+
+
+@pytest.mark.parametrize(
+    ("name", "told", "not_told"),
+    [
+        ("aluminum", "aluminium-6061-t6, aluminium-2024-t3", "alumina"),
+        ("Aluminium", "aluminium-6061-t6", "alumina"),
+        ("6061-T6", "aluminium-6061-t6", "steel"),
+        ("steel", "rod-steel, plate-steel", "alumina"),
+        ("aluminium-6061-T6", "aluminium-6061-t6", "alumina"),
+    ],
+)
+def test_a_material_that_is_not_shipped_is_answered_with_its_family(name, told, not_told):
+    with pytest.raises(SceneError) as refused:
+        material(name)
+    assert told in str(refused.value) and not_told not in str(refused.value)

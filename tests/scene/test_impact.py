@@ -86,8 +86,7 @@ def test_the_order_of_changes_does_not_matter():
 @pytest.mark.parametrize(
     ("changes", "way", "v"),
     [
-        ({"impact.v_n": "-1 m/s"}, ("v_n", "v_t"), (-1.0, -1.0)),
-        ({"impact.v_t": "0 m/s", "impact.angle": "0 deg"}, ("v_n", "v_t"), (-(3**0.5), 0.0)),
+        ({"impact.v_n": "-1 m/s", "impact.v_t": "-1 m/s"}, ("v_n", "v_t"), (-1.0, -1.0)),
         ({"impact.height_m": 0.5, "impact.angle": "0 deg"}, ("height",), (-(9.80665**0.5), 0.0)),
         ({"impact.omega": "3 rad/s"}, ("speed",), (-(3**0.5), -1.0)),
     ],
@@ -96,6 +95,15 @@ def test_a_changed_velocity_takes_the_place_of_the_stated_one(changes, way, v):
     impact = replace_all(stated(speed="2 m/s"), changes).impact
     assert impact.stated == way
     assert (impact.v_n, impact.v_t) == pytest.approx(v, rel=1e-12)
+
+
+@pytest.mark.parametrize(("one", "other"), [("v_n", "v_t"), ("v_t", "v_n")])
+@pytest.mark.parametrize("way", ["speed", "height"])
+def test_one_velocity_alone_of_a_fall_is_refused_with_what_to_do(one, other, way):
+    scene = stated(**{way: "2 m" if way == "height" else "2 m/s"})
+    words = rf"impact\.{one}.*states its impact by {way}.*Change impact\.{way}.*add --set impact\.{other}"
+    with pytest.raises(SceneError, match=words):
+        replace(scene, f"impact.{one}", "-1 m/s")
 
 
 def test_velocities_beside_the_axis_stay_what_they_are():

@@ -20,11 +20,21 @@ SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "
 
 
 OWN_BARRIERS = ("plate-10mm", "free-barrier-5kg", "moving-barrier", "spinning-rod")
+OTHER_METALS = ("aluminium-rod", "tungsten-rod")
 OWN_SHAPES = ("tube", "ogive", "heavy-tail", "sphere-cone")
 
 
 def test_the_thirteen_sets_and_others_are_shipped():
-    others = ("elastic-frictionless", "quick", "wave", "wave-45", *SECOND, *OWN_BARRIERS, *OWN_SHAPES)
+    others = (
+        "elastic-frictionless",
+        "quick",
+        "wave",
+        "wave-45",
+        *SECOND,
+        *OWN_BARRIERS,
+        *OWN_SHAPES,
+        *OTHER_METALS,
+    )
     assert shipped() == (*MEASURED_SETS, *others)
     assert tuple(set_ids()) == MEASURED_SETS
     assert len(MEASURED_SETS) == 13
