@@ -62,10 +62,10 @@ def _folders(results: Path) -> list[Path]:
 def _parts(study: Study, figures: Path) -> list[Markup]:
     """Return the sections of a study; one with outcomes also gets the verdicts on the paper's conclusions."""
     if not study.rows:
-        return [findings_section(study)]
+        return [findings_section(study, study.title)]
     since = study.folder / "study.json"
     return [
-        findings_section(study),
+        findings_section(study, study.title),
         section("Model and measurements", comparison_part(study.comparison, study.folder, since)),
         section("Where the energy went", partition_part(study, since)),
         verdict_section(verdicts(study.rows), figures),

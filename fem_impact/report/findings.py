@@ -9,22 +9,32 @@ from typing import Any
 from fem_impact.report.html import Markup, bullets, details, join, paragraph, place, section, table
 from fem_impact.report.page import download, stored_figure
 from fem_impact.report.study_data import Study
-from fem_impact.tables.table import Table
+from fem_impact.tables.symbols import readable
+from fem_impact.tables.table import Column, Table
 
 
-def findings_section(study: Study) -> Markup:
-    """Return the findings of a study, its figures and data embedded."""
+def findings_section(study: Study, title: str = "") -> Markup:
+    """Return the answer, which is the first finding, and the first figure; all else folded, with its data."""
     runs = f"{study.runs} runs, {len(study.failures)} failed."
     failed = [(failure["scene_id"], failure["error"]) for failure in study.failures]
+    figures = [_figure(entry, study) for entry in study.figures]
     return section(
-        study.title,
-        bullets(study.findings),
-        *(_figure(entry, study) for entry in study.figures),
+        title,
+        paragraph("".join(study.findings[:1]), "answer"),
+        *figures[:1],
+        _folded("What else was found", bullets(study.findings[1:])),
+        _folded("More figures", *figures[1:]),
         *(_sheet(sheet, study) for sheet in study.sheets),
-        details("What it rests on", bullets(study.assumptions)) if study.assumptions else Markup(""),
+        _folded("What it rests on", bullets(study.assumptions)),
         Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
         table(Table.of(("run", "why"), failed, left=(0, 1))),
     )
+
+
+def _folded(title: str, *content: Markup) -> Markup:
+    """Return a folded block, nothing when it would be empty."""
+    inner = join(content)
+    return details(title, inner) if inner.text else inner
 
 
 def figure_id(study: str, name: str) -> str:
@@ -44,4 +54,8 @@ def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
     if not rows:
         return join([paragraph(sheet["caption"]), link])
     texts = {at for at in range(len(columns)) if any(isinstance(row[at], str) for row in rows)}
-    return details(sheet["caption"], table(Table.of(columns, rows, left=texts), compact=True), link)
+    named = Table(
+        tuple(Column(name, readable(name), left=at in texts) for at, name in enumerate(columns)),
+        tuple(map(tuple, rows)),
+    )
+    return details(sheet["caption"], table(named, compact=True), link)

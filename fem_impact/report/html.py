@@ -35,9 +35,10 @@ def place(name: str, content: Markup) -> Markup:
 
 
 def section(title: str, *content: Markup) -> Markup:
-    """Return a titled section, nothing when it would be empty."""
+    """Return a section, titled where there is a title, nothing when it would be empty."""
     inner = join(content).text
-    return Markup(f"<section>\n<h2>{markup(title)}</h2>\n{inner}\n</section>" if inner else "")
+    head = f"<h2>{markup(title)}</h2>\n" if title else ""
+    return Markup(f"<section>\n{head}{inner}\n</section>" if inner else "")
 
 
 def details(title: str, *content: Markup, opened: bool = False) -> Markup:

@@ -50,9 +50,9 @@ def study_page(folder: Path, again: bool = True) -> str:
     rows = list(study.rows)
     filmed = any(has_film(folder / row.provenance.scene_id) for row in rows)
     body = (
+        findings_section(study),
         _cards(study),
         notices(rows),
-        findings_section(study),
         section(
             "Model beside measurement",
             comparison_part(study.comparison, study.folder, since),
@@ -65,9 +65,7 @@ def study_page(folder: Path, again: bool = True) -> str:
         section("Cost", _costs(rows)),
         sources([*study.sources, *(["film"] if filmed else [])]),
     )
-    quick = "--quick" in study.command.split()
-    title = f"{study.title} (quick look: {study.runs} runs, not a result)" if quick else study.title
-    return page(title, "Study", "", _footer(study), body)
+    return page(study.title, "Study", "", _footer(study), body)
 
 
 def _cards(study: Study) -> Markup:

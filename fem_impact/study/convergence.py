@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cost.limits import limit, pair_limit
-from fem_impact.cost.settings import FAMILY, placed
+from fem_impact.cost.settings import FAMILY, Mesh, placed
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
@@ -26,10 +26,16 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
+QUICK = (Mesh(8, -2, -1), *FAMILY[:-1])
+"""Meshes of the quick study: a coarser one for the finest, since a limit takes three."""
+
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
 USUAL_TIP_SIZE = 0.019 / 8 / 2**3  # m, of the measured sets' own scenes
 STATED = ("e", "mu", "vibration/E_0")  # quantities with a sentence in the findings
-CAPTION = "Each quantity against the size of the elements; rings: limits for vanishing elements."
+CAPTION = (
+    "Each quantity against the size of the elements, with the range over places of the barrier's grid; "
+    "rings: limits for vanishing elements with their bands."
+)
 QUANTITIES = {
     "e": KEY_TABLE["e_paper"],
     "mu": KEY_TABLE["mu"],
@@ -43,10 +49,10 @@ QUANTITIES = {
 def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     """Return the jobs of a set: per mesh, from coarse to fine, one per position of the barrier's grid.
 
-    The quick study leaves out the finest mesh and all positions but the first.
+    The quick study takes the meshes of `QUICK` at the first position.
     """
     plain = replace_all(load(name), {"save.frames": 0})
-    meshes, positions = (FAMILY[:-1], 1) if quick else (FAMILY, None)
+    meshes, positions = (QUICK, 1) if quick else (FAMILY, None)
     return [
         [
             Job(f"{name}-{1e3 * mesh.sizes(plain)[0]:.3f}-{scene.accuracy.grid_shift:g}", scene)
@@ -146,6 +152,8 @@ def _panel(name: str, rows: list[Row]) -> Panel:
     lines, limits = [], []
     for at, row in enumerate(row for row in rows if row["quantity"] == name):
         sizes = [1e3 * size for size in row["tip_size_m"]]
-        lines.append(Series(row["set"], sizes, row["values"], "joined", at))
-        limits.append(Series(f"{row['set']}, limit", [0.0], [row["fit"].value], "rings", at))
+        halves = [apart / 2 for apart in row["apart"]]
+        lines.append(Series(row["set"], sizes, row["values"], "joined", at, halves if any(halves) else None))
+        fit = row["fit"]
+        limits.append(Series(f"{row['set']}, limit", [0.0], [fit.value], "rings", at, [fit.band]))
     return Panel(name, "element at the tip, mm", name, (*lines, *limits))

@@ -71,6 +71,7 @@ def study_report(
     gives = gives_of(families[YIELDING])
     sentences = {
         "onset": [
+            *_answer(families),
             *_onsets(families, solid),
             *_origin(families, solid),
             *_verdicts(families),
@@ -85,7 +86,7 @@ def study_report(
         "criterion",
         "When a rod may be called rigid",
         [sentence for group in sentences.values() for sentence in group],
-        [_angles(families), _onset(families), give_picture(gives), _master(families), _blind(blind, results)],
+        [_onset(families), _angles(families), give_picture(gives), _master(families), _blind(blind, results)],
         [_levels(families), _rods(families), give_sheet(gives), _curves(families)],
         ASSUMPTIONS,
         ["modal", "thornton", "slenderness"],
@@ -100,10 +101,17 @@ def _angles(families: Families) -> Picture:
         same = of_body(rods)
         chosen = (same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int)))
         series = [
-            Series(f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "joined", i) for i, r in enumerate(chosen)
+            Series(
+                f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "joined", i, r.bands if r.bands.any() else None
+            )
+            for i, r in enumerate(chosen)
         ]
         panels.append(Panel(name, "inclination, degrees", "e", tuple(series)))
-    return Picture("angles", "Restitution against inclination, 19 mm rods.", tuple(panels))
+    return Picture(
+        "angles",
+        "Restitution against inclination, 19 mm rods; bands: of the change of e by vibration.",
+        tuple(panels),
+    )
 
 
 def _onset(families: Families) -> Picture:
@@ -112,12 +120,16 @@ def _onset(families: Families) -> Picture:
     for at, (name, rods) in enumerate(families.items()):
         same = of_body(rods)
         gamma, error = [r.drop.gamma for r in same], [r.error for r in same]
-        band = [r.error_high - r.error for r in same] if any(r.bands.any() for r in same) else None
-        series.append(Series(name, gamma, error, "joined", at, band))
+        series.append(Series(name, gamma, error, "joined", at, _bands(same)))
     marks = (Mark(LIMIT, "limit of Eq 29"),)
     label = "largest error of e by rigid theory"
     panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, tuple(map(Mark, LEVELS)))
     return Picture("onset", "Where vibration changes the rebound; dotted: the stated levels.", (panel,), 1)
+
+
+def _bands(rods: Rods) -> list[float] | None:
+    """Return the bands of the largest errors, None for rods of the reduced model, which have none."""
+    return [r.error_high - r.error for r in rods] if any(r.bands.any() for r in rods) else None
 
 
 def _master(families: Families) -> Picture:
@@ -131,7 +143,7 @@ def _master(families: Families) -> Picture:
     panels = []
     for title, axis, group, more, marks in groups:
         series = [
-            Series(name, [group(r) for r in rods], [1 - r.error for r in rods], "points", at)
+            Series(name, [group(r) for r in rods], [1 - r.error for r in rods], "points", at, _bands(rods))
             for at, (name, rods) in enumerate(families.items())
         ]
         panels.append(Panel(title, axis, "1 - largest error of e", (*series, *more), marks))
@@ -156,6 +168,21 @@ def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> Ar
     runs = [(d.friction, results[d.name]) for d in blind if d.length == length]
     pairs = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
     return np.reshape(pairs, (-1, 2)).T
+
+
+def _answer(families: Families) -> list[str]:
+    """Return for how many contacts the limit of Eq 29 keeps the error of e below `JUDGED`, and the onsets."""
+    onsets = {name: gamma_at(rods, BODY, JUDGED) for name, rods in families.items()}
+    passed = {name: onset for name, onset in onsets.items() if onset is not None}
+    if not passed:
+        return []
+    early, late = min(passed, key=passed.__getitem__), max(passed, key=passed.__getitem__)
+    unsafe = sum(onset < LIMIT for onset in passed.values())
+    return [
+        f"The published limit gamma <= {LIMIT} does not keep the error of e below {JUDGED:.0%} for {unsafe} "
+        f"of the {len(passed)} contacts for which an onset was found: vibration changes e by more from gamma "
+        f"{passed[early]:.1f} ({early}) to {passed[late]:.1f} ({late}) on."
+    ]
 
 
 def _onsets(families: Families, solid: Sequence[str]) -> list[str]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -138,12 +138,10 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
             contacts = None if intervals is None else len(intervals)
             values = {**run.to_dict(), "run": name, "contacts": contacts}
             ledger.append([values[column] for column in LEDGER])
+    report = replace(report, title=_title(report, request, results), pictures=_telling(report.pictures))
     document = _document(report, request, results)
     for picture in report.pictures:
-        stem = make_directory(request.out / "figures") / picture.name
-        for suffix in (".svg", ".png"):
-            draw(picture, stem.with_suffix(suffix))
-        write_text(stem.with_suffix(".json"), json.dumps(live(picture), allow_nan=False))
+        _draw(picture, make_directory(request.out / "figures"))
     for sheet in report.sheets:
         write_text(request.out / f"{sheet.name}.csv", sheet.table.csv())
     write_text(request.out / "runs.csv", Table.of(LEDGER, ledger).csv())
@@ -153,14 +151,30 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
     return StudyResult(document, text)
 
 
+def _title(report: StudyReport, request: Request, results: Results) -> str:
+    return (
+        f"{report.title} (quick look: {len(results)} runs, not a result)" if request.quick else report.title
+    )
+
+
+def _telling(pictures: Sequence[Picture]) -> list[Picture]:
+    """Return the pictures with the panels that have more than one place along x; none without any."""
+    cut = (replace(one, panels=tuple(panel for panel in one.panels if panel.tells)) for one in pictures)
+    return [one for one in cut if one.panels]
+
+
 def _document(report: StudyReport, request: Request, results: Results) -> dict[str, Any]:
+    drawn = {picture.name for picture in report.pictures}
     return {
         "schema": SCHEMA,
         "study": report.study,
         "title": report.title,
         "command": request.command(report.study),
         "findings": list(report.findings),
-        "conclusions": [{"name": name, "sentence": sentence} for name, sentence in report.conclusions],
+        "conclusions": [
+            {"name": name if name in drawn else "", "sentence": sentence}
+            for name, sentence in report.conclusions
+        ],
         "assumptions": list(report.assumptions),
         "sources": list(report.sources),
         "figures": [{"name": p.name, "caption": p.caption} for p in report.pictures],
@@ -178,6 +192,13 @@ def _document(report: StudyReport, request: Request, results: Results) -> dict[s
         "rows": [outcome.to_dict() for outcome in report.outcomes],
         "comparison": [dict(row) for row in report.comparison],
     }
+
+
+def _draw(picture: Picture, place: Path) -> None:
+    stem = place / picture.name
+    for suffix in (".svg", ".png"):
+        draw(picture, stem.with_suffix(suffix))
+    write_text(stem.with_suffix(".json"), json.dumps(live(picture), allow_nan=False))
 
 
 def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:

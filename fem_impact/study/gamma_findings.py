@@ -171,6 +171,8 @@ def how_sure(points: Sequence[Point]) -> str:
 def share(point: Point) -> str:
     """Return vibration of a point with its band, in per cent."""
     value, band = 100 * _value(point), point.band(VIBRATION)
+    if band is not None and value < 0.0:
+        return f"less than {value + 100 * band:.2f} %"
     return f"{value:.2g} %" if band is None else f"{value:.2f} ± {100 * band:.2f} %"
 
 

@@ -18,6 +18,9 @@ SYMBOL = re.compile(
 """A letter with an index, the name of a Greek letter, and a power of a metre."""
 
 STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
+UNITS = {"_deg": "degrees", "_m": "m", "_mm": "mm", "_s": "s", "_J": "J", "_N": "N", "_Pa": "Pa"}
+"""Endings of the names of columns, and the units that they stand for."""
+
 MICRO = re.compile(r"(?<=\d )us\b")
 
 
@@ -40,6 +43,23 @@ def markup(text: str) -> str:
         f"<code>{part}</code>" if at % 2 else STRONG.sub(r"<strong>\1</strong>", _replaced(part, shown))
         for at, part in enumerate(parts)
     )
+
+
+def readable(name: str) -> str:
+    """Return the name of a column of a file as words, its unit after a comma; other names as they are.
+
+    Examples
+    --------
+    >>> readable("T1_over_tau"), readable("angle_deg"), readable("E_vib_modal"), readable("E_vib/E_0, %")
+    ('T1/tau', 'angle, degrees', 'E_vib modal', 'E_vib/E_0, %')
+    """
+    if not re.fullmatch(r"\w+", name):
+        return name
+    words, unit = name.replace("_over_", "/"), ""
+    for ending, shown in UNITS.items():
+        if words.endswith(ending):
+            words, unit = words.removesuffix(ending), f", {shown}"
+    return re.sub(r"(?<!\bE)(?<!\bu)(?<!\bV)_", " ", words) + unit
 
 
 def formula(text: str) -> str:

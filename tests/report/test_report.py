@@ -260,10 +260,13 @@ def test_a_study_drawn_beforehand_is_only_drawn_again_if_asked(study):
     assert all(file.stat().st_mtime_ns > before for file, before in zip(own, drawn, strict=True))
 
 
-def test_a_quick_look_says_that_it_is_no_result(study):
-    assert "not a result" not in read(write_report(study))[1]
-    edit(study, command="fem-impact study sets --quick")
-    assert "Model beside measurement (quick look: 2 runs, not a result)" in read(write_report(study))[1]
+def test_a_study_begins_with_its_answer_and_folds_the_rest(study):
+    edit(study, findings=["The answer is 5.", "Another finding."], assumptions=["What it assumes."])
+    text = write_report(study).read_text()
+    start = text.index('<p class="answer">The answer is 5.</p>')
+    assert start < text.index('class="cards"') < text.index("Model beside measurement</h2>")
+    folded = text[text.index("<summary>What else was found") :]
+    assert folded.index("Another finding.") < folded.index("</details>")
 
 
 def test_study_report_names_failures_and_assumptions(study):

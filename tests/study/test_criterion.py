@@ -1,5 +1,6 @@
 """The criterion study: the linear spring exactly, rods from runs, onsets and exponents, blind directions."""
 
+import re
 from dataclasses import replace
 from math import pi, sqrt
 
@@ -186,6 +187,11 @@ def test_the_study_judges_the_criterion(results, tmp_path, monkeypatch):
     assert "yielding, machined, by finite elements: vibration changes e by" in found.text
     assert "Elastic, frictionless, 45 degrees: vibration changes e by finite elements by" in found.text
     assert "vibrate least at f = 0.50" in found.text
+    answer = next(line for line in found.text.splitlines() if line.startswith("- "))
+    onsets = [float(number) for number in re.findall(r"([\d.]+) \(", answer)]
+    assert "does not keep the error of e below 5%" in answer and 10 < onsets[0] <= onsets[1] < 100
+    assert found.text.startswith("# When a rod may be called rigid (quick look: ")
+    assert "runs, not a result)" in found.text.splitlines()[0]
     assert "is no loss to vibration" in found.text
     assert set(drawn) == {"angles", "onset", "static-give", "master", "blind-direction"}
     levels = (tmp_path / "levels.csv").read_text().splitlines()

@@ -89,3 +89,9 @@ def test_auto_agrees_with_everything_on_a_stiff_barrier(tmp_path):
     found = row("x", simulate(scene), simulate(whole))
     assert found[-1] == "within", found
     assert not isclose(found[3], 0.0, abs_tol=1e-12)
+
+
+def test_a_contact_that_the_coarse_mesh_does_not_resolve_still_has_its_numbers(tmp_path):
+    for quick in (False, True):
+        jobs = plan(Request(tmp_path, quick=quick), {})
+        assert {job.scene.accuracy.unresolved for job in jobs} == {"report"}

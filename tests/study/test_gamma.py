@@ -17,10 +17,12 @@ from fem_impact.scene.types import Accuracy, Save
 from fem_impact.study import document
 from fem_impact.study.document import Request
 from fem_impact.study.gamma import ANGLES, FULL, SETS, conclude, line, members, others, plan, reduced
+from fem_impact.study.gamma_findings import share
 from fem_impact.study.gamma_points import (
     FIRST,
     SLACK,
     Member,
+    Point,
     expected_time,
     first_jobs,
     more_jobs,
@@ -228,3 +230,11 @@ def test_a_point_by_finite_elements(tmp_path):
     assert abs(point.run.energy.residual) < 1e-4
     assert 0.1 < point.ratio < 0.5
     assert point.value("e_edge") == pytest.approx(point.e_rigid, abs=0.05)
+
+
+def test_vibration_below_zero_is_told_as_a_bound(monkeypatch):
+    point = Point("rod", Drop(0.08), Failure("rod", "none"), None, None, None, None)
+    for value, band, told in ((-8e-4, 6.1e-3, "less than 0.53 %"), (2.4e-3, 3e-4, "0.24 ± 0.03 %")):
+        monkeypatch.setattr(Point, "value", lambda self, name, v=value: v)
+        monkeypatch.setattr(Point, "band", lambda self, name, b=band: b)
+        assert share(point) == told

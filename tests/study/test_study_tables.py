@@ -1,15 +1,19 @@
 """The study's Markdown, its changed inputs, and pictures that may be missing."""
 
+import json
+
 import pytest
 from outcome_maker import altered
 from study_fakes import outcome
 
 from fem_impact.errors import MissingLibraryError
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.shares import shares
 from fem_impact.physics.hardening import rate_gain
 from fem_impact.progress import NullMeter
 from fem_impact.report.present import pictures, present
+from fem_impact.study.document import Request, StudyReport, publish
 from fem_impact.study.inputs import explanations, sensitivity_rows
 from fem_impact.study.sets import jobs_of, sets_report
 from fem_impact.tables.csv import COMPARISON as COLUMNS
@@ -145,3 +149,16 @@ def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_pat
     notes = present(runs, tmp_path, NullMeter())
     assert [note.partition(": ")[0] for note in notes] == ["t4", "t5b", tmp_path.name]
     assert all("outcome.json" in note for note in notes[:2])
+
+
+def test_a_panel_with_one_place_along_x_is_not_shown(tmp_path):
+    one = Panel("e", "angle, degrees", "e", (Series("e", [45.0, 45.0], [0.1, 0.2]),))
+    two = Panel("e", "angle, degrees", "e", (Series("e", [45.0, 60.0], [0.1, 0.3]),))
+    drawn = [Picture("both", "Both.", (one, two)), Picture("none", "None.", (one,))]
+    conclusions = [("both", "It rises."), ("none", "It stands.")]
+    report = StudyReport("gamma", "A study", ["It rises."], drawn, conclusions=conclusions)
+    document = publish(report, Request(tmp_path), {}).document
+    assert [figure["name"] for figure in document["figures"]] == ["both"]
+    assert [said["name"] for said in document["conclusions"]] == ["both", ""]
+    drawn = json.loads((tmp_path / "figures" / "both.json").read_text())
+    assert len(drawn["panels"]) == 1 and drawn["panels"][0]["data"][0]["x"] == [45.0, 60.0]
