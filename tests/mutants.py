@@ -198,6 +198,13 @@ MUTANTS = (
         "tests/verify/test_verify_bar.py::test_one_strike_and_a_few_bounces",
     ),
     Mutant(
+        "steel that flows without hardening",
+        "fem_impact/solid/plastic_return.py",
+        "        new = flow * _power(growth * dp, n)\n        miss",
+        "        new = flow\n        miss",
+        "tests/verify/test_verify_hardness.py::test_both_codes_agree_on_cells_of_one_size",
+    ),
+    Mutant(
         "shear modulus 0.4 % too low",
         "fem_impact/fem/elements.py",
         "E / (2 * (1 + nu))\n",

@@ -32,8 +32,8 @@ def _cache_folder() -> Path:
     numba checks one source file per kernel only: a kernel would keep an outdated copy of a helper inlined
     from another file.
     """
-    digest, rooms = hashlib.sha256(), Path(__file__).parents[1]
-    for path in sorted([*rooms.joinpath("fem").rglob("*.py"), *rooms.joinpath("modal").rglob("*.py")]):
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parents[1].rglob("*.py")):
         source = path.read_bytes()
         if b"fem_impact.fem.kernels import" in source or b"numba" in source:
             digest.update(source)

@@ -69,6 +69,7 @@ class FreeBody:
     block : what it strikes, or None for the rigid plane n = 0
     turning : the linear part follows large rotations
     impedance : of a plate that bends under the plane or the block, N s/m, or None
+    driven : it keeps its velocity whatever pushes it, a rigid body on a block
     """
 
     mesh: RodMesh
@@ -86,6 +87,7 @@ class FreeBody:
     block: Block | None = None
     turning: bool = False
     impedance: float | None = None
+    driven: bool = False
 
 
 def placed(points: Array, angle: float, gap: float) -> Array:
@@ -116,7 +118,7 @@ def body_model(body: FreeBody) -> Model:
     forces: list[Force] = [linear, *zones]
     impulses: list[Impulse] = []
     n, place = layout.rod_size, layout.barrier_slice
-    steps = {"rod": stable_step(stiffness, inverse[:n])}
+    steps = {} if body.driven else {"rod": stable_step(stiffness, inverse[:n])}
     if block:
         around = build.elastic_block(parts[1], layout, x)
         steps["barrier"] = stable_step(around.stiffness, inverse[place])
@@ -172,6 +174,8 @@ def _inverse(body: FreeBody, parts: list[Meshed], mass: Array, layout: DofLayout
     inverse = invert(mass, parts)
     if body.held is not None:
         inverse[layout.rod[body.held]] = 0.0
+    if body.driven:
+        inverse[: layout.rod_size] = 0.0
     return inverse
 
 

@@ -22,6 +22,7 @@ PROBLEMS = {
     "sears": ("sears_rod", "PROBLEM"),
     "thornton": ("thornton_tip", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),
+    "hardness": ("hardness_cone", "PROBLEM"),
     "wall-bar": ("square_bars", "WALL_BAR"),
     "tilted-bar": ("tilted_bar", "PROBLEM"),
     "modes": ("waves", "MODES"),

@@ -30,8 +30,9 @@ import numpy as np
 
 import meshes
 from fem_impact.physics.hardening import linear_hardening
+from fem_impact.reference.axisymmetric import Metal
 from fem_impact.reference.rod_end import bar_speed
-from fem_impact.reference.taylor import Metal, taylor_bar
+from fem_impact.reference.taylor import taylor_bar
 from fem_impact.scene.fields import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
@@ -114,7 +115,8 @@ def _printed(p: Values, length: float, foot: float) -> list[Check]:
 
 def _reference(p: Values, time: float, cells: int) -> tuple[float, float]:
     """Return the reference's length and foot radius, m, at a time, s, with so many cells over the radius."""
-    metal = Metal(p["E"], p["nu"], p["rho"], p["yield_stress"], p["hardening"])
+    slope = p["hardening"] / p["yield_stress"]
+    metal = Metal(p["E"], p["nu"], p["rho"], p["yield_stress"], slope)
     return taylor_bar(metal, p["length"], p["radius"], p["speed"], time, cells)
 
 

@@ -4,14 +4,18 @@ import os
 import subprocess
 import sys
 import time
+from pathlib import Path
 
+import pytest
 from numba.core import event
 
+from fem_impact.fem import kernels
 from fem_impact.solid.watchers import Stopwatch
 
 TURNED = """
 import numpy as np
 from fem_impact.solid.frame import TurningFrame
+from fem_impact.fem import kernels
 from fem_impact.fem.kernels import SETTINGS
 x, y, mass = np.random.default_rng(1).normal(size=(3, 300))
 frame, d = TurningFrame.at(x, abs(mass), np.arange(300).reshape(-1, 3)), np.zeros(300)
@@ -40,3 +44,11 @@ def test_compiling_is_taken_from_each_clock_by_itself():
         time.sleep(0.1)
     wall, cpu = clock.read()
     assert 0.0 <= cpu < 0.05 and 0.0 <= wall < 0.05
+
+
+@pytest.mark.parametrize("helper", ["plastic_return.py", "patch.py", "hexmodes.py", "furrow.py"])
+def test_a_changed_helper_of_any_room_has_its_own_cache(helper, monkeypatch):
+    """A kernel that inlines a helper of another file is compiled anew when that file changes."""
+    before, read = kernels._cache_folder(), Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"#" * (path.name == helper))
+    assert kernels._cache_folder() != before
