@@ -109,6 +109,27 @@ STUDIES = {
         86,
         8,
     ),
+    "causes": Study(
+        "what rate, hardness and a hard skin change, one after the other and alone",
+        "A measured set without any effect of the strain rate on the flow stress; then with the nominal rate "
+        "law, with flow stress from hardness, and with a hardened skin, one after the other and each alone. "
+        "It shows e, mu and Omega of every step beside the tests.",
+        "12 runs, some 2 min",
+        "t5b on coarse elements: 6 runs, under 1 min",
+        12,
+        6,
+        "t5b, t6-17",
+    ),
+    "tip": Study(
+        "what the rows of Table 3 say about the tip of its rods",
+        "The caption of Table 3 says tip B. Which arms of the contact point fit the rotation of its rows by "
+        "momentum alone, and what finite elements give with either tip, beside the tests. Tip A is shown "
+        "beside the measured sets and counted in none of their numbers.",
+        "24 runs, some 5 min",
+        "the machined rod on coarse elements: 4 runs, under 1 min",
+        24,
+        4,
+    ),
     "validation": Study(
         "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
         "The difference between model and tests of each measured set beside the standard uncertainties of "
