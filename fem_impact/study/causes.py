@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.figures.lines import Panel, Series
+from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.study.compare import MEASURED
-from fem_impact.study.document import Picture, Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.sets import QUICK
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import Statistic, measured_set
