@@ -11,7 +11,7 @@ from math import cos, pi, sin, sqrt, tan
 
 import numpy as np
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.reference.axisymmetric import Body, Metal, grid
 
 REACH = 12.0  # half-width and depth of the body over the contact radius: 24 changes the pressure by .1 %
@@ -93,7 +93,7 @@ def _lines(cells: int) -> Array:
     return np.concatenate([fine, fine[-1] + np.cumsum(GROWTH ** np.arange(1, count + 1)) / cells])
 
 
-def _meet(body: Body, face: Ints, speed: float, angle: float, friction: float) -> tuple[Array, float]:
+def _meet(body: Body, face: Ints, speed: float, angle: float, friction: float) -> tuple[Bools, float]:
     """Stop nodes of the face at the cone; return which were touched, and the force on it, N."""
     x, v, m = body.x[face], body.v[face], body.mass[face]
     tip = -speed * (body.time + body.dt)

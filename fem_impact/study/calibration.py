@@ -15,10 +15,18 @@ from scipy.stats import qmc
 
 from fem_impact.arrays import Array
 from fem_impact.study.inputs import UNCERTAIN_INPUTS
-from fem_impact.study.validated import COVERAGE, DRAWN, NAMES, SEED, ValidatedSet, scaled, unit_sample
+from fem_impact.study.validated import (
+    COVERAGE,
+    DRAWN,
+    FRICTION,
+    NAMES,
+    SEED,
+    ValidatedSet,
+    scaled,
+    unit_sample,
+)
 
 JUDGED = ("e", "mu", "Omega")  # the other quantities are functions of these and of the approach
-FRICTION = "friction"
 EXPONENT = 16  # 2 to this power draws
 FEWEST = 100.0  # effective draws that a posterior needs
 

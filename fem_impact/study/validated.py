@@ -13,7 +13,7 @@ from fem_impact.arrays import Array
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
-from fem_impact.study.compare import MEASURED
+from fem_impact.study.compare import MEASURED, verdict
 from fem_impact.study.inputs import UNCERTAIN_INPUTS, sample_values
 from fem_impact.study.response import ResponseSurface
 from rigid import Errors
@@ -26,6 +26,7 @@ DRAWN = 1024  # points at which a response surface is evaluated
 COVERAGE = 2.0  # E +- 2 u_val, the interval of the model's error (V&V 20, section 6)
 NAMES = tuple(q.measured for q in MEASURED if q.measured)
 VIBRATION = "E_vib_over_E_0"
+FRICTION = "friction"  # the input that belongs to a surface state, nominal inside its interval
 OUTPUTS = (*NAMES, VIBRATION)
 """Quantities of a response surface, by their names in the measured sets."""
 KEYS = (*(q.key.name for q in MEASURED), VIBRATION)
@@ -40,8 +41,10 @@ class Comparison:
     ----------
     S, D : computed value, the limit of two meshes at the nominal inputs; measured mean
     u_num : half of the two-mesh band
-    u_input : standard deviation over the uncertain inputs, each uniform over its interval
+    u_input : root mean square change over the uncertain inputs, each uniform over its interval, from the
+        nominal ones: they stand at the end of some intervals
     u_D : standard error of the mean, and of the tracked velocities
+    scatter : verdict by the 95 % interval of the mean and the scatter of the tests (`compare.verdict`)
     """
 
     set: str
@@ -51,6 +54,7 @@ class Comparison:
     u_num: float
     u_input: float
     u_D: float
+    scatter: str = ""
 
     @property
     def E(self) -> float:
@@ -68,10 +72,16 @@ class Comparison:
         return self.E - COVERAGE * self.u_val, self.E + COVERAGE * self.u_val
 
     @property
+    def in_error(self) -> bool:
+        """Whether the interval of the model's error leaves out zero."""
+        low, high = self.interval
+        return not low <= 0 <= high
+
+    @property
     def verdict(self) -> str:
         """Return whether the comparison shows an error of the model."""
         low, high = self.interval
-        if low <= 0 <= high:
+        if not self.in_error:
             return "no error shown"
         return f"model too {'high' if low > 0 else 'low'} by at least {min(abs(low), abs(high)):.2g}"
 
@@ -113,7 +123,7 @@ def compared(
     ----------
     S : (quantities,) float64, limits of two meshes at the nominal inputs
     bands : half-widths of the two-mesh bands
-    u_input : (outputs,) float64, standard deviations over the uncertain inputs
+    u_input : (outputs,) float64, root mean square changes over the uncertain inputs
     """
     statistics, tracking = measured.statistics(), tracking_uncertainty(measured)
     return tuple(
@@ -125,6 +135,7 @@ def compared(
             bands[i] / COVERAGE,
             float(u_input[i]),
             hypot(statistics[name].sd / sqrt(statistics[name].n), tracking[name]),
+            verdict(float(S[i]), bands[i], statistics[name]),
         )
         for i, (quantity, name) in enumerate(zip(MEASURED, NAMES, strict=True))
     )
@@ -135,6 +146,18 @@ def scaled(name: str, unit: Array, tests: bool = False) -> Array:
     scene, measured = load(name), measured_set(name)
     low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
     return np.asarray((sample_values(scene, measured, unit, tests) - low) / (high - low))
+
+
+def nominal_place(name: str) -> Array:
+    """Return the nominal inputs (1, d) of a set, each over its own interval from 0 to 1."""
+    scene, measured = load(name), measured_set(name)
+    low, high = np.array([i.span(scene, measured) for i in UNCERTAIN_INPUTS]).T
+    places = np.full(len(UNCERTAIN_INPUTS), 0.5)
+    for at, of in enumerate(UNCERTAIN_INPUTS):
+        value = scene.surface.friction if of.name == FRICTION else of.nominal
+        if value is not None:
+            places[at] = (value - low[at]) / (high[at] - low[at])
+    return places[None]
 
 
 def outputs(run: Outcome, measured: MeasuredSet) -> list[float]:

@@ -23,7 +23,16 @@ from fem_impact.study.inputs import UNCERTAIN_INPUTS, changes, sample_values
 from fem_impact.study.pairs import with_limits
 from fem_impact.study.response import fit
 from fem_impact.study.sets import at_places, mesh_jobs
-from fem_impact.study.validated import DRAWN, KEYS, ValidatedSet, compared, outputs, scaled, unit_sample
+from fem_impact.study.validated import (
+    DRAWN,
+    KEYS,
+    ValidatedSet,
+    compared,
+    nominal_place,
+    outputs,
+    scaled,
+    unit_sample,
+)
 from fem_impact.study.validation_report import study_report
 from rigid.experiments import measured_set
 
@@ -86,6 +95,7 @@ def _validated(name: str, request: Request, results: Results) -> ValidatedSet | 
     surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
     every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
     S = np.array([limits[key] for key in KEYS])
-    comparisons = compared(measured, S, [bands[key] for key in KEYS], every.std(axis=0))
+    u_input = np.sqrt(np.mean((every - surface(nominal_place(name))) ** 2, axis=0))
+    comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
     shift = S - np.mean([outputs(run, measured) for run in coarse if isinstance(run, Outcome)], axis=0)
     return ValidatedSet(name, measured, surface, shift, every, tests, comparisons)

@@ -14,11 +14,11 @@ from fem_impact.study.calibration import Calibration, calibrate, constants_of
 from fem_impact.study.compare import MEASURED
 from fem_impact.study.document import Sheet, StudyReport
 from fem_impact.study.inputs import UNCERTAIN_INPUTS
+from fem_impact.study.reach import MISS, SHOWN, reach_sentences
 from fem_impact.study.validated import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations
 
-SHOWN = ("e", "mu", "Omega")
 AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
 TITLES = {**dict(zip(NAMES, (q.name for q in MEASURED), strict=True)), "E_vib_over_E_0": "E_vib/E_0"}
 SOBOL_POINTS = 1024
@@ -29,10 +29,11 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
     compared = [c for found in sets for c in found.comparisons]
     calibration = calibrate(sets) if sets else None
     sentences = [*_verdict_sentences(compared), *(_calibrated_sentences(calibration) if calibration else ())]
+    takes = [sentence for found in sets for sentence in reach_sentences(found)]
     return StudyReport(
         "validation",
         "Validation: error of the model, and how well it is known (ASME V&V 20)",
-        sentences,
+        [*sentences, *takes],
         [_errors(compared), *(_distributions(sets, name) for name in SHOWN)] if sets else (),
         [
             _comparison_sheet(compared),
@@ -43,9 +44,15 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
         ],
         [
             "S is the limit of two meshes at the nominal inputs, D the measured mean, E = S - D.",
-            "u_num is half of the two-mesh band; u_input the standard deviation over all uncertain inputs at "
-            "once, each uniform over its interval, on the coarser mesh; u_D the standard error of the mean "
-            "and of the tracked velocities. They are taken as independent.",
+            "u_num is half of the two-mesh band; u_input the root mean square change from the nominal "
+            "inputs, some of which stand at the end of their interval, over all inputs at once, each uniform "
+            "over its interval, on the coarser mesh; u_D the standard error of the mean and of the tracked "
+            "velocities. They are taken as independent.",
+            "The verdict says whether E +- 2 u_val leaves out zero. The column beside the tests counts no "
+            "inputs: does S, with its band, lie in the 95 % interval of the measured mean, or within two "
+            "standard deviations of single tests (as in the study of the sets).",
+            "What it would take for a miss of e, mu or Omega comes from the response surfaces, each input "
+            "inside its interval; what they leave needs an effect or an input that is not stated.",
             f"The model's error lies in E +- {COVERAGE:g} u_val (ASME V&V 20-2009, section 6).",
             *(
                 f"{i.name}: {i.description}" + ("" if i.varies else "; one value for all tests of a set")
@@ -61,9 +68,10 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     """Return how many comparisons show an error of the model, and what limits them."""
     if not compared:
         return ["No set could be compared: see the failed runs."]
-    shown = [c for c in compared if c.verdict != "no error shown"]
+    shown = [c for c in compared if c.in_error]
     by_set = {c.set: sum(d.set == c.set for d in shown) for c in shown}
     where = ", ".join(f"{name} {count}" for name, count in by_set.items())
+    missed = sum(c.scatter.startswith(MISS) for c in compared)
     parts = {name: sum(getattr(c, name) == max(c.u_num, c.u_input, c.u_D) for c in compared) for name in U}
     limits = ", ".join(f"{U[name]} in {count}" for name, count in parts.items())
     return [
@@ -74,7 +82,8 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
             if shown
             else ""
         ),
-        f"The largest uncertainty is {limits} comparisons.",
+        f"The largest uncertainty is {limits} comparisons. {missed} of the same numbers miss the scatter of "
+        "single tests by more than two standard deviations, where inputs are not counted.",
     ]
 
 
@@ -133,10 +142,17 @@ def _steps(label: str, values: Array, look: Look, colour: int) -> Series:
 def _comparison_sheet(compared: Sequence[Comparison]) -> Sheet:
     head = ("set", "quantity", "S", "D", "E", "u_num", "u_input", "u_D", "u_val", "low", "high", "verdict")
     rows = [
-        (c.set, c.quantity, c.S, c.D, c.E, c.u_num, c.u_input, c.u_D, c.u_val, *c.interval, c.verdict)
+        (
+            *(c.set, c.quantity, c.S, c.D, c.E, c.u_num, c.u_input, c.u_D, c.u_val),
+            *(*c.interval, c.verdict, c.scatter),
+        )
         for c in compared
     ]
-    return Sheet("validation", "Error of the model E = S - D and its uncertainty", Table.of(head, rows))
+    return Sheet(
+        "validation",
+        "Error of the model E = S - D and its uncertainty",
+        Table.of((*head, "beside the tests"), rows),
+    )
 
 
 def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:

@@ -20,8 +20,9 @@ from fem_impact.study import validation as study
 from fem_impact.study.calibration import calibrate, constants_of
 from fem_impact.study.document import Request
 from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, hardened, rates, sample_values
+from fem_impact.study.reach import reach, reach_sentences
 from fem_impact.study.response import fit
-from fem_impact.study.validated import NAMES, Comparison, unit_sample
+from fem_impact.study.validated import NAMES, Comparison, nominal_place, unit_sample
 from fem_impact.study.validation import conclude, plan
 from rigid.experiments import measured_set
 
@@ -170,3 +171,42 @@ def test_a_set_whose_mesh_failed_is_left_out_and_said(tmp_path):
     found = conclude(request, results_of(request, broken=("t5b-coarse",)), NullMeter())
     assert "No set could be compared" in found.text
     assert "failed: t5b-coarse: folded" in found.text
+
+
+def test_an_input_whose_nominal_value_ends_its_interval_counts_from_there(tmp_path):
+    """From .5 to 1, nominal 1: the root mean square distance is .5 / sqrt(3), half of it from the middle."""
+    request = Request(tmp_path, ("t5b",))
+
+    def clamped(job):
+        E = job.scene.barrier.material.E / SCENE.barrier.material.E
+        run = fake(job)
+        return replace(run, motion=replace(run.motion, Omega=10 * E))
+
+    found = study._validated("t5b", request, {j.name: clamped(j) for j in plan(request, {})})
+    omega = found.comparisons[NAMES.index("Omega")]
+    assert omega.u_input == pytest.approx(10 * 0.5 / sqrt(3), rel=0.01)
+
+
+def test_places_of_the_nominal_inputs():
+    names = [i.name for i in UNCERTAIN_INPUTS]
+    places = dict(zip(names, nominal_place("t5b")[0], strict=True))
+    low, high = SCENE.surface.friction_low, SCENE.surface.friction_high
+    assert places["friction"] == pytest.approx((SCENE.surface.friction - low) / (high - low))
+    assert [places[n] for n in ("flow stress", "rate", "plate clamping")] == [0.0, 0.5, 1.0]
+
+
+def test_what_a_miss_would_take_is_read_off_the_response_surface(tmp_path):
+    request = Request(tmp_path, ("t5b",))
+    found = study._validated("t5b", request, results_of(request))
+    omega = found.comparisons[NAMES.index("Omega")]
+    _, high = _input("friction").span(SCENE, SET)
+    up = 20 * (high - SCENE.surface.friction)  # of Omega, by friction at its upper end
+    far = reach(found, replace(omega, D=omega.S + 100, u_D=0.1))
+    assert (far.name, far.place) == ("friction", 1.0)
+    assert far.change == pytest.approx(up, rel=0.01)
+    assert far.left == pytest.approx(far.high - 100, rel=1e-9)
+    assert "friction at its upper end alone gives" in far.sentence and "to something else" in far.sentence
+    near = reach(found, replace(omega, D=omega.S + 0.5 * up, u_D=0.01))
+    assert near.left == 0 and "to something else" not in near.sentence
+    quiet = replace(found, comparisons=tuple(replace(c, D=c.S, scatter="inside") for c in found.comparisons))
+    assert reach_sentences(quiet) == []
