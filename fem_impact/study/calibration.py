@@ -2,15 +2,18 @@
 
 Constants shared by sets (friction of each surface state, strength of the steels and what else does not vary
 between tests) are drawn over their intervals; the likelihood of each draw follows from the response surfaces,
-shifted to the limit of two meshes.
+shifted to the limit of two meshes. The posterior is narrow and lies in corners of the intervals, where hardly
+a draw would fall; a sequential Monte Carlo sampler leads the draws there (Del Moral, Doucet & Jasra 2006,
+doi:10.1111/j.1467-9868.2006.00553.x).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.stats import qmc
 
 from fem_impact.arrays import Array
@@ -27,8 +30,8 @@ from fem_impact.study.validated import (
 )
 
 JUDGED = ("e", "mu", "Omega")  # the other quantities are functions of these and of the approach
-EXPONENT = 16  # 2 to this power draws
-FEWEST = 100.0  # effective draws that a posterior needs
+DRAWS, MOVES = 2048, 12  # draws; moves of each after every rise of the likelihood's power
+KEPT = 0.5  # share of the draws, by their weights, that is left at each rise (Kish 1965)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,9 +57,7 @@ class Calibration:
     Attributes
     ----------
     names : of the constants
-    mean, sd, best : (constants,) float64, each over its own interval from 0 to 1; NaN for mean and sd where
-        fewer than `FEWEST` draws carry the weight
-    draws : effective number of draws, (sum w)^2 / sum w^2 (Kish 1965)
+    mean, sd, best : (constants,) float64, each over its own interval from 0 to 1
     residuals : at the best constants
     """
 
@@ -64,7 +65,6 @@ class Calibration:
     mean: Array
     sd: Array
     best: Array
-    draws: float
     residuals: tuple[Residual, ...]
 
 
@@ -81,19 +81,50 @@ def calibrate(sets: Sequence[ValidatedSet]) -> Calibration:
     the inputs of its own (angle, contact point, speed), taken as independent.
     """
     names = constants_of(sets)
-    draws = np.asarray(qmc.Sobol(len(names), rng=np.random.default_rng(SEED)).random_base2(EXPONENT))
-    chi2 = np.zeros(len(draws))
-    for found in sets:
-        S, D, u = _judged(found, names, draws)
-        chi2 += np.sum(((S - D) / u) ** 2, axis=1)
-    weights = np.exp(-0.5 * (chi2 - chi2.min()))
-    weights /= weights.sum()
-    effective = float(1 / np.sum(weights**2))
-    mean = weights @ draws if effective >= FEWEST else np.full(len(names), np.nan)
-    sd = np.sqrt(weights @ (draws - mean) ** 2)
-    best = draws[chi2.argmin()]
+
+    def chi2(draws: Array) -> Array:
+        judged = (_judged(found, names, draws) for found in sets)
+        return np.asarray(sum(np.sum(((S - D) / u) ** 2, axis=1) for S, D, u in judged))
+
+    draws = posterior(chi2, len(names))
+    best = draws[chi2(draws).argmin()]
     residuals = tuple(r for found in sets for r in _residuals(found, names, best))
-    return Calibration(names, mean, sd, best, effective, residuals)
+    return Calibration(names, draws.mean(axis=0), draws.std(axis=0), best, residuals)
+
+
+def posterior(chi2: Callable[[Array], Array], size: int) -> Array:
+    """Return draws (`DRAWS`, size) from exp(-chi2 / 2) over the unit cube.
+
+    ``chi2`` takes draws (n, size) to (n,). The power of the likelihood rises from 0 to 1, each time so far
+    that `KEPT` of the draws is left; these are drawn again by their weights and moved by Metropolis' rule,
+    with steps as wide as they scatter, reflected at the faces of the cube.
+    """
+    rng, power = np.random.default_rng(SEED), 0.0
+    draws = np.asarray(qmc.Sobol(size, rng=rng).random(DRAWS))
+    cost = chi2(draws)
+    while power < 1:
+        rise = _rise(cost, 1 - power)
+        power += rise
+        weights = np.exp(-0.5 * rise * (cost - cost.min()))
+        again = rng.choice(DRAWS, DRAWS, p=weights / weights.sum())
+        draws, cost = draws[again], cost[again]
+        steps = np.linalg.cholesky(2.38**2 / size * np.atleast_2d(np.cov(draws.T)) + 1e-12 * np.eye(size))
+        for _ in range(MOVES):
+            moved = 1 - np.abs(1 - np.abs(draws + rng.standard_normal(draws.shape) @ steps.T) % 2)
+            other = chi2(moved)
+            taken = rng.random(DRAWS) < np.exp(np.minimum(0.5 * power * (cost - other), 0.0))
+            draws[taken], cost[taken] = moved[taken], other[taken]
+    return draws
+
+
+def _rise(cost: Array, most: float) -> float:
+    """Return the rise of the power, at most ``most``, after which `KEPT` of the draws carries the weight."""
+
+    def left(rise: float) -> float:
+        weights = np.exp(-0.5 * rise * (cost - cost.min()))
+        return float(weights.sum() ** 2 / np.sum(weights**2) / len(cost)) - KEPT
+
+    return most if left(most) >= 0 else float(brentq(left, 0.0, most))
 
 
 def _residuals(found: ValidatedSet, names: Sequence[str], best: Array) -> list[Residual]:

@@ -240,7 +240,8 @@ def _calibrated_sheets(calibration: Calibration, sets: Sequence[ValidatedSet]) -
     return [
         Sheet(
             "calibrated",
-            f"Calibrated constants (never a default), from {calibration.draws:.0f} effective draws",
+            "Calibrated constants (never a default): mean and standard deviation of their joint posterior, "
+            "and the best of its draws",
             Table.of(("constant", "low", "high", "posterior_mean", "best", "posterior_sd"), constants),
         ),
         Sheet(

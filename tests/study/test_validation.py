@@ -17,7 +17,7 @@ from fem_impact.plan.plan import plan as plan_of
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.study import validation as study
-from fem_impact.study.calibration import calibrate, constants_of
+from fem_impact.study.calibration import calibrate, constants_of, posterior
 from fem_impact.study.document import Request
 from fem_impact.study.inputs import CONTACT, LEVELS, UNCERTAIN_INPUTS, changes, hardened, rates, sample_values
 from fem_impact.study.reach import reach, reach_sentences
@@ -210,3 +210,14 @@ def test_what_a_miss_would_take_is_read_off_the_response_surface(tmp_path):
     assert near.left == 0 and "to something else" not in near.sentence
     quiet = replace(found, comparisons=tuple(replace(c, D=c.S, scatter="inside") for c in found.comparisons))
     assert reach_sentences(quiet) == []
+
+
+def test_draws_find_a_narrow_posterior_in_a_corner():
+    """Normal: .002 wide at .3 in one direction, and half of one .01 wide at the face of another."""
+    draws = posterior(lambda x: ((x[:, 0] - 0.3) / 0.002) ** 2 + ((x[:, 1] - 1) / 0.01) ** 2, 4)
+    assert draws.min() >= 0 and draws.max() <= 1
+    assert draws[:, 0].mean() == pytest.approx(0.3, abs=3e-4)
+    assert draws[:, 0].std() == pytest.approx(0.002, rel=0.1)
+    assert 1 - draws[:, 1].mean() == pytest.approx(0.01 * sqrt(2 / np.pi), rel=0.1)
+    assert draws[:, 2:].mean(axis=0) == pytest.approx(0.5, abs=0.04)
+    assert draws[:, 2:].std(axis=0) == pytest.approx(1 / sqrt(12), rel=0.06)
