@@ -44,12 +44,13 @@ class Reach:
     def sentence(self) -> str:
         """What it would take."""
         ends = {0.0: "at its lower end", 1.0: "at its upper end"}
-        where = ends.get(self.place, f"at {self.place:.0%} of its interval")
+        where = ends.get(self.place, f"at {100 * self.place:.0f} % of its interval")
+        unit = " rad/s" if self.missed.quantity == "Omega" else ""
         told = (
-            f"{self.missed.quantity} off by {self.missed.E:+.2g}; {self.name} {where} alone gives "
-            f"{self.change:+.2g}, all inputs together {self.low:+.2g} to {self.high:+.2g}"
+            f"{self.missed.quantity} is off by {self.missed.E:+.2g}{unit}; {self.name} {where} alone changes "
+            f"it by {self.change:+.2g}, all inputs together by {self.low:+.2g} to {self.high:+.2g}"
         )
-        return f"{told}, which leaves {self.left:+.2g} to something else" if self.left else told
+        return f"{told}, which leaves {self.left:+.2g} to what is not among them" if self.left else told
 
 
 def misses(found: ValidatedSet) -> list[Comparison]:

@@ -169,7 +169,7 @@ def _momentum_sheet() -> Sheet:
 
 
 def _model_sentences(rows: dict[str, list[Row]]) -> list[str]:
-    """Return how many numbers each tip meets, and e and mu of the machined rod."""
+    """Return how many numbers each tip meets, and e, mu and Omega of the machined rod."""
     parts = []
     for tip, found in rows.items():
         inside = sum(row["verdict"] == "inside" for row in found)
@@ -177,7 +177,19 @@ def _model_sentences(rows: dict[str, list[Row]]) -> list[str]:
         parts.append(
             f"with tip {tip} {inside} of {len(found)} lie inside the 95 % interval and {missed} miss it"
         )
-    return [f"Finite elements, both counted alike: {'; '.join(parts)}."] if parts else []
+    first = [
+        f"{row['quantity']} {row['model']:.3g} with tip {tip}, {row['measured_mean']:.3g} measured"
+        for quantity in ("e", "mu", "Omega")
+        for tip, found in rows.items()
+        for row in found
+        if row["quantity"] == quantity and _key(row)[0].startswith(SETS[0])
+    ]
+    if not parts:
+        return []
+    return [
+        f"Finite elements, both counted alike: {'; '.join(parts)}.",
+        f"The machined rod: {'; '.join(first)}.",
+    ]
 
 
 def _model_sheet(rows: dict[str, list[Row]]) -> Sheet:

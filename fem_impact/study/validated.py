@@ -94,7 +94,8 @@ class ValidatedSet:
     ----------
     name, measured : id of the set, and its tests
     surface : `OUTPUTS` over the uncertain inputs, on the coarser mesh
-    shift : (outputs,) float64, limit of two meshes less the coarser mesh, at the nominal inputs
+    shift : (outputs,) float64, limit of two meshes less the surface, at the nominal inputs; the sample stands
+        at one place of the barrier's grid, whose other place differs by up to .07 in e
     all_inputs, tests : (n, outputs) float64, drawn over all inputs, over those that vary between tests
     comparisons : one a measured quantity
     """

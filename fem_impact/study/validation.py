@@ -95,7 +95,7 @@ def _validated(name: str, request: Request, results: Results) -> ValidatedSet | 
     surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
     every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
     S = np.array([limits[key] for key in KEYS])
-    u_input = np.sqrt(np.mean((every - surface(nominal_place(name))) ** 2, axis=0))
+    nominal_values = surface(nominal_place(name))[0]
+    u_input = np.sqrt(np.mean((every - nominal_values) ** 2, axis=0))
     comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
-    shift = S - np.mean([outputs(run, measured) for run in coarse if isinstance(run, Outcome)], axis=0)
-    return ValidatedSet(name, measured, surface, shift, every, tests, comparisons)
+    return ValidatedSet(name, measured, surface, S - nominal_values, every, tests, comparisons)

@@ -75,6 +75,9 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     parts = {name: sum(getattr(c, name) == max(c.u_num, c.u_input, c.u_D) for c in compared) for name in U}
     limits = ", ".join(f"{U[name]} in {count}" for name, count in parts.items())
     return [
+        "For each measured number: S is computed, D measured, E = S - D the error that is seen, and u_val "
+        "its standard uncertainty by mesh, inputs and measurement. Where E +- 2 u_val leaves out zero, the "
+        "model is wrong beyond what its mesh, its inputs and the tests leave open.",
         f"In {len(compared) - len(shown)} of {len(compared)} comparisons the error E +- {COVERAGE:g} u_val "
         f"contains zero: no error of the model is shown."
         + (

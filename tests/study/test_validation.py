@@ -205,9 +205,9 @@ def test_what_a_miss_would_take_is_read_off_the_response_surface(tmp_path):
     assert (far.name, far.place) == ("friction", 1.0)
     assert far.change == pytest.approx(up, rel=0.01)
     assert far.left == pytest.approx(far.high - 100, rel=1e-9)
-    assert "friction at its upper end alone gives" in far.sentence and "to something else" in far.sentence
+    assert "friction at its upper end alone changes it by" in far.sentence and "which leaves" in far.sentence
     near = reach(found, replace(omega, D=omega.S + 0.5 * up, u_D=0.01))
-    assert near.left == 0 and "to something else" not in near.sentence
+    assert near.left == 0 and "which leaves" not in near.sentence
     quiet = replace(found, comparisons=tuple(replace(c, D=c.S, scatter="inside") for c in found.comparisons))
     assert reach_sentences(quiet) == []
 
@@ -221,3 +221,16 @@ def test_draws_find_a_narrow_posterior_in_a_corner():
     assert 1 - draws[:, 1].mean() == pytest.approx(0.01 * sqrt(2 / np.pi), rel=0.1)
     assert draws[:, 2:].mean(axis=0) == pytest.approx(0.5, abs=0.04)
     assert draws[:, 2:].std(axis=0) == pytest.approx(1 / sqrt(12), rel=0.06)
+
+
+def test_distributions_stand_on_the_limit_wherever_the_sample_of_the_mesh_stands(tmp_path):
+    """Runs with the grid half a cell further are off; the sample, at the first place, does not follow."""
+    request = Request(tmp_path, ("t5b",))
+    runs = results_of(request)
+    for kind in ("fine", "coarse"):
+        name = study._meshes("t5b", request)[f"{kind}-half-cell"].name
+        runs[name] = replace(runs[name], motion=replace(runs[name].motion, Omega=0.0))
+    found = study._validated("t5b", request, runs)
+    at = NAMES.index("Omega")
+    nominal = found.surface(nominal_place("t5b"))[0, at] + found.shift[at]
+    assert nominal == pytest.approx(found.comparisons[at].S, rel=1e-9)
