@@ -90,7 +90,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     report = StudyReport(
         "causes",
         "Ladder of causes: what rate, hardness and skin do, one after the other and alone",
-        sentences or ["No set has all its runs: see those that failed."],
+        [_answer(complete), *sentences] if complete else ["No set has all its runs: see those that failed."],
         [_picture(complete)] if complete else (),
         [_sheet(complete)],
         [
@@ -154,6 +154,20 @@ def _picture(runs: dict[str, dict[str, Outcome]]) -> Picture:
             panels.append(Panel(name, "strength", label, series, names=LADDER))
     caption = "e, mu and Omega as causes are added one after the other, each alone, and as measured."
     return Picture("causes", caption, tuple(panels), len(SHOWN))
+
+
+def _answer(runs: dict[str, dict[str, Outcome]]) -> str:
+    """Return the cause that changes each quantity of each set most, alone."""
+    parts = []
+    for name, found in runs.items():
+        for quantity in SHOWN:
+            base = known(quantity.key.of(found[BASE]))
+            changes = {
+                c.name: known(quantity.key.of(found[s])) - base for c, s in zip(CAUSES, ALONE, strict=True)
+            }
+            most = max(changes, key=lambda cause: abs(changes[cause]))
+            parts.append(f"{quantity.name} of {name} by {most} ({changes[most]:+.2g})")
+    return f"Each alone, most changes {', '.join(parts)}."
 
 
 def _sentence(name: str, found: dict[str, Outcome]) -> str:

@@ -137,13 +137,16 @@ def _momentum_sentences() -> list[str]:
     best = _misfit(replace(printed, d_c=float(arms[0]), d_d=float(arms[1])))
     second = measured_set("t2")
     same = (second.arms, second.k2) == (sets[0].arms, sets[0].k2)
+    nearer = min(tips, key=_misfit)
     return [
+        f"The rows of Table 3 turn as rods of {nearer.name} rather than of the other: momentum alone misses "
+        f"their rotation by {_misfit(nearer):.2f} rad/s (root mean square) with the arms of {nearer.name}, by "
+        f"{max(map(_misfit, tips)):.2f} with the other's.",
         "Momentum alone: the arms d_c and d_d that fit the rotation of the "
         f"{sum(len(s.motion['Omega']) for s in sets)} rows are "
         f"{1e3 * arms[0]:.1f} +- {1e3 * errors[0]:.1f} and {1e3 * arms[1]:.1f} +- {1e3 * errors[1]:.1f} mm "
         f"(one standard error, not independent); those of the drawn rods are {drawn}.",
-        "Root mean square misfit of the rotation, rad/s, by the measured velocities and each rod's arms and "
-        f"inertia: {missed}; the scatter about the fit is {best:.2f}.",
+        f"Misfit by reading, rad/s: {missed}; the scatter about the fit is {best:.2f}.",
         *(
             [
                 "Table 3 was worked out with the arms and the radius of gyration of Table 2, whose rods have "

@@ -29,7 +29,8 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
     compared = [c for found in sets for c in found.comparisons]
     calibration = calibrate(sets) if sets else None
     sentences = [*_verdict_sentences(compared), *(_calibrated_sentences(calibration) if calibration else ())]
-    takes = [sentence for found in sets for sentence in reach_sentences(found)]
+    takes = [_surface_sentence(sets)] if sets else []
+    takes += [sentence for found in sets for sentence in reach_sentences(found)]
     return StudyReport(
         "validation",
         "Validation: error of the model, and how well it is known (ASME V&V 20)",
@@ -74,20 +75,24 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     missed = sum(c.scatter.startswith(MISS) for c in compared)
     parts = {name: sum(getattr(c, name) == max(c.u_num, c.u_input, c.u_D) for c in compared) for name in U}
     limits = ", ".join(f"{U[name]} in {count}" for name, count in parts.items())
+    wrong = f"; {len(shown)} do: {where}" if shown else ""
     return [
-        "For each measured number: S is computed, D measured, E = S - D the error that is seen, and u_val "
-        "its standard uncertainty by mesh, inputs and measurement. Where E +- 2 u_val leaves out zero, the "
-        "model is wrong beyond what its mesh, its inputs and the tests leave open.",
-        f"In {len(compared) - len(shown)} of {len(compared)} comparisons the error E +- {COVERAGE:g} u_val "
-        f"contains zero: no error of the model is shown."
-        + (
-            f" In {len(shown)} the model is in error beyond all stated uncertainties: {where}."
-            if shown
-            else ""
-        ),
+        f"{len(compared) - len(shown)} of {len(compared)} measured numbers show no error of the model beyond "
+        f"what its mesh, its inputs and the tests leave open{wrong}. S is computed, D measured, E = S - D; an "
+        f"error shows where E +- {COVERAGE:g} u_val leaves out zero.",
         f"The largest uncertainty is {limits} comparisons. {missed} of the same numbers miss the scatter of "
         "single tests by more than two standard deviations, where inputs are not counted.",
     ]
+
+
+def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
+    """Return how well the response surfaces give runs that they were not fitted to."""
+    at = [NAMES.index(name) for name in SHOWN]
+    worst = max(float(found.surface.error[i] / found.comparisons[i].u_input) for found in sets for i in at)
+    return (
+        "What each miss of e, mu and Omega would take, by response surfaces that give runs left out of them "
+        f"within {100 * worst:.0f} % of u_input:"
+    )
 
 
 U = {"u_num": "the mesh", "u_input": "the inputs", "u_D": "the measurement"}

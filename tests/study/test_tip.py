@@ -48,5 +48,6 @@ def test_the_study_counts_both_tips_alike_and_adds_no_measured_set(tmp_path):
     text = conclude(request, {j.name: fake(j) for j in jobs}, NullMeter()).text
     inside = [int(re.search(rf"with tip {tip} (\d) of 8 lie inside", text)[1]) for tip in "BA"]
     assert inside[1] == inside[0] + 1
+    assert "turn as rods of tip A rather than of the other" in text
     assert "84.0 +- 1.1 and 87.4 +- 1.9 mm" in text
     assert "arms and the radius of gyration of Table 2" in text
