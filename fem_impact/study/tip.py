@@ -139,9 +139,9 @@ def _momentum_sentences() -> list[str]:
     same = (second.arms, second.k2) == (sets[0].arms, sets[0].k2)
     nearer = min(tips, key=_misfit)
     return [
-        f"The rows of Table 3 turn as rods of {nearer.name} rather than of the other: momentum alone misses "
-        f"their rotation by {_misfit(nearer):.2f} rad/s (root mean square) with the arms of {nearer.name}, by "
-        f"{max(map(_misfit, tips)):.2f} with the other's.",
+        f"The rows of Table 3 turn as rods of {nearer.name} rather than of the other: with its arms momentum "
+        f"alone misses their rotation by {_misfit(nearer):.2f} rad/s (root mean square), with the other's by "
+        f"{max(map(_misfit, tips)):.2f}.",
         "Momentum alone: the arms d_c and d_d that fit the rotation of the "
         f"{sum(len(s.motion['Omega']) for s in sets)} rows are "
         f"{1e3 * arms[0]:.1f} +- {1e3 * errors[0]:.1f} and {1e3 * arms[1]:.1f} +- {1e3 * errors[1]:.1f} mm "

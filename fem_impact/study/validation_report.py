@@ -78,8 +78,8 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
     wrong = f"; {len(shown)} do: {where}" if shown else ""
     return [
         f"{len(compared) - len(shown)} of {len(compared)} measured numbers show no error of the model beyond "
-        f"what its mesh, its inputs and the tests leave open{wrong}. S is computed, D measured, E = S - D; an "
-        f"error shows where E +- {COVERAGE:g} u_val leaves out zero.",
+        f"what its mesh, its inputs and the tests leave open{wrong}. S is computed, D measured, E = S - D; "
+        f"an error shows where E +- {COVERAGE:g} u_val leaves out zero.",
         f"The largest uncertainty is {limits} comparisons. {missed} of the same numbers miss the scatter of "
         "single tests by more than two standard deviations, where inputs are not counted.",
     ]
@@ -88,10 +88,10 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
 def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
     """Return how well the response surfaces give runs that they were not fitted to."""
     at = [NAMES.index(name) for name in SHOWN]
-    worst = max(float(found.surface.error[i] / found.comparisons[i].u_input) for found in sets for i in at)
+    off = [100 * found.surface.error[i] / found.comparisons[i].u_input for found in sets for i in at]
     return (
         "What each miss of e, mu and Omega would take, by response surfaces that give runs left out of them "
-        f"within {100 * worst:.0f} % of u_input:"
+        f"within {np.median(off):.0f} % of u_input (median; worst {max(off):.0f} %):"
     )
 
 
