@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import changed_scene, print_json, say_fall, size_text
 from fem_impact.commands.options import Options
+from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.library import intervals_of, source_of, stated_keys
@@ -17,23 +18,50 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
+
+
+DRAWINGS = (".png", ".svg")
 
 
 def check(options: Options) -> int:
     """Print a scene's full statement: values, sources, effects and validity."""
     from fem_impact.plan.plan import plan
 
+    drawing = _drawing_path(options)
     planned = plan(changed_scene(options.scene, options.changes))
     say_fall(planned.scene, options)
+    if drawing:
+        _draw(planned.scene, drawing)
     statement = _statement(planned)
     if options.json:
         print_json(statement)
     else:
         sys.stdout.write(_readable(planned, statement))
+        sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
+
+
+def _drawing_path(options: Options) -> Path | None:
+    """Return where the drawing goes, None where none is wanted."""
+    path = options.drawing
+    if path is not None and path.suffix not in DRAWINGS:
+        remedy = "Name a file such as projectile.svg or projectile.png."
+        raise UsageError("is no picture that can be drawn.", key="--drawing", value=str(path), remedy=remedy)
+    return path
+
+
+def _draw(scene: Scene, path: Path) -> None:
+    from fem_impact.figures.outline import draw
+    from fem_impact.physics.contact import projectile, touch_point
+
+    body, segments = projectile(scene), scene.projectile.segments
+    parts = [(part.to, part.material.name) for part in segments]
+    draw(body, touch_point(scene), parts or [(body.length, scene.projectile.material.name)], path)
 
 
 def _statement(planned: Plan) -> dict[str, Any]:

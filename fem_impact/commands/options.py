@@ -23,6 +23,7 @@ class Options(argparse.Namespace):
     ids: Sequence[str] = ()
     name: str = ""
     out: Path | None = None
+    drawing: Path | None = None
     problem: str | None = None
     only: str = ""
     parameters: bool = False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
 from fem_impact.jobs.job import Job
-from fem_impact.plan.cells import levels_of
+from fem_impact.plan.cells import body_cell, levels_of
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import replace_all
@@ -39,10 +39,10 @@ class Mesh:
 
     def sizes(self, scene: Scene) -> tuple[float, float]:
         """Return the element sizes of rod and barrier at the contact, m."""
-        diameter = scene.projectile.diameter
         stateless = replace(scene.accuracy, across=OWN, tip_size=None, barrier_size=None)
         levels, _ = levels_of(plan(replace(scene, accuracy=stateless), "rigid").bodies)
-        tip, barrier = (diameter / self.across / 2 ** (levels + more) for more in (self.tip, self.barrier))
+        base = body_cell(replace(scene, accuracy=replace(stateless, across=self.across)))
+        tip, barrier = (base / 2 ** (levels + more) for more in (self.tip, self.barrier))
         return tip, barrier
 
 

@@ -1,4 +1,4 @@
-"""A projectile drawn in text: its section in the plane of motion, tip to the left."""
+"""A projectile drawn in text or as a picture: its section in the plane of motion, tip to the left."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.figures.style import INK, PALETTE, QUIET, figure
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
+    from matplotlib.axes import Axes
+
+    from fem_impact.arrays import Array
     from rigid import Body
 
 
@@ -33,3 +40,66 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
     row = int(np.argmin(np.abs(x + touch[0])))  # the lower side comes down first
     cells[row][min(WIDTH - 1, int(touch[1] / body.length * WIDTH))] = TOUCH
     return ["  " + "".join(line).rstrip() for line in cells]
+
+
+HEIGHT = 3.2  # inches
+POINTS = 1500
+FILLS = ("sky", "orange", "green", "purple", "yellow", "sand")  # one material after the other
+Part = tuple[float, str]
+"""End of a segment, m from the tip, and the name of its material."""
+
+
+def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Path) -> None:
+    """Draw a projectile to scale: axis, bore, segments by material, first contact and mass centre.
+
+    Parameters
+    ----------
+    body : rigid projectile
+    touch : (rho, z), m, of the point that touches first; it lies on the lower side
+    parts : segments from the tip to the tail
+    path : PNG or SVG file
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib is not installed.
+    OutputPathError
+        The place cannot be written.
+    """
+    with figure(path, HEIGHT) as drawn:
+        axes = drawn.add_subplot()
+        _fill(axes, body, parts)
+        axes.axhline(0.0, color=QUIET, linewidth=0.7, dashes=(12, 3, 2, 3), label="axis")
+        axes.plot(1e3 * touch[1], -1e3 * touch[0], "v", color=PALETTE["vermilion"], label="touches first")
+        axes.plot(1e3 * body.z_c, 0.0, "P", color=INK, label="mass centre")
+        axes.set(aspect="equal", xlabel="from the tip, mm", ylabel="from the axis, mm")
+        drawn.legend(loc="outside upper center", ncols=4)
+
+
+def _fill(axes: Axes, body: Body, parts: Sequence[Part]) -> None:
+    """Fill the wall of each segment above and below the axis in the colour of its material."""
+    names = list(dict.fromkeys(name for _, name in parts))
+    begin = 0.0
+    for end, name in parts:
+        z = np.linspace(begin, end, POINTS)
+        inner, outer = (1e3 * r for r in _radii(body, z))
+        for side, label in ((1.0, name), (-1.0, "")):
+            axes.fill_between(
+                1e3 * z,
+                side * inner,
+                side * outer,
+                label=label,
+                linewidth=0.8,
+                facecolor=PALETTE[FILLS[names.index(name) % len(FILLS)]],
+                edgecolor=INK,
+            )
+        begin = end
+
+
+def _radii(body: Body, z: Array) -> tuple[Array, Array]:
+    """Return inner and outer radius, m, at places along the axis, m; at the ends those just inside."""
+    from rigid import Turned
+
+    inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)
+    inner = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
+    return np.asarray(inner), np.asarray(body.radius(inside))

@@ -108,8 +108,8 @@ def modal_change(scene: Scene, pair: Pair) -> Change:
 class Ladder:
     """Twins on finite-element meshes of a scene, from coarse to fine.
 
-    The first mesh is the coarsest of `FAMILY`; then follows, each time, the cheapest whose cells at the
-    contact are finer than all before.
+    The first mesh is the coarsest of `FAMILY` that can be made; then follows, each time, the cheapest whose
+    cells at the contact are finer than all before.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class Ladder:
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""
         if not self.meshes:
-            return FAMILY[0]
+            return next((mesh for mesh in FAMILY if self._made(mesh)), None)
         edge = FINER * min(map(self._edge, self.meshes))
         finer = [mesh for mesh in (*FAMILY[1:], FINE_TIP) if self._made(mesh) and self._edge(mesh) < edge]
         return min(finer, key=self._expected, default=None)

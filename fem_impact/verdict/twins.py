@@ -7,6 +7,7 @@ from math import cos, hypot, sin
 
 from fem_impact.effects.registry import NAMES, grounded
 from fem_impact.plan.choose import active
+from fem_impact.plan.limits import require_approach
 from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
@@ -20,7 +21,13 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
     Both have the effects that the scene calls for; vibration is in the first one even where the scene would
     leave it out as small, because its size is the question. No field and no flash temperature is kept of
     either.
+
+    Raises
+    ------
+    SceneError
+        A spin lifts the contact point off the barrier.
     """
+    require_approach(scene)  # first: the numbers of the effects are those of an approach
     on = {*active(scene), VIBRATION} - {UNFELT}
     free = tuple(name for name in NAMES if name in on)
     stiff = tuple(grounded([name for name in free if name != VIBRATION]))

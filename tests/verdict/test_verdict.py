@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.cost.settings import FAMILY
+from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
 from fem_impact.plan.choose import active
+from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.verdict import assess as assess_module
@@ -211,6 +212,19 @@ def test_a_mesh_that_cannot_be_made_is_passed_over():
     ladder = Ladder.of(load("ogive"), 1.0, 2)
     ladder.meshes.append(FAMILY[0])
     assert ladder.following() not in (None, FAMILY[1])
+
+
+def test_the_first_mesh_is_the_coarsest_that_can_be_made():
+    """Meshes follow the cells of the section that touches, which is small on a sphere-cone."""
+    for name in ("sphere-cone", "ogive", "tube"):
+        ladder = Ladder.of(load(name), 1.0, 2)
+        assert plan(on_mesh(load(name), ladder.following())).size.rod > 0
+
+
+def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
+    """spinning-rod turns so fast that at other inclinations its lowest point would not approach."""
+    found = assess(load("spinning-rod"), "modal")
+    assert found.not_known[0] and "lifts the contact point" in found.not_known[1]
 
 
 def test_a_budget_that_allows_no_mesh_leaves_the_reduced_model_and_says_so(monkeypatch):

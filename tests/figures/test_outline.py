@@ -1,0 +1,69 @@
+"""The drawing of a projectile: what stands where, to scale, and what is refused."""
+
+import re
+
+import numpy as np
+import pytest
+
+from fem_impact.figures.outline import draw
+from fem_impact.figures.style import new_figure
+from fem_impact.physics.contact import projectile, touch_point
+from fem_impact.scene.shipped import load
+from rigid import Turned
+
+
+def drawn(monkeypatch, tmp_path, name):
+    """Return the axes of a scene's drawing."""
+    kept = []
+    monkeypatch.setattr(
+        "fem_impact.figures.style.new_figure", lambda height: kept.append(new_figure(height)) or kept[0]
+    )
+    scene = load(name)
+    body, rod = projectile(scene), scene.projectile
+    parts = [(part.to, part.material.name) for part in rod.segments] or [(body.length, rod.material.name)]
+    draw(body, touch_point(scene), parts, tmp_path / "a.svg")
+    return kept[0].axes[0], body, scene
+
+
+def filled(axes):
+    """Area, mm2, of each filled part."""
+    found = []
+    for part in axes.collections:
+        x, y = part.get_paths()[0].vertices.T
+        found.append(0.5 * abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1))))
+    return found
+
+
+def test_a_tube_is_drawn_with_its_bore_contact_and_mass_centre(monkeypatch, tmp_path):
+    axes, body, scene = drawn(monkeypatch, tmp_path, "tube")
+    assert isinstance(body, Turned)
+    z = np.linspace(0.0, body.length, 4000)[1:-1]
+    wall = np.trapezoid(body.radius(z) - body.inner_radius(z), z) * 1e6
+    assert filled(axes) == pytest.approx([wall, wall], rel=2e-3)
+    marks = {line.get_label(): line.get_xydata()[0] for line in axes.lines}
+    rho, place = touch_point(scene)
+    assert marks["touches first"] == pytest.approx([1e3 * place, -1e3 * rho])
+    assert marks["mass centre"] == pytest.approx([1e3 * body.z_c, 0.0])
+    assert axes.get_aspect() == 1.0
+
+
+def test_each_material_has_its_colour(monkeypatch, tmp_path):
+    axes, _, scene = drawn(monkeypatch, tmp_path, "heavy-tail")
+    colours = [tuple(part.get_facecolor()[0]) for part in axes.collections]
+    assert colours[0] == colours[1] != colours[2] == colours[3]
+    svg = (tmp_path / "a.svg").read_text(encoding="utf-8")
+    for name in (part.material.name for part in scene.projectile.segments):
+        assert name in re.sub(r"<!--\s*|\s*-->", "|", svg)
+
+
+@pytest.mark.parametrize("name", ["t5b.svg", "t5b.png"])
+def test_check_writes_the_drawing(cli, tmp_path, name):
+    code, out, _ = cli("check", "t5b", "--drawing", name)
+    assert code == 0 and out.endswith(f"drawing: {name}\n")
+    assert (tmp_path / name).stat().st_size > 1000
+
+
+def test_another_format_is_refused_before_any_work(cli, tmp_path):
+    code, out, err = cli("check", "t5b", "--drawing", "t5b.pdf")
+    assert (code, out) == (2, "") and "projectile.svg" in err
+    assert not list(tmp_path.iterdir())
