@@ -9,10 +9,11 @@ from math import degrees
 from pathlib import Path
 from typing import Any
 
+from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, write_text
 from fem_impact.files.signed_json import signed
 from fem_impact.report.html import Markup, bullets, paragraph, section, table
-from fem_impact.report.page import page, sources
+from fem_impact.report.page import figure, page, sources
 from fem_impact.scene import fields
 from fem_impact.scene.library import source_of, stated_keys
 from fem_impact.scene.material import Material
@@ -21,6 +22,7 @@ from fem_impact.scene.write import to_toml
 from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table
 from fem_impact.verdict.assess import Verdict
+from fem_impact.verdict.chart import chart
 from fem_impact.verdict.screening import screening
 from fem_impact.verdict.sentences import Line, screening_lines
 
@@ -44,19 +46,28 @@ def screening_box(scene: Scene, name: str) -> Markup:
 
 
 def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path:
-    """Write ``verdict.html``, ``verdict.json`` and ``scene.toml`` to a folder; return the page's path."""
+    """Write ``verdict.html``, ``verdict.json``, ``scene.toml`` and the design chart; return the page's path.
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib or plotly is not installed.
+    """
     make_directory(out)
     write_text(out / "scene.toml", to_toml(verdict.scene))
     write_text(out / "verdict.json", json.dumps(signed(document), indent=1, allow_nan=False) + "\n")
-    return write_text(out / "verdict.html", verdict_page(verdict, document))
+    picture, figures = chart(verdict), make_directory(out / "figures")
+    draw(picture, figures / f"{picture.name}.png")
+    return write_text(out / "verdict.html", verdict_page(verdict, document, figure(picture, figures)))
 
 
-def verdict_page(verdict: Verdict, document: dict[str, Any]) -> str:
-    """Return the page: verdict, what it rests on, inputs with sources, what it does not cover, papers."""
+def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) -> str:
+    """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
     scene, free = verdict.scene, verdict.here.free
     body = (
         verdict_box(document["box"], verdict.answer),
         section("What the verdict rests on", _titled(document["basis"])),
+        section("This scene among other rods", charted),
         section("Inputs and their sources", _inputs(scene)),
         section("What the verdict does not cover", bullets(document["not_covered"])),
         section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),

@@ -74,8 +74,9 @@ def points() -> Points:
         files("fem_impact.verdict").joinpath("data", TABLE).read_text(encoding="utf-8").partition("\n")
     )
     rows = list(csv.DictReader(text.splitlines()))
-    numbers = (np.array([float(row[name]) for row in rows]) for name in COLUMNS[-4:])
-    return Points(made.removeprefix("# "), *numbers, np.array([row["contact"] == "yielding" for row in rows]))
+    ratio, mu, change, E_vib = (np.array([float(row[name]) for row in rows]) for name in COLUMNS[-4:])
+    yielding = np.array([row["contact"] == "yielding" for row in rows])
+    return Points(made.removeprefix("# "), ratio, mu, change, E_vib, yielding)
 
 
 def collapse(some: Points, values: Array) -> Collapse:
@@ -101,7 +102,7 @@ def chart(verdict: Verdict) -> Picture:
     e, tolerance = (np.abs(some.change), abs(here.value), here.band), verdict.tolerance
     vibration = some.E_vib, here.E_vib, here.E_vib_band
     panels = (
-        _panel("change of e", some, e, own, ratio, (Mark(tolerance, "may be neglected"),)),
+        _panel("size of the change of e", some, e, own, ratio, (Mark(tolerance, "may be neglected"),)),
         _panel("energy of vibration over E_0", some, vibration, own, ratio),
     )
     return Picture("design-chart", caption(some, "yielding" if yields else "elastic"), panels)
@@ -134,8 +135,8 @@ def caption(some: Points, kind: str) -> str:
     e, vibration = collapse(some, np.abs(some.change)), collapse(some, some.E_vib)
     return (
         f"{len(some.ratio)} rods on {kind} contacts by the reduced model ({some.made}), and this scene with "
-        f"its band. T1/tau and mu alone do not tell the answer: of {e.compared} rods that have others of "
-        f"like T1/tau (factor {NEAR_RATIO:g}) and mu (within {NEAR_MU:g}), nine tenths lie within "
+        f"its band. The points do not fall on one curve of T1/tau and mu: of {e.compared} rods that have others "
+        f"of like T1/tau (factor {NEAR_RATIO:g}) and mu (within {NEAR_MU:g}), nine tenths lie within "
         f"{e.within:.2g} of the median change of e of their like (of all rods: {e.among:.2g}) and within "
         f"{vibration.within:.2g} of that of the energy of vibration (of all rods: {vibration.among:.2g})."
     )

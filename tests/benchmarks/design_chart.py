@@ -55,7 +55,7 @@ def cases() -> Iterator[tuple[tuple[object, ...], Scene]]:
 def case(
     effects: tuple[str, ...], metal: str, diameter: float, gamma: float, angle: float, f: float
 ) -> tuple[tuple[object, ...], Scene]:
-    """Return what names a point, and its scene: a rod with a rounded edge on the plate of the measured sets."""
+    """Return what names a point, and its scene: a rod of tip B on the plate of the measured sets."""
     base, alpha = load("t5b"), radians(angle)
     rod = replace(
         base.projectile,
