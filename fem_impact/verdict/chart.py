@@ -135,8 +135,8 @@ def caption(some: Points, kind: str) -> str:
     e, vibration = collapse(some, np.abs(some.change)), collapse(some, some.E_vib)
     return (
         f"{len(some.ratio)} rods on {kind} contacts by the reduced model ({some.made}), and this scene with "
-        f"its band. The points do not fall on one curve of T1/tau and mu: of {e.compared} rods that have others "
-        f"of like T1/tau (factor {NEAR_RATIO:g}) and mu (within {NEAR_MU:g}), nine tenths lie within "
+        f"its band. The points do not fall on one curve of T1/tau and mu: of {e.compared} rods that have "
+        f"others of like T1/tau (factor {NEAR_RATIO:g}) and mu (within {NEAR_MU:g}), nine tenths lie within "
         f"{e.within:.2g} of the median change of e of their like (of all rods: {e.among:.2g}) and within "
         f"{vibration.within:.2g} of that of the energy of vibration (of all rods: {vibration.among:.2g})."
     )
