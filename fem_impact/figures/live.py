@@ -91,7 +91,7 @@ def _legend(picture: Picture) -> list[list[str]]:
 
 def _height(panel: Panel) -> int:
     if panel.rows:
-        return 90 + 28 * len(panel.rows)
+        return 28 * len(panel.rows) + (75 if panel.x else 50)
     return 420 if panel.shaded else 340
 
 
@@ -198,6 +198,7 @@ def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[st
         "ticks": "outside",
         "tickcolor": QUIET,
         "zeroline": False,
+        "exponentformat": "power",
     }
     if ends:
         axis["range"] = list(ends)
@@ -219,7 +220,7 @@ def _line(across: str, at: float) -> dict[str, Any]:
     look = {"color": QUIET, "width": 1, "dash": "dot" if across == "x" else "dash"}
     ends = {"x0": at, "x1": at, "y0": 0, "y1": 1} if across == "x" else {"x0": 0, "x1": 1, "y0": at, "y1": at}
     domain = {"yref": "paper"} if across == "x" else {"xref": "paper"}
-    return {"type": "line", **ends, **domain, "line": look, "layer": "below" if across == "x" else "above"}
+    return {"type": "line", **ends, **domain, "line": look}
 
 
 def _rectangle(start: float, end: float) -> dict[str, Any]:
@@ -228,7 +229,8 @@ def _rectangle(start: float, end: float) -> dict[str, Any]:
 
 
 def _note(text: str, **place: Any) -> dict[str, Any]:
-    return {"text": markup(text), "showarrow": False, "font": {"size": 10.5, "color": QUIET}, **place}
+    look = {"font": {"size": 10.5, "color": QUIET}, "bgcolor": "rgba(255,255,255,0.6)"}
+    return {"text": markup(text), "showarrow": False, **look, **place}
 
 
 def _beside(at: float, label: str, side: str) -> dict[str, Any]:

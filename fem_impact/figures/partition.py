@@ -72,16 +72,20 @@ def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
     Parameters
     ----------
     rows : sequence of mappings
-        Rows of ``comparison`` in study.json; null values are left out of the picture.
+        Rows of ``comparison`` in study.json; null values are left out of the picture, and
+        quantities that nobody measured.
     """
     quantities, sets = ([*dict.fromkeys(row[name] for row in rows)] for name in ("quantity", "set"))
-    panels = tuple(_panel([row for row in rows if row["quantity"] == name], sets) for name in quantities)
+    groups = ([row for row in rows if row["quantity"] == name] for name in quantities)
+    panels = [
+        _panel(group, sets) for group in groups if any(row["measured_mean"] is not None for row in group)
+    ]
     numbers = Table.of(COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
     caption = (
         "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
         "two-mesh band where two meshes were run."
     )
-    return Picture("comparison", caption, panels, 4, numbers)
+    return Picture("comparison", caption, tuple(panels), 4, numbers)
 
 
 def _panel(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:

@@ -52,7 +52,7 @@ def _titled(row: Mapping[str, Any]) -> str:
 
 def comparison_part(rows: Sequence[Mapping[str, Any]], folder: Path, since: Path | None = None) -> Markup:
     """Return the figure of model and measurement; one newer than the file ``since`` is not drawn again."""
-    if not rows:
+    if all(row["measured_mean"] is None for row in rows):
         return Markup("")
     figures = make_directory(folder / "figures")
     drawn = figure(comparison_picture(rows), figures, since)
@@ -62,18 +62,15 @@ def comparison_part(rows: Sequence[Mapping[str, Any]], folder: Path, since: Path
 def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
     """Return a table a quantity: model, measurement, interval and verdict of each set."""
     quantities = dict.fromkeys(row["quantity"] for row in rows)
-    return join(
-        _quantity([row for row in rows if row["quantity"] == name], opened=at < 3)
-        for at, name in enumerate(quantities)
-    )
+    return join(_quantity([row for row in rows if row["quantity"] == name]) for name in quantities)
 
 
-def _quantity(rows: Sequence[Mapping[str, Any]], opened: bool) -> Markup:
+def _quantity(rows: Sequence[Mapping[str, Any]]) -> Markup:
     measured = [row for row in rows if row["measured_mean"] is not None]
     inside = sum(is_inside(row["verdict"]) for row in measured)
     title = f"{_titled(rows[0])}: " + (f"{inside} of {len(measured)} inside" if measured else "not measured")
     shown = Table.of(("set", *HEAD), [[str(row["set"]), *_cells(row)] for row in rows], left=(0, 5))
-    return details(title, table(shown, compact=True), opened=opened)
+    return details(title, table(shown, compact=True))
 
 
 def _cells(row: Mapping[str, Any]) -> list[Cell]:

@@ -13,18 +13,23 @@ from fem_impact.tables.symbols import readable
 from fem_impact.tables.table import Column, Table
 
 
-def findings_section(study: Study, title: str = "") -> Markup:
-    """Return the answer, which is the first finding, and the first figure; all else folded, with its data."""
+def findings_section(study: Study, title: str = "", lead: Markup | None = None) -> Markup:
+    """Return the answer, which is the first finding, and the first figure; all else folded, with its data.
+
+    ``lead`` is the first figure where it is not one of the study's own.
+    """
     runs = f"{study.runs} runs, {len(study.failures)} failed."
     failed = [(failure["scene_id"], failure["error"]) for failure in study.failures]
-    figures = [_figure(entry, study) for entry in study.figures]
+    drawn = (lead or Markup(""), *(_figure(entry, study) for entry in study.figures))
+    figures = [one for one in drawn if one.text]
     return section(
         title,
         paragraph("".join(study.findings[:1]), "answer"),
         *figures[:1],
         _folded("What else was found", bullets(study.findings[1:])),
         _folded("More figures", *figures[1:]),
-        *(_sheet(sheet, study) for sheet in study.sheets),
+        *(_sheet(sheet, study) for sheet in study.sheets if sheet["rows"]),
+        _folded("More tables", *(_file(sheet, study) for sheet in study.sheets if not sheet["rows"])),
         _folded("What it rests on", bullets(study.assumptions)),
         Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
         table(Table.of(("run", "why"), failed, left=(0, 1))),
@@ -50,12 +55,14 @@ def _figure(entry: Mapping[str, Any], study: Study) -> Markup:
 
 def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
     columns, rows = sheet["columns"], sheet["rows"]
-    link = download(study.folder / f"{sheet['name']}.csv", f"{sheet['name']}.csv")
-    if not rows:
-        return join([paragraph(sheet["caption"]), link])
     texts = {at for at in range(len(columns)) if any(isinstance(row[at], str) for row in rows)}
     named = Table(
         tuple(Column(name, readable(name), left=at in texts) for at, name in enumerate(columns)),
         tuple(map(tuple, rows)),
     )
-    return details(sheet["caption"], table(named, compact=True), link)
+    return details(sheet["caption"], table(named, compact=True), _file(sheet, study))
+
+
+def _file(sheet: Mapping[str, Any], study: Study) -> Markup:
+    name = f"{sheet['name']}.csv"
+    return download(study.folder / name, f"{sheet['caption']} ({name})")

@@ -41,10 +41,9 @@ def section(title: str, *content: Markup) -> Markup:
     return Markup(f"<section>\n{head}{inner}\n</section>" if inner else "")
 
 
-def details(title: str, *content: Markup, opened: bool = False) -> Markup:
+def details(title: str, *content: Markup) -> Markup:
     """Return a block that can be unfolded."""
-    state = " open" if opened else ""
-    return Markup(f"<details{state}><summary>{markup(title)}</summary>\n{join(content).text}\n</details>")
+    return Markup(f"<details><summary>{markup(title)}</summary>\n{join(content).text}\n</details>")
 
 
 def bullets(items: Iterable[str | Markup]) -> Markup:

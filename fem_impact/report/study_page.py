@@ -50,19 +50,15 @@ def study_page(folder: Path, again: bool = True) -> str:
     rows = list(study.rows)
     filmed = any(has_film(folder / row.provenance.scene_id) for row in rows)
     body = (
-        findings_section(study),
+        findings_section(study, lead=comparison_part(study.comparison, study.folder, since)),
         _cards(study),
         notices(rows),
-        section(
-            "Model beside measurement",
-            comparison_part(study.comparison, study.folder, since),
-            comparison_tables(study.comparison),
-        ),
+        section("Model beside measurement", comparison_tables(study.comparison)),
         section("Where the energy went", partition_part(study, since)),
         section("Over time, run by run", *(_run(row, folder) for row in rows)),
         unknown(rows),
         section("Range of validity", bullets(sentences(rows, lambda row: row.validity.outside))),
-        section("Cost", _costs(rows)),
+        section("Cost", details("Time, memory and elements", _costs(rows)) if rows else Markup("")),
         sources([*study.sources, *(["film"] if filmed else [])]),
     )
     return page(study.title, "Study", "", _footer(study), body)

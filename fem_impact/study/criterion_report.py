@@ -97,21 +97,19 @@ def study_report(
 def _angles(families: Families) -> Picture:
     """Return e against inclination, one panel per family with up to six of its 19 mm rods."""
     panels = []
+    places: dict[str, int] = {}
     for name, rods in families.items():
         same = of_body(rods)
-        chosen = (same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int)))
-        series = [
-            Series(
-                f"gamma {r.drop.gamma:.0f}", r.angles, r.e, "joined", i, r.bands if r.bands.any() else None
-            )
-            for i, r in enumerate(chosen)
-        ]
+        chosen = [same[i] for i in np.unique(np.linspace(0, len(same) - 1, 6).astype(int))]
+        series = []
+        for rod in chosen:
+            label = f"gamma {rod.drop.gamma:.0f}"
+            colour = places.setdefault(label, len(places))  # one for each slenderness in all panels
+            bands = rod.bands if rod.bands.any() else None
+            series.append(Series(label, rod.angles, rod.e, "joined", colour, bands))
         panels.append(Panel(name, "inclination, degrees", "e", tuple(series)))
-    return Picture(
-        "angles",
-        "Restitution against inclination, 19 mm rods; bands: of the change of e by vibration.",
-        tuple(panels),
-    )
+    caption = "Restitution against inclination, 19 mm rods; bands: of the change of e by vibration."
+    return Picture("angles", caption, tuple(panels))
 
 
 def _onset(families: Families) -> Picture:
@@ -124,7 +122,9 @@ def _onset(families: Families) -> Picture:
     marks = (Mark(LIMIT, "limit of Eq 29"),)
     label = "largest error of e by rigid theory"
     panel = Panel("19 mm", "gamma, m^-0.3815", label, tuple(series), marks, tuple(map(Mark, LEVELS)))
-    return Picture("onset", "Where vibration changes the rebound; dotted: the stated levels.", (panel,), 1)
+    return Picture(
+        "onset", "Where vibration changes the rebound; horizontal lines: the stated levels.", (panel,), 1
+    )
 
 
 def _bands(rods: Rods) -> list[float] | None:

@@ -21,7 +21,8 @@ STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
 UNITS = {"_deg": "degrees", "_m": "m", "_mm": "mm", "_s": "s", "_J": "J", "_N": "N", "_Pa": "Pa"}
 """Endings of the names of columns, and the units that they stand for."""
 
-MICRO = re.compile(r"(?<=\d )us\b")
+PLAIN = ((re.compile(r"(?<=\d )us\b"), "µs"), (re.compile(r"<=|&lt;="), "≤"), (re.compile(r"\+-"), "±"))
+"""Signs in plain letters, and what stands for them."""
 
 
 def markup(text: str) -> str:
@@ -83,4 +84,6 @@ def _replaced(text: str, shown: Callable[[str, str, str], str]) -> str:
             return match[0]
         return shown(GREEK.get(base, base), index, (match["power"] or "").replace("-", "−"))
 
-    return SYMBOL.sub(one, MICRO.sub("µs", text))
+    for plain, sign in PLAIN:
+        text = plain.sub(sign, text)
+    return SYMBOL.sub(one, text)

@@ -97,7 +97,7 @@ def test_titles_of_a_comparison_stand_over_their_panels(tmp_path, monkeypatch):
 def test_numbers_under_a_comparison_stand_apart(tmp_path, monkeypatch, scale):
     kept, save = [], style.save
     monkeypatch.setattr(style, "save", lambda figure, path: (kept.append(figure), save(figure, path)))
-    first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": None}
+    first = result_maker.comparison()[0] | {"set": "t3-contaminated", "measured_mean": 0.0}
     first |= {"measured_low": None, "measured_sd": None, "band": 0.0}
     shares = [first | {"quantity": name, "model": 0.0} for name in "abcd"]
     others = [share | {"set": "t4", "model": 0.54 * scale, "band": 0.35 * scale} for share in shares]
