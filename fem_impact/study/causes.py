@@ -94,7 +94,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         [_picture(complete)] if complete else (),
         [_sheet(complete)],
         [
-            "One run a step, on the default mesh at one place of the barrier's grid: no band of meshes.",
+            "One run a step, all on the same mesh at one place of the barrier's grid: no band of meshes.",
             *(f"{cause.name}: {cause.description}." for cause in CAUSES),
             "sliding speed: friction that falls with the speed has no law with constants that could be read, "
             "so it is no step here (docs/explanation/inputs.md).",
