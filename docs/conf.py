@@ -12,12 +12,13 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
     "program_tables",
     "mathml",
 ]
 myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 4
-exclude_patterns = ["_build", "examples", "extensions"]
+exclude_patterns = ["_build", "examples", "extensions", "notebooks"]
 default_role = "code"  # docstrings write names in single backticks
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
@@ -26,6 +27,17 @@ napoleon_google_docstring = False
 napoleon_use_ivar = True
 # attributes of docstrings are looked up by bare names such as e, which several classes have
 suppress_warnings = ["ref.python"]
+# scripts that are run while the documentation is built, and become pages and notebooks
+sphinx_gallery_conf = {
+    "examples_dirs": "notebooks",
+    "gallery_dirs": "tutorials/notebook",
+    "filename_pattern": r"\.py$",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "write_computation_times": False,
+    "show_signature": False,
+    "show_memory": False,
+}
 html_theme = "furo"
 html_static_path = ["style"]
 html_css_files = ["tables.css"]

@@ -84,7 +84,12 @@ class Outcome:
         """Return every number of the outcome as the table that a notebook shows."""
         numbers = ((key, key.of(self)) for key in KEYS if key.kind == "number")
         rows = [
-            (key.name, Missing(value.reason) if isinstance(value, Unknown) else value, key.unit, key.meaning)
+            (
+                f"`{key.name}`",
+                Missing(value.reason) if isinstance(value, Unknown) else value,
+                key.unit,
+                key.meaning,
+            )
             for key, value in numbers
         ]
         return Table.of(("quantity", "value", "unit", "meaning"), rows, left=(0, 2, 3)).html(repr(self))

@@ -78,7 +78,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     report = StudyReport(
         "convergence",
         "What vanishing elements would give",
-        [*(_sentence(row) for row in rows if row["quantity"] in STATED), *_pairs(rows)],
+        [*_answer(rows), *(_sentence(row) for row in rows if row["quantity"] in STATED), *_pairs(rows)],
         (Picture("convergence", CAPTION, panels),) if rows else (),
         (_sheet(rows),),
         ("Order, limit and band: Eca and Hoekstra 2014, doi:10.1016/j.jcp.2014.01.006.",),
@@ -103,6 +103,19 @@ def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row
         apart = [max(on_mesh) - min(on_mesh) for on_mesh in values]
         rows.append({**row, "fit": limit(sizes, means), "apart": apart})
     return rows
+
+
+def _answer(rows: Sequence[Row]) -> list[str]:
+    """Return how far e on the finest mesh lies from its limit at most, and how wide the bands of that are."""
+    of_e = [row for row in rows if row["quantity"] == "e"]
+    if not of_e:
+        return []
+    away = max(abs(row["values"][-1] - row["fit"].value) for row in of_e)
+    size, band = 1e3 * of_e[0]["tip_size_m"][-1], max(row["fit"].band for row in of_e)
+    return [
+        f"On the finest mesh, {size:.3g} mm at the tip, e of {len(of_e)} sets lies at most {away:.2g} from its "
+        f"limit for vanishing elements; the bands of the limits reach ± {band:.2g}."
+    ]
 
 
 def _sentence(row: Row) -> str:

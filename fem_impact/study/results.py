@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import MissingLibraryError, UsageError, did_you_mean
@@ -69,7 +69,9 @@ class Results(Sequence[Row]):
         return f"Results({len(self.rows)} cases of {', '.join(self.vary)}; {failed} failed)"
 
     def _repr_html_(self) -> str:
-        return self.table().html(repr(self))
+        table = self.table()  # names stay as `numbers` and `to_dataframe` take them
+        named = tuple(replace(column, label=f"`{column.name}`") for column in table.columns)
+        return replace(table, columns=named).html(repr(self))
 
     def select(self, values: Mapping[str, Any]) -> Results:
         """Return the cases with given values, such as ``{"impact.angle": "30 deg"}``, in any unit.

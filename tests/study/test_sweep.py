@@ -93,7 +93,7 @@ def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
     failed = [row for row in results if row.outcome is None]
     assert len(failed) == 2 and len(results) == 6
     assert all("shorter than the diameter" in row.reason for row in failed)
-    assert "2 failed" in repr(results) and "<table" in results._repr_html_()
+    assert "2 failed" in repr(results) and "<code>E_vib_over_E_0</code>" in results._repr_html_()
 
 
 def test_a_second_call_takes_what_is_stored(swept, monkeypatch):
