@@ -20,6 +20,9 @@ SPACING = math.radians(15.0)
 """Turn, rad, between two places of a smooth curve that are looked at as edges that may touch."""
 
 
+_WITHIN = np.array([1e-6, 1 - 1e-6])  # of a straight piece: beside its ends, where a radius may jump
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Turned:
     """A body of revolution.
@@ -67,7 +70,7 @@ class Turned:
             end, length = bore[-1, 1] * 1e3, self.length * 1e3
             raise ShapeError(f"the bore ends at {end:.3g} mm, beyond the tail at {length:.3g} mm")
         z = np.unique(np.concatenate([bore[:, 1], self.outline[:, 1]]))
-        z = 0.5 * (z[1:] + z[:-1])
+        z = (z[:-1, None] + np.diff(z)[:, None] * _WITHIN).ravel()  # both are straight between these heights
         inner, outer = self.inner_radius(z), self.radius(z)
         thin = np.flatnonzero(inner >= outer)
         if len(thin):

@@ -92,11 +92,14 @@ class Touch:
         return float(self.most * (max(depth - self.peak + back, 0.0) / back) ** 1.5)
 
     def _back(self) -> float:
-        """Return the elastic recovery of the largest depth, m."""
+        """Return the elastic recovery of the largest depth, m; it gives back no more than it took."""
         if not self._yielded():
             return self.peak
-        area = self.law.R * (2 * self.peak - self.law.yield_depth)  # over pi
-        return 0.75 * self.most / (self.law.E_star * sqrt(area))
+        law = self.law
+        area = law.R * (2 * self.peak - law.yield_depth)  # over pi
+        work = 0.4 * law.yield_force * law.yield_depth
+        work += 0.5 * (law.yield_force + self.most) * (self.peak - law.yield_depth)
+        return min(0.75 * self.most / (law.E_star * sqrt(area)), work / (0.4 * self.most))
 
     def _first(self, depth: float) -> float:
         law, ratio = self.law, self.side / self.most if self.most else 0.0
@@ -119,8 +122,8 @@ def strike(bodies: ContactBodies, vibrating: bool, rate: bool, gravity: bool) ->
     gravity : whether gravity acts
     """
     modes = beam(bodies.scene)
-    if not vibrating:
-        modes = Beam(*(part[:0] for part in modes))
+    resolved = modes.omega * contact_estimate(bodies).duration / STEPS < pi  # half a turn in a step
+    modes = Beam(*(part[resolved & vibrating] for part in modes))
     return _march(bodies, modes, Touch(_law(bodies, rate)), gravity)
 
 
@@ -128,7 +131,9 @@ def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> B
     """March in time, impulse of the contact force and exact flight in turn, until the rod has left."""
     scene = bodies.scene
     rod, impact, (d_c, d_d) = projectile(scene), scene.relative, arms(scene)
-    dt, inertia = contact_estimate(bodies).duration / STEPS, rod.mass * rod.k2
+    inertia = rod.mass * rod.k2
+    lightness = 1 / rod.mass + d_c**2 / inertia + float(modes.along_n @ modes.along_n)
+    dt = _time_step(bodies, touch.law, lightness)
     g = GRAVITY * dt if gravity else 0.0
     flight = BeamFlight(modes, dt, d_c, (g * cos(impact.angle), g * sin(impact.angle)))
     now, swing = Rigid(impact.v_n, impact.v_t, impact.omega, 0.0), np.zeros(len(modes.omega), dtype=complex)
@@ -148,6 +153,16 @@ def _march(bodies: ContactBodies, modes: Beam, touch: Touch, gravity: bool) -> B
     rebound = now.V_n + flight.g[0] * steps + d_c * now.spin
     E_vib = float(np.sum(np.abs(swing) ** 2)) / 2 / start_energy(scene)
     return BeamImpact(rebound / max(approach(scene), SLOWEST), E_vib, now.spin)
+
+
+def _time_step(bodies: ContactBodies, law: ContactLaw, lightness: float) -> float:
+    """Return the time step, s: that of the stiffest unloading of a point of so much speed per impulse, 1/kg.
+
+    A sharp tip has much less mass than the rod. Impulses and flights in turn are stable up to twice this.
+    """
+    estimate = contact_estimate(bodies)
+    stiffness = 2 * law.E_star * sqrt(2 * law.R * estimate.depth)
+    return min(estimate.duration / STEPS, 1 / sqrt(stiffness * lightness))
 
 
 def _law(bodies: ContactBodies, rate: bool) -> ContactLaw:

@@ -13,6 +13,7 @@ from fem_impact.physics.beam_impact import Touch, strike
 from fem_impact.physics.contact import normal_share
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.plan.choose import everything, resolved
+from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 
 ELASTIC = ("vibration", "barrier-elastic")
@@ -100,6 +101,36 @@ def test_a_surface_that_yields_bears_less_than_coulomb():
     half = next(d for d in np.linspace(20, 0, 2000) if touch._normal(d * law.yield_depth) < 0.5 * force)
     now, side = touch.press(half * law.yield_depth, -1.0, 3.0, 1.0)
     assert side / now == pytest.approx(-0.57)
+
+
+def thrown(speed, **projectile):
+    """An upright impact on the steel plate of a projectile of rod steel."""
+    return read_dict(
+        {
+            "id": "thrown",
+            "projectile": {"material": "rod-steel", **projectile},
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": "0 deg", "speed": f"{speed} m/s"},
+        }
+    )
+
+
+def test_a_contact_that_just_yields_gives_back_no_more_than_it_took():
+    """A ball, which has no modes; e falls from 1 only beyond three times the depth of first yield."""
+    found = [
+        strike(bodies(everything(thrown(speed, shape="ball", diameter="20 mm"))), True, True, gravity=False).e
+        for speed in (0.05, 0.1, 0.15, 5)
+    ]
+    assert max(found) < 1.001
+    assert found[0] > 0.98 and found[-1] < 0.8
+
+
+def test_a_sharp_tip_on_soft_metal_is_marched_stably():
+    """The tip has a hundredth of the mass of the rod; vibration is part of the impact energy."""
+    profile = [["0 mm", "0 mm"], ["100 mm", "1 mm"], ["500 mm", "8 mm"]]
+    found = quick_impact(everything(replace_all(thrown(5, profile=profile), {"barrier.material": "lead"})))
+    assert 0 <= found.E_vib < 1 and 0 <= found.e < 1
 
 
 @pytest.mark.parametrize("length", ["240 mm", "1 m"])

@@ -27,8 +27,9 @@ def is_resolved(outcome: Outcome) -> bool:
 def _of_finished(outcome: Outcome) -> Iterator[str]:
     if abs(outcome.energy.residual) > LEDGER:
         yield f"the ledger misses {outcome.energy.residual:.1e} of E_0"
-    if outcome.motion.V_n <= 0 and STRIKES_AGAIN not in outcome.validity.stopped_because:
-        yield f"its mass centre goes into the barrier at {-outcome.motion.V_n:.3g} m/s"
+    away = outcome.motion.V_n - outcome.barrier.V_bn
+    if away <= 0 and STRIKES_AGAIN not in outcome.validity.stopped_because:
+        yield f"its mass centre goes into the barrier at {-away:.3g} m/s"
     yield from _of_resolved(outcome) if is_resolved(outcome) else _of_unresolved(outcome)
 
 
@@ -65,7 +66,8 @@ def shares(outcome: Outcome) -> float:
     vibration = energy.vibration if isinstance(energy.vibration_check, Unknown) else energy.vibration_check
     parts = (energy.rigid, vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
     rest = (energy.locked_rod, energy.locked_barrier, energy.radiated, energy.closing, energy.damping)
-    return sum(or_none(part) or 0.0 for part in (*parts, *rest, energy.contact)) + energy.residual
+    others = (energy.plate, energy.barrier, energy.contact)
+    return sum(or_none(part) or 0.0 for part in (*parts, *rest, *others)) + energy.residual
 
 
 def _of_restitution(outcome: Outcome) -> Iterator[str]:

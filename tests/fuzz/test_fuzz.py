@@ -12,7 +12,10 @@ import os
 import numpy as np
 import pytest
 from census import DEAR, FINISHED, REFUSED, run, run_solid
+from random_projectiles import random_own
 from random_scenes import one_of, random_rod, random_scene
+
+from fem_impact.errors import SceneError
 
 BUDGET = float(os.environ.get("FUZZ_BUDGET", "300"))
 SEED = int(os.environ.get("FUZZ_SEED", "1"))
@@ -67,6 +70,30 @@ def test_solid_of_cheap_scenes(cases):
 @pytest.mark.parametrize("numbers", parts(0, 200, 20))
 def test_solid(numbers, cases):
     held(cases, [run_solid(random_scene(SEED, number), BUDGET) for number in numbers])
+
+
+def own(numbers):
+    """Random projectiles and barriers as scene files state them; a bore that leaves no wall is no body."""
+    for number in numbers:
+        try:
+            yield random_own(SEED, number)
+        except SceneError as refusal:
+            assert "no body" in str(refusal) or "is not a shape" in str(refusal)
+
+
+@pytest.mark.parametrize("numbers", [range(20), *parts(20, 320, 100)])
+def test_rigid_of_own_projectiles(numbers, cases):
+    held(cases, [run(scene, "rigid") for scene in own(numbers)])
+
+
+@pytest.mark.parametrize("numbers", parts(0, 100, 20))
+def test_modal_of_own_projectiles(numbers, cases):
+    held(cases, [run(scene, "modal") for scene in own(numbers)])
+
+
+@pytest.mark.parametrize("numbers", parts(0, 200, 20))
+def test_solid_of_own_projectiles(numbers, cases):
+    held(cases, [run_solid(scene, BUDGET) for scene in own(numbers)])
 
 
 @pytest.mark.slow
