@@ -136,7 +136,7 @@ def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
     cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
     residual = number(outcome.energy.residual, 2)
     last = card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
-    inner = join([*cards, _vibration_card(outcome), last])
+    inner = join([*cards, _vibration_card(outcome, rigid), last])
     return Markup(f'<div class="cards">{inner.text}</div>')
 
 
@@ -149,10 +149,14 @@ def _card(outcome: Outcome, rigid: Outcome | None, label: str, key: Key, unit: s
     return card(label, estimated(outcome, key) + unit, ". ".join(note for note in (theory, missing) if note))
 
 
-def _vibration_card(outcome: Outcome) -> Markup:
+def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
     energy = outcome.energy
     share, floor = or_none(outcome.estimate(KEY_TABLE["E_vib_over_E_0"])[0]), or_none(energy.vibration_floor)
-    note = "" if floor is None else f"floor {percent(floor)}"
+    notes = (
+        *(["rigid theory: none"] if rigid else []),
+        *([] if floor is None else [f"less than {percent(floor)} is not resolved"]),
+    )
+    note = ". ".join(notes)
     if or_none(energy.below_floor):
         return card("vibration, of E₀", "below floor", note)
     return card("vibration, of E₀", "–" if share is None else percent(share), note)

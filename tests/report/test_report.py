@@ -119,6 +119,7 @@ def test_rigid_theory_stands_beside_the_numbers(run):
     predicted = simulate(scene, "rigid")
     assert f"rigid theory: {number(predicted.restitution.paper.e)}" in words
     assert f"rigid theory: {number(predicted.motion.Omega)} rad/s" in words
+    assert "rigid theory: none" in words  # of vibration
     assert "All shares beside rigid theory" in words
 
 

@@ -72,6 +72,8 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
     assert (
         "0.3703 ± 0.037 at 0.297 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
     )
+    answer = next(line for line in found.text.splitlines() if line.startswith("- "))
+    assert "lies at most 0.03 from its limit" in answer and answer.endswith("reach ± 0.037.")
     assert "Two meshes, extrapolated: 27 of 27 bands hold the limit of all." in found.text
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
     assert (tmp_path / "figures" / "convergence.svg").stat().st_size > 1000
