@@ -1,6 +1,6 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
 
-from meshes.block import block, thin_skin_rise, with_thin_skin
+from meshes.block import block, drawn_depths, thin_skin_rise, with_rows_at, with_thin_skin
 from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
@@ -28,6 +28,7 @@ __all__ = [
     "block",
     "cell_moments",
     "contact_radius",
+    "drawn_depths",
     "edge_lengths",
     "own_half",
     "quality",
@@ -40,6 +41,7 @@ __all__ = [
     "thin_skin_rise",
     "turned",
     "volume",
+    "with_rows_at",
     "with_thin_skin",
     "without_slices",
     "write",

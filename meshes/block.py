@@ -13,7 +13,7 @@ from meshes.refine import refine
 from meshes.topology import CORNERS
 from meshes.zone import Zone
 
-__all__ = ["block", "box_cells", "thin_skin_rise", "with_thin_skin"]
+__all__ = ["block", "box_cells", "drawn_depths", "thin_skin_rise", "with_rows_at", "with_thin_skin"]
 
 
 def block(
@@ -74,9 +74,29 @@ def with_thin_skin(mesh: HexMesh, cell: float, rows: int) -> HexMesh:
         The bottom of the block rises by `thin_skin_rise` cells.
     """
     points = mesh.points.copy()
-    depth = -points[:, 2] / cell
+    points[:, 2] = -drawn_depths(-points[:, 2], cell, rows)
+    return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def drawn_depths(depths: FloatArray, cell: float, rows: int) -> FloatArray:
+    """Return where depths under the top, m, lie after `with_thin_skin`, m."""
+    depth = depths / cell
     drawn = np.minimum(depth, rows)
-    points[:, 2] = -cell * (depth - drawn + (2.0**drawn - 1.0) * 0.5**rows)
+    return np.asarray(cell * (depth - drawn + (2.0**drawn - 1.0) * 0.5**rows))
+
+
+def with_rows_at(mesh: HexMesh, rows: FloatArray, depths: FloatArray) -> HexMesh:
+    """Move rows of whole cells of a block to other depths; between them heights change evenly.
+
+    Parameters
+    ----------
+    mesh : HexMesh
+        As `block` gives it, its top at n = 0.
+    rows, depths : (k,) float64, m
+        Depths of rows of unsplit cells, growing from 0 at the top to the bottom, and where they are to lie.
+    """
+    points = mesh.points.copy()
+    points[:, 2] = -np.interp(-points[:, 2], rows, depths)
     return replace(mesh, points=np.asarray(mesh.tie @ points))
 
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
+    from fem_impact.scene.material import Material
 
 
 DRAWINGS = (".png", ".svg")
@@ -150,11 +151,17 @@ def _flat(choice: EffectChoice) -> dict[str, Any]:
     return {key.name: key.of(choice) for key in keys_of(type(choice))}
 
 
+def _materials(scene: Scene) -> dict[str, Material]:
+    """Return all materials by the place of the scene that states them."""
+    layers = enumerate(scene.barrier.layers, 1)
+    return {**scene.materials, **{f"barrier.layers[{number}]": one.material for number, one in layers}}
+
+
 def _sources(scene: Scene) -> dict[str, str]:
     """Return where each material value and the friction come from, by dotted key."""
     sources = {
         f"{body}.material.{key}": source_of(metal.name, key)
-        for body, metal in scene.materials.items()
+        for body, metal in _materials(scene).items()
         for key in stated_keys(metal)
     }
     return sources | {"surface.friction": scene.surface.source}
@@ -164,7 +171,7 @@ def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
     """Return the intervals that a shipped material states for its values, by dotted key."""
     return {
         f"{body}.material.{key}": interval
-        for body, metal in scene.materials.items()
+        for body, metal in _materials(scene).items()
         for key, interval in intervals_of(metal.name).items()
     }
 

@@ -5,9 +5,10 @@ The blocks stand on springs for the rest of a half-space (see `radiation` for th
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from fem_impact.effects.plasticity import SOURCE, first_yield_ratio, hardening_of
+from fem_impact.effects.plasticity import SOURCE, buried_yield_ratio, first_yield_ratio, hardening_of
 from fem_impact.effects.slots import Effect, Harm, ModelSpec
 
 if TYPE_CHECKING:
@@ -24,14 +25,16 @@ COMPLIANCE = (
 
 def compliance_share(scene: Scene) -> float:
     """Return the barrier's share of the elastic contact compliance."""
-    rod, plate = scene.projectile.material, scene.barrier.material
+    rod, plate = scene.projectile.material, scene.barrier.struck
     soft_rod, soft_plate = (1 - rod.nu**2) / rod.E, (1 - plate.nu**2) / plate.E
     return soft_plate / (soft_rod + soft_plate)
 
 
 def yield_ratio(scene: Scene) -> float:
-    """Return the peak pressure over that of first yield in the plate."""
-    return first_yield_ratio(scene, scene.barrier.material, scene.projectile.material)
+    """Return the peak pressure over that of first yield in the plate, the largest of its layers."""
+    strata = scene.barrier.strata
+    under = [buried_yield_ratio(scene, metal, depth) for (depth, _), (_, metal) in pairwise(strata)]
+    return max([first_yield_ratio(scene, scene.barrier.struck, scene.projectile.material), *under])
 
 
 def no_harm(scene: Scene) -> Harm:
@@ -51,7 +54,10 @@ def fill_elastic(scene: Scene, spec: ModelSpec) -> None:
 def fill_elastoplastic(scene: Scene, spec: ModelSpec) -> None:
     """Mesh the block and let it yield."""
     spec.meshed_barrier = True
-    spec.barrier_law = hardening_of(scene.barrier.material)
+    first, *under = (material for _, material in scene.barrier.strata)
+    some = any(metal.yields for metal in under)  # then the first may be one that never yields
+    spec.barrier_law = None if some and not first.yields else hardening_of(first)
+    spec.under_laws = tuple(hardening_of(metal) if metal.yields else None for metal in under)
 
 
 RIGID = Effect(

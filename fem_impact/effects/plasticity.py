@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import sqrt
+from math import atan, sqrt
 from typing import TYPE_CHECKING
 
 from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
@@ -28,12 +28,30 @@ def first_yield_ratio(scene: Scene, material: Material, other: Material) -> floa
 
     The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
     """
+    bodies, peak = bodies_of(scene), _peak(scene, other)
+    first = min(DEEP, 1 / (sqrt(3) * bodies.f)) if bodies.f > 0 else DEEP
+    return peak / (first * material.yield_stress)
+
+
+def buried_yield_ratio(scene: Scene, material: Material, depth: float) -> float:
+    """Return von Mises' stress over the yield stress of a material under layers, at ``depth``, m.
+
+    Stresses are those of Hertz's contact on a body of the first layer alone (Johnson 1985, eq 3.45).
+    """
+    size = contact_estimate(replace(bodies_of(scene), rod_yields=False, barrier_yields=False))
+    z, nu = depth / sqrt(size.a_t * size.a_b), scene.barrier.struck.nu
+    across = (1 + nu) * (1 - z * atan(1 / z)) - 0.5 / (1 + z * z)
+    stress = abs(1 / (1 + z * z) - across) * _peak(scene, scene.projectile.material)
+    return stress / material.yield_stress
+
+
+def _peak(scene: Scene, other: Material) -> float:
+    """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
     bodies = bodies_of(scene)
     peak = 1.5 * contact_estimate(replace(bodies, rod_yields=False, barrier_yields=False)).pressure
     if bodies.compliant:
         peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
-    first = min(DEEP, 1 / (sqrt(3) * bodies.f)) if bodies.f > 0 else DEEP
-    return peak / (first * material.yield_stress)
+    return peak
 
 
 def hardening_of(material: Material) -> Hardening:
@@ -64,7 +82,7 @@ def hardening_of(material: Material) -> Hardening:
 
 def number(scene: Scene) -> float:
     """Return the peak pressure over that of first yield in the rod."""
-    return first_yield_ratio(scene, scene.projectile.material, scene.barrier.material)
+    return first_yield_ratio(scene, scene.projectile.material, scene.barrier.struck)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:

@@ -13,22 +13,29 @@ from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
 from fem_impact.physics.hardening import rate_gain, rate_law, strain_rate
 
 if TYPE_CHECKING:
+    from fem_impact.physics.hardening import Hardening
+    from fem_impact.scene.material import Material
     from fem_impact.scene.types import Scene
 
 
 def number(scene: Scene) -> float:
     """Return the largest relative gain of flow stress, of the bodies that yield, or of both if none does."""
     bodies = bodies_of(scene)
-    metals = bodies.yielding or [scene.projectile.material, scene.barrier.material]
+    metals = bodies.yielding or [scene.projectile.material, scene.barrier.struck]
     rate = strain_rate(bodies)
     return max(rate_gain(metal, rate) for metal in metals)
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
     """Give every material that yields its own rate law."""
-    rod, barrier = rate_law(scene.projectile.material), rate_law(scene.barrier.material)
-    spec.rod_law = replace(spec.rod_law, rate=rod) if spec.rod_law else None
-    spec.barrier_law = replace(spec.barrier_law, rate=barrier) if spec.barrier_law else None
+    spec.rod_law = _faster(spec.rod_law, scene.projectile.material)
+    spec.barrier_law = _faster(spec.barrier_law, scene.barrier.struck)
+    under = zip(spec.under_laws, scene.barrier.strata[1:], strict=True) if spec.under_laws else ()
+    spec.under_laws = tuple(_faster(law, metal) for law, (_, metal) in under)
+
+
+def _faster(law: Hardening | None, metal: Material) -> Hardening | None:
+    return replace(law, rate=rate_law(metal)) if law else None
 
 
 EFFECT = Effect(

@@ -23,6 +23,7 @@ class ModelSpec:
     vibrating : the body behind the nose is elastic
     friction : Coulomb coefficient f, or None for a frictionless contact
     rod_law, barrier_law : hardening law of a body that may yield, or None
+    under_laws : those of the materials under the first layer of a barrier, from the top down
     skin : hardened layer of the surfaces, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
@@ -37,6 +38,7 @@ class ModelSpec:
     friction: float | None = None
     rod_law: Hardening | None = None
     barrier_law: Hardening | None = None
+    under_laws: tuple[Hardening | None, ...] = ()
     skin: Skin | None = None
     meshed_barrier: bool = False
     radiating: bool = False
@@ -45,6 +47,11 @@ class ModelSpec:
     loss_factor: float | None = None
     heat: bool = False
     turning_frame: bool = False
+
+    @property
+    def barrier_laws(self) -> tuple[Hardening | None, ...]:
+        """The laws of all materials of the barrier, from the top down."""
+        return (self.barrier_law, *self.under_laws)
 
 
 @dataclass(frozen=True, slots=True)

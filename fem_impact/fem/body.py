@@ -27,6 +27,7 @@ from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import pressure_speed, projectile
 from fem_impact.plan.plan import Plan
 from fem_impact.scene.material import Material
+from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh
 from rigid import Faceted, Turned
 
@@ -93,6 +94,27 @@ def make_body(
     """Return a body with its lumped masses, and the types of cells that cannot yield and that may."""
     mass = lumped_mass(points, mesh.cells, material.rho)
     return MeshedBody(name, mesh, points, places, material, yields, element, mass, yielding)
+
+
+def of_materials(body: MeshedBody, place: Array, parts: tuple[tuple[float, Material], ...]) -> MeshedBody:
+    """Return a body of several materials, masses included, the first being its own.
+
+    ``place`` (m,), m, says how far along the body each cell lies, ``parts`` the end, m, of each material.
+    """
+    others = tuple(
+        (material, (place > before) & (place < end)) for (before, _), (end, material) in pairwise(parts)
+    )
+    for material, here in others:
+        body.mass[here] *= material.rho / body.material.rho
+    return replace(body, others=others)
+
+
+def crossing_of(body: MeshedBody, own: Material) -> Array:
+    """Return the time (m,), s, in which a pressure wave crosses each cell of a body of materials."""
+    crossing = crossing_times(body.mesh, body.points, own)
+    for material, here in body.others:
+        crossing[here] *= pressure_speed(own) / pressure_speed(material)
+    return crossing
 
 
 def stiffness_of(body: MeshedBody, chosen: Bools, size: int, shift: int = 0) -> sp.csr_matrix:
@@ -183,9 +205,16 @@ class MeshedBodies:
 
     @cached_property
     def materials(self) -> dict[str, Material]:
-        """Return the materials of the meshed bodies."""
-        rod, barrier = self.scene.projectile.material, self.scene.barrier.material
+        """Return the materials of the meshed bodies; of several, that which touches."""
+        rod, barrier = self.scene.projectile.material, self.scene.barrier.struck
         return {"rod": rod, "barrier": barrier} if self.spec.meshed_barrier else {"rod": rod}
+
+    @cached_property
+    def reference_time(self) -> float:
+        """Return the time, s, in which a wave crosses the finest cells, of the fastest material."""
+        fastest = max((m for _, m in self.scene.barrier.strata), key=pressure_speed)
+        barrier = {"barrier": fastest} if self.spec.meshed_barrier else {}
+        return reference_time(self.plan.zones, {"rod": self.materials["rod"], **barrier})
 
     @cached_property
     def nose(self) -> Bools:
@@ -212,31 +241,20 @@ class MeshedBodies:
         steel, accuracy = self.materials["rod"], self.scene.accuracy
         kinds = accuracy.element, accuracy.yielding_element
         rod = make_body("rod", g.rod.mesh, g.rod_points, self.layout.rod, steel, yields, *kinds)
-        rod, cut = replace(self._segmented(rod), touching=g.touching), self.cut_off
+        parts = self.scene.projectile.segments or (Segment(np.inf, steel),)
+        z = g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
+        rod = of_materials(rod, z, tuple((part.to, part.material) for part in parts))
+        rod, cut = replace(rod, touching=g.touching), self.cut_off
         missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
         if cut.any():
             rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
         return rod
 
-    def _segmented(self, rod: MeshedBody) -> MeshedBody:
-        """Return the rod with the materials of its segments behind the first."""
-        segments = self.scene.projectile.segments
-        z = rod.mesh.points[rod.mesh.cells, 2].mean(axis=1)
-        others = tuple(
-            (part.material, (z > before.to) & (z < part.to)) for before, part in pairwise(segments)
-        )
-        for material, here in others:
-            rod.mass[here] *= material.rho / rod.material.rho
-        return replace(rod, others=others)
-
     @cached_property
     def scaled_rod(self) -> tuple[MeshedBody, float]:
         """Return the rod with the masses of the run, and the mass scaling in force."""
-        rod = self.true_rod
-        crossing = crossing_times(rod.mesh, rod.points, self.materials["rod"])
-        for material, here in rod.others:
-            crossing[here] *= pressure_speed(self.materials["rod"]) / pressure_speed(material)
-        reference = reference_time(self.plan.zones, self.materials)
+        rod, crossing = self.true_rod, crossing_of(self.true_rod, self.materials["rod"])
+        reference = self.reference_time
         place, wanted = rod.points[rod.mesh.cells], self.scene.accuracy.mass_scaling
         mass, scaling = scaled_rod(rod.mass, place, self.nose, crossing, reference, wanted)
         return replace(rod, mass=mass), scaling
@@ -252,10 +270,13 @@ class MeshedBodies:
         g, mesh = self.geometry, self.geometry.barrier
         if mesh is None:
             return None
-        yields = g.may_yield["barrier"] & (self.spec.barrier_law is not None)
         steel, accuracy = self.materials["barrier"], self.scene.accuracy
-        kinds = accuracy.element, accuracy.yielding_element
-        return make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, yields, *kinds)
+        kinds, elastic = (accuracy.element, accuracy.yielding_element), np.zeros(len(mesh.cells), dtype=bool)
+        body = make_body("barrier", mesh, mesh.points, self.layout.barrier, steel, elastic, *kinds)
+        depth = -mesh.points[mesh.cells, 2].mean(axis=1)
+        body = of_materials(body, depth, self.scene.barrier.strata)
+        flows = [here for (_, here), law in zip(body.parts, self.spec.barrier_laws, strict=False) if law]
+        return replace(body, yields=g.may_yield["barrier"] & np.any([elastic, *flows], axis=0))
 
     @cached_property
     def barrier(self) -> MeshedBody | None:
@@ -263,8 +284,8 @@ class MeshedBodies:
         body, scaling = self.true_barrier, self.scaled_rod[1]
         if body is None or (scaling == 1 and not self.geometry.skin_rows):
             return body
-        crossing = crossing_times(body.mesh, body.points, self.materials["barrier"])
-        wanted = reference_time(self.plan.zones, self.materials) * sqrt(scaling)
+        crossing = crossing_of(body, self.materials["barrier"])
+        wanted = self.reference_time * sqrt(scaling)
         return replace(body, mass=body.mass * mass_factors(crossing, wanted)[:, None])
 
     @cached_property

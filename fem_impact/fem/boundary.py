@@ -29,14 +29,21 @@ from meshes import OUTER, HexMesh
 RADIATION = (0.72091, 0.54936, -1.83562, 1.34367)
 
 
-def spread_boundary(mesh: HexMesh, E: float, nu: float, rho: float) -> tuple[Array, Array]:
+def spread_boundary(
+    mesh: HexMesh, E: float, nu: float, rho: float, cells: NDArray[np.bool_] | None = None
+) -> tuple[Array, Array]:
     """Return spring stiffnesses, N/m, and damping, N s/m, of all mesh nodes, both (n, 3).
 
-    The outer faces are plane and parallel to the axes, so each node's springs are diagonal.
+    They are those at the outer faces of ``cells``, a mask (m,), or of all cells. The faces are plane and
+    parallel to the axes, so each node's springs are diagonal.
     """
     lame, G = lame_constants(E, nu)
     c_d, c_s = sqrt((lame + 2 * G) / rho), sqrt(G / rho)
     faces, ones = mesh.faces_with(OUTER), np.ones(mesh.points.size)
+    if cells is not None:
+        faces = faces[np.isin(faces, mesh.cells[cells]).all(axis=1)]
+    if not len(faces):
+        return np.zeros((len(mesh.points), 3)), np.zeros((len(mesh.points), 3))
     basis = face_basis(hex_mesh(mesh.points, mesh.cells), faces)
     spring = springs.assemble(basis, G=G) @ ones
     damping = dashpots.assemble(basis, rho=rho, c_d=c_d, c_s=c_s) @ ones

@@ -13,7 +13,8 @@ import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.zones import BUFFER, Zones, lowest_point
+from fem_impact.plan.layers import block_of, moved_rows
+from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
 from rigid import Faceted, Projectile, Turned
 
@@ -184,11 +185,12 @@ def _round(corners: Array, along: float, radii: tuple[float, float, float]) -> B
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:
-    """Return the barrier block."""
+    """Return the barrier block, rows of its cells at the interfaces of its layers."""
     h, base = zones.barrier_size, zones.base
     margin = scene.accuracy.block_margin  # springs replace the half-space beyond
-    low, high = zones.block(margin)
-    boxes = [Zone(np.zeros(3), np.eye(3), *box) for box in zones.barrier_boxes]
+    low, high = block_of(scene, zones)
+    rows, depths = moved_rows(scene, zones)
+    boxes = [_before_moving(box, zones, rows, depths) for box in zones.barrier_boxes]
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
         raise SceneError(
@@ -199,4 +201,15 @@ def _block(scene: Scene, zones: Zones) -> HexMesh:
         )
     coarse = meshes.block(low, high, base, boxes, buffer=BUFFER)
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
+    if scene.barrier.layers:
+        block = meshes.with_rows_at(block, rows, depths)
     return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))
+
+
+def _before_moving(box: Corners, zones: Zones, rows: Array, depths: Array) -> Zone:
+    """Return the zone whose cells fill a box once rows have moved to the depths of interfaces."""
+    low, high = box
+    if len(rows) > 2:
+        depth = float(np.interp(-low[2] - zones.rise, depths, rows))
+        low = np.array([low[0], low[1], -depth - zones.rise])
+    return Zone(np.zeros(3), np.eye(3), low, high)

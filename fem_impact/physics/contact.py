@@ -48,13 +48,13 @@ class ContactBodies:
     @property
     def yielding(self) -> list[Material]:
         """Return the materials that may yield and have a yield stress."""
-        rod, barrier = self.scene.projectile.material, self.scene.barrier.material
+        rod, barrier = self.scene.projectile.material, self.scene.barrier.struck
         return [m for m in [rod] * self.rod_yields + [barrier] * self.barrier_yields if m.yields]
 
     @property
     def elastic(self) -> list[Material]:
         """Return the materials that deform: a rigid barrier has no share in the contact's compliance."""
-        return [self.scene.projectile.material] + [self.scene.barrier.material] * self.compliant
+        return [self.scene.projectile.material] + [self.scene.barrier.struck] * self.compliant
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,5 +207,5 @@ def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
 
 def barrier_conforms(bodies: ContactBodies) -> bool:
     """Return whether the barrier yields under the whole contact, so that it takes the rod's shape."""
-    flows = contact_estimate(bodies).pressure >= LIMIT_PRESSURE * bodies.scene.barrier.material.yield_stress
+    flows = contact_estimate(bodies).pressure >= LIMIT_PRESSURE * bodies.scene.barrier.struck.yield_stress
     return flows and bodies.barrier_yields

@@ -111,7 +111,7 @@ def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
 
 def thermal(scene: Scene) -> dict[str, float | None]:
     """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
-    bodies = {"rod": scene.projectile.material, "barrier": scene.barrier.material}
+    bodies = {"rod": scene.projectile.material, "barrier": scene.barrier.struck}
     own = {
         f"{body}_{key}": getattr(metal, key)
         for body, metal in bodies.items()
@@ -136,7 +136,7 @@ def halves(scene: Scene) -> tuple[Half, Half]:
             raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
     return (
         Half(known["rod_conductivity"], scene.projectile.material.rho * known["rod_heat_capacity"]),
-        Half(known["barrier_conductivity"], scene.barrier.material.rho * known["barrier_heat_capacity"]),
+        Half(known["barrier_conductivity"], scene.barrier.struck.rho * known["barrier_heat_capacity"]),
     )
 
 
@@ -177,7 +177,7 @@ def flash_bound(bodies: ContactBodies) -> float:
     """
     scene, size = bodies.scene, contact_estimate(bodies)
     f = scene.surface.friction
-    softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.material))
+    softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.struck))
     speed = sliding_speed(scene) + approach(scene)
     q, t = f * HARDNESS * softer * speed, 3 * size.duration
     return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves(scene))

@@ -75,7 +75,7 @@ def flow_law(bodies: ContactBodies, rod: Hardening | None, barrier: Hardening | 
     R1, R2 = principal_radii(bodies.scene)
     soft, E_star = softer(bodies), contact_modulus(bodies)
     flows = soft is not None and contact_estimate(bodies).pressure >= LIMIT_PRESSURE * soft.yield_stress
-    of_soft = [(barrier, bodies.scene.barrier.material), (rod, bodies.scene.projectile.material)]
+    of_soft = [(barrier, bodies.scene.barrier.struck), (rod, bodies.scene.projectile.material)]
     curve = next((law for law, metal in of_soft if law and metal == soft), Hardening(inf, 0.0, 0.0))
     faster = curve.rate.factor(strain_rate(bodies)) if curve.rate else 1.0
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area

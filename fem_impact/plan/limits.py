@@ -42,6 +42,7 @@ def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
         _section(scene),
         _segments(scene),
         _own_mesh(scene),
+        _layers(scene),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -91,6 +92,15 @@ def _own_mesh(scene: Scene) -> str:
     )
 
 
+def _layers(scene: Scene) -> str:
+    if not scene.barrier.layers:
+        return ""
+    return (
+        "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
+        "of the rigid fidelity) know the first layer alone"
+    )
+
+
 def _fall(scene: Scene) -> str:
     impact = scene.impact
     if abs(impact.beside) <= BESIDE or impact != scene.relative:
@@ -104,13 +114,20 @@ def _fall(scene: Scene) -> str:
 
 def _steels(scene: Scene) -> str:
     known = library.materials()
+    plates = {material.name for _, material in scene.barrier.strata}
     same = scene.projectile.material == known["rod-steel"] and scene.barrier.material == known["plate-steel"]
+    same = same and len(plates) == 1
     return "" if same else "outside the measured range: other materials than the measured steels"
 
 
 def _barrier(scene: Scene) -> str:
     barrier = scene.barrier
-    ways = {"bent": barrier.bends, "was free": barrier.mass is not None, "moved": barrier.v_n or barrier.v_t}
+    ways = {
+        "had layers": barrier.layers,
+        "bent": barrier.bends,
+        "was free": barrier.mass is not None,
+        "moved": barrier.v_n or barrier.v_t,
+    }
     found = [f"no measured barrier {way}" for way, stated in ways.items() if stated]
     return f"outside the measured range: {' or '.join(found)}" if found else ""
 
@@ -214,6 +231,11 @@ def require_turned(scene: Scene, asked: str) -> None:
             value=scene.projectile.own_mesh.path,
             remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
         )
+
+
+def has_verdict(scene: Scene) -> bool:
+    """Return whether a scene can be assessed: bodies of the program's own on one material."""
+    return scene.projectile.own_mesh is None and not scene.barrier.layers
 
 
 def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:

@@ -21,7 +21,7 @@ YIELDS = {"rod": "rod-plasticity", "barrier": "barrier-elastoplastic"}
 
 def bodies(scene: Scene) -> dict[str, Material]:
     """Return the materials of rod and barrier."""
-    return {"rod": scene.projectile.material, "barrier": scene.barrier.material}
+    return {"rod": scene.projectile.material, "barrier": scene.barrier.struck}
 
 
 def flow_stresses(scene: Scene, active: Collection[str]) -> dict[str, list[float]]:
@@ -36,8 +36,14 @@ def flow_stresses(scene: Scene, active: Collection[str]) -> dict[str, list[float
 
 def unknowns(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
     """Return a sentence for each thing that a material does not say and the model would use."""
-    told = [_body(body, metal, active, _rate_wanted(scene)) for body, metal in bodies(scene).items()]
-    return tuple(sentence for sentence in (*told, _heat(scene, active), _friction(scene, active)) if sentence)
+    under = [("barrier", metal) for _, metal in scene.barrier.strata[1:]]
+    metals = [*bodies(scene).items(), *under]
+    told = [_body(body, metal, active, _rate_wanted(scene)) for body, metal in metals]
+    return tuple(
+        sentence
+        for sentence in (*dict.fromkeys(told), _heat(scene, active), _friction(scene, active))
+        if sentence
+    )
 
 
 def _rate_wanted(scene: Scene) -> bool:

@@ -12,6 +12,7 @@ from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
 from fem_impact.plan.cells import coarse_tip, thin_cells
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
+from fem_impact.plan.layers import layer_warning, require_layers
 from fem_impact.plan.limits import (
     require_approach,
     require_own_mesh,
@@ -70,7 +71,13 @@ class Plan:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return sentences on what the reader should distrust on finite elements."""
-        return (*neglected(self.scene), *coarse_tip(self.bodies), *thin_cells(self.scene), *self.unknown)
+        return (
+            *neglected(self.scene),
+            *coarse_tip(self.bodies),
+            *layer_warning(self.bodies),
+            *thin_cells(self.scene),
+            *self.unknown,
+        )
 
     @property
     def size(self) -> RunSize:
@@ -103,6 +110,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     slots, zones = ModelSpec(), zones_of(bodies)
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)
+    require_layers(bodies, zones, fidelity)
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)

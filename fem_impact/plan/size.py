@@ -21,6 +21,7 @@ from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
+from fem_impact.plan.layers import block_of
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
@@ -70,7 +71,7 @@ def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
     rod = _rod_elements(scene, zones, slots.vibrating)
     barrier = _block_elements(scene, zones) if slots.meshed_barrier else 0.0
     yielding = _yielding_rod(scene, zones) if slots.rod_law else 0.0
-    yielding += _yielding_block(zones) if slots.barrier_law else 0.0
+    yielding += _yielding_block(zones) if any(slots.barrier_laws) else 0.0
     step, latest = _step(scene, zones, slots), max_time(bodies)
     touch, swing = UNTIL_APART
     apart = touch * contact_estimate(bodies).duration + swing * bending_period(scene)
@@ -127,7 +128,7 @@ def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
     """Return about the stable step, s, with the scene's safety factor."""
     shares = {"rod": scene.projectile.material}
     if slots.meshed_barrier:
-        shares["barrier"] = scene.barrier.material
+        shares["barrier"] = max((m for _, m in scene.barrier.strata), key=_wave_speed)
     sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size}
     crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
     return scene.accuracy.step / 0.9 * sqrt(scene.accuracy.mass_scaling) * min(crossing)
@@ -206,7 +207,7 @@ def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
 
 def _block_elements(scene: Scene, zones: Zones) -> float:
     """Return the elements of the half block: boxes about the fine zone, cut off at the block's sides."""
-    boxes, (bottom, top) = zones.barrier_boxes, zones.block(scene.accuracy.block_margin)
+    boxes, (bottom, top) = zones.barrier_boxes, block_of(scene, zones)
     count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
     for edge, lowest, highest in _split_boxes(zones.base, boxes):
         sides = np.minimum(highest, top) - np.maximum(lowest, bottom)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, cos, floor, log2, sin, sqrt
 
 import numpy as np
@@ -84,6 +84,11 @@ class Zones:
         return self.base * 0.5 ** len(self.barrier)
 
     @property
+    def rise(self) -> float:
+        """Return by how much, m, the barrier's bottom rises where the rows at its skin are drawn together."""
+        return thin_skin_rise(self.skin_rows) * self.barrier_size
+
+    @property
     def whole(self) -> Corners:
         """Return the box, from the contact along t, b and n, in which the rod may touch and yield."""
         t, b, n = self.half
@@ -110,13 +115,12 @@ class Zones:
     def _below(self, extents: Extents) -> Corners:
         """Return the box of a zone of the barrier; it goes on towards -t under the path of the rod."""
         t, b, n = extents
-        rise = thin_skin_rise(self.skin_rows) * self.barrier_size
-        return np.array([-t - self.along, 0.0, -n - rise]), np.array([t, b, 0.0])
+        return np.array([-t - self.along, 0.0, -n - self.rise]), np.array([t, b, 0.0])
 
 
 def zones_of(bodies: ContactBodies) -> Zones:
-    """Return the fine zones of two bodies that touch."""
-    scene, size = bodies.scene, contact_estimate(bodies)
+    """Return the fine zones of two bodies that touch, wide enough for each material of a layered barrier."""
+    scene, size = bodies.scene, widest_contact(bodies)
     base, rod_base = body_cell(scene), rod_cell(scene)
     levels, below = levels_of(bodies)
     reach, wide = face_reach(bodies)
@@ -138,6 +142,23 @@ def zones_of(bodies: ContactBodies) -> Zones:
         conforming=conforming,
         skin_rows=rows,
     )
+
+
+def widest_contact(bodies: ContactBodies) -> ContactEstimate:
+    """Return the largest extents of the contact estimated with each material of a layered barrier alone."""
+    first = contact_estimate(bodies)
+    others = [
+        contact_estimate(_alone(bodies, number)) for number in range(1, len(bodies.scene.barrier.strata))
+    ]
+    sizes = [first, *others]
+    return replace(
+        first, **{key: max(getattr(size, key) for size in sizes) for key in ("depth", "a_t", "a_b")}
+    )
+
+
+def _alone(bodies: ContactBodies, number: int) -> ContactBodies:
+    barrier = replace(bodies.scene.barrier, layers=(), material=bodies.scene.barrier.strata[number][1])
+    return replace(bodies, scene=replace(bodies.scene, barrier=barrier))
 
 
 def lowest_point(scene: Scene) -> Array:

@@ -3,12 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import accumulate
+from math import inf
 from typing import get_args
 
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers
 from fem_impact.scene.material import Material
+
+
+@dataclass(frozen=True, slots=True)
+class Layer:
+    """A layer of a barrier: its thickness, m, and its material."""
+
+    thickness: float
+    material: Material
+
+    def __post_init__(self) -> None:
+        check_numbers(self, fields.LAYER)
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +34,8 @@ class Barrier:
     underneath and so wide that bending waves run away (``infinite``); ``span``, m, says how wide, at least.
     A barrier of ``mass``, kg, is free to move. It turns if its ``inertia``, kg m2, is stated, too: about its
     mass centre, which lies ``centre_depth``, m, below the struck surface and ``centre_offset``, m, up the
-    slope of the struck point. ``v_n`` and ``v_t``, m/s, are its velocity before the impact.
+    slope of the struck point. ``v_n`` and ``v_t``, m/s, are its velocity before the impact. ``layers`` lie
+    on its ``material``, bonded, the first on top.
     """
 
     material: Material
@@ -35,6 +49,7 @@ class Barrier:
     centre_offset: float = 0.0
     v_n: float = 0.0
     v_t: float = 0.0
+    layers: tuple[Layer, ...] = ()
 
     def __post_init__(self) -> None:
         check_choice(self.boundary, get_args(fields.Boundary), "boundary")
@@ -42,11 +57,35 @@ class Barrier:
         check_numbers(self, fields.BARRIER)
         _check_support(self)
         _check_turning(self)
+        _check_layers(self)
+
+    @property
+    def strata(self) -> tuple[tuple[float, Material], ...]:
+        """The materials from the top down, each with the depth, m, at which it ends; inf for the last."""
+        ends = accumulate(layer.thickness for layer in self.layers)
+        tops = tuple(zip(ends, (layer.material for layer in self.layers), strict=True))
+        return (*tops, (inf, self.material))
+
+    @property
+    def struck(self) -> Material:
+        """The material at the surface: that of the first layer, if there are any."""
+        return self.strata[0][1]
 
     @property
     def bends(self) -> bool:
         """Whether it is a plate whose bending waves run away."""
         return self.support == "infinite"
+
+
+def _check_layers(barrier: Barrier) -> None:
+    """Refuse layers on a barrier that bends or is free to move."""
+    if barrier.layers and barrier.bends:
+        remedy = 'Leave out the layers, or support = "infinite".'
+        problem = "lie on a plate that bends, whose impedance is known for one material alone."
+        raise SceneError(problem, key="layers", remedy=remedy)
+    if barrier.layers and barrier.mass is not None:
+        problem = "lie on a barrier that is free to move: only a massive one may have them."
+        raise SceneError(problem, key="layers", remedy="Leave out the layers, or the mass.")
 
 
 def _check_turning(barrier: Barrier) -> None:

@@ -258,6 +258,7 @@ TIP_SIZE = Parameter(
     derived="5 elements over the estimated radius of a yielding contact, 4 over that of an elastic one",
     source="chosen for this package: the two-mesh band of every result says what it costs",
 )
+LAYER = (Parameter("thickness", "thickness of a layer", "length", 1e-5, 1.0),)
 ACCURACY = (
     TIP_SIZE,
     replace(

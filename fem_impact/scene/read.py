@@ -11,7 +11,7 @@ from typing import Any, NoReturn, TypeVar
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields, library
-from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_choice, check_names, check_text
 from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
@@ -109,6 +109,7 @@ def _parse(text: str, source: str) -> dict[str, Any]:
 
 
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
+SEGMENT = '{to = "50 mm", material = "rod-steel"}'
 ROD = ("length", "diameter", "tip_radius")
 T = TypeVar("T")
 Table = Mapping[str, Any]
@@ -186,7 +187,7 @@ def _projectile(table: Table) -> ProjectileSpec:
     """Read a rod with a tip, a named shape, a profile or a mesh, with a bore and segments or without."""
     own = {
         "bore": stated_points(table.get("bore", ()), "bore"),
-        "segments": _segments(table["segments"]) if "segments" in table else (),
+        "segments": _tables(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
     }
     known = {key: value for key, value in table.items() if key not in own}
     if own["segments"]:
@@ -229,24 +230,31 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     )
 
 
-def _segments(tables: Any) -> tuple[Segment, ...]:
+def _tables(tables: Any, key: str, read: Callable[[Table], T], example: str) -> tuple[T, ...]:
+    """Read a list of tables, each by ``read``; messages name its number, from 1."""
     if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
-        raise SceneError(
-            "must be a list of segments.",
-            key="segments",
-            remedy='Write segments = [{to = "50 mm", material = "rod-steel"}, {to = ..., material = ...}].',
-        )
-    return tuple(_segment(table, f"segments[{number}]") for number, table in enumerate(tables, 1))
+        raise SceneError(f"must be a list of {key}.", key=key, remedy=f"Write {key} = [{example}, ...].")
+
+    def one(number: int, table: Table) -> T:
+        try:
+            return read(table)
+        except SceneError as error:
+            raise error.under(f"{key}[{number}]") from None
+
+    return tuple(one(number, table) for number, table in enumerate(tables, 1))
 
 
-def _segment(table: Table, place: str) -> Segment:
-    try:
-        _check_keys(table, ("to", "material"))
-        return Segment(
-            parse_quantity(_needed(table, "to"), "length", "to"), _within(table, "material", _material)
-        )
-    except SceneError as error:
-        raise error.under(place) from None
+def _segment(table: Table) -> Segment:
+    _check_keys(table, ("to", "material"))
+    return Segment(
+        parse_quantity(_needed(table, "to"), "length", "to"), _within(table, "material", _material)
+    )
+
+
+def _layer(table: Table) -> Layer:
+    return Layer(
+        **_numbers(table, fields.LAYER, ("material",)), material=_within(table, "material", _material)
+    )
 
 
 def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
@@ -260,8 +268,12 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 def _barrier(table: Table) -> Barrier:
     words = ("boundary", "support")
-    numbers = _numbers(table, fields.BARRIER, ("material", *words))
+    numbers = _numbers(table, fields.BARRIER, ("material", "layers", *words))
     given = {key: table[key] for key in words if key in table}
+    if "layers" in table:
+        given["layers"] = _tables(
+            table["layers"], "layers", _layer, '{thickness = "2 mm", material = "rod-steel"}'
+        )
     return Barrier(_within(table, "material", _material), **numbers, **given)
 
 

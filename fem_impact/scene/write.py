@@ -81,7 +81,8 @@ def _barrier(barrier: Barrier) -> dict[str, Any]:
     words = {key: getattr(barrier, key) for key in ("boundary", "support")}
     written = words | _written(barrier, fields.BARRIER)
     other = {key: value for key, value in written.items() if getattr(barrier, key) != getattr(plain, key)}
-    return {**other, "material": _material(barrier.material)}
+    layers = [{**_written(one, fields.LAYER), "material": _material(one.material)} for one in barrier.layers]
+    return {**other, **({"layers": layers} if layers else {}), "material": _material(barrier.material)}
 
 
 def _impact(impact: Impact) -> dict[str, Any]:

@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy.sparse as sp
 
-from fem_impact.arrays import Array, Ints
+from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.body import (
+    Elastic,
     MeshedBodies,
     MeshedBody,
     slices_of,
@@ -75,8 +76,8 @@ def elastic_block(
     place = layout.barrier_slice
     shifted, n = body.places - place.start, place.stop - place.start
     T = tie_operator(body.mesh.tie, shifted, n)
-    m = body.material
-    spring, damping = spread_boundary(body.mesh, m.E, m.nu, m.rho)
+    around = [spread_boundary(body.mesh, m.E, m.nu, m.rho, here) for m, here in body.parts]
+    spring, damping = (sum(parts[1:], parts[0]) for parts in zip(*around, strict=True))
     springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
     linear = stiffness_of(body, ~body.yields, n, place.start)
     K = sp.csr_matrix(linear + springs)
@@ -107,7 +108,7 @@ def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: El
     """Return the dashpots of a block's boundary, which take the radiated energy."""
     from fem_impact.fem.boundary import radiating_share
 
-    place, m = layout.barrier_slice, body.material
+    place, (m, _) = layout.barrier_slice, body.parts[-1]  # slow waves are far longer than layers are thick
     nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
     loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
     fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
@@ -121,14 +122,23 @@ def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: El
 
 
 def yielding_zone(
-    body: MeshedBody, law: Hardening, layout: DofLayout, strength: Array | None = None
+    body: MeshedBody,
+    law: Hardening,
+    layout: DofLayout,
+    strength: Array | None = None,
+    part: tuple[Elastic, Bools] | None = None,
 ) -> YieldingZone:
-    """Return the item of a body's cells that may yield, their flow stress times ``strength`` (m, 8)."""
+    """Return the item of a body's cells that may yield, their flow stress times ``strength`` (m, 8).
+
+    ``part`` is the material and the mask (m,) of the cells that are meant, all of them unless stated.
+    """
     from fem_impact.solid.yielding import YieldingZone
 
-    cells, m, full = body.mesh.cells[body.yields], body.material, body.yielding == "full"
-    dof, points = body.places[cells], body.points[cells]
-    return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full, strength)
+    m, here = part or (body.material, body.yields)
+    cells = np.flatnonzero(body.yields & here)
+    nodes = body.mesh.cells[cells]
+    where, full = (body.places[nodes], body.points[nodes]), body.yielding == "full"
+    return YieldingZone.of(body.name, cells, *where, m.E, m.nu, law, layout.dummy, full, strength)
 
 
 def facing_skin(body: MeshedBody) -> Ints:
@@ -209,7 +219,7 @@ class Builder:
     def block_parts(self) -> ElasticBlockParts:
         """Return the operators of a meshed barrier."""
         assert self.meshed.barrier is not None, "the barrier is meshed"
-        effect = "barrier-elastoplastic" if self.spec.barrier_law else "barrier-elastic"
+        effect = "barrier-elastoplastic" if any(self.spec.barrier_laws) else "barrier-elastic"
         return elastic_block(self.meshed.barrier, self.meshed.layout, self.meshed.x, effect)
 
     @cached_property
@@ -243,15 +253,21 @@ class Builder:
 
     @cached_property
     def zones(self) -> list[YieldingZone]:
-        """Return the zone of each body that yields."""
-        laws = (self.spec.rod_law, self.spec.barrier_law)
-        pairs = zip(self.meshed.bodies, laws, strict=False)
+        """Return the zone of each body that yields, of each of its materials."""
+        laws = ((self.spec.rod_law,), self.spec.barrier_laws)
+        found = [
+            (body, part, law)
+            for body, own in zip(self.meshed.bodies, laws, strict=False)
+            for part, law in zip(body.parts, own, strict=False)
+            if law and ((part[1] & body.yields).any() or len(body.parts) == 1)
+        ]
         return [
-            yielding_zone(body, law, self.meshed.layout, self.strength(body)) for body, law in pairs if law
+            yielding_zone(body, law, self.meshed.layout, self.strength(body, part[1]), part)
+            for body, part, law in found
         ]
 
-    def strength(self, body: MeshedBody) -> Array | None:
-        """Return the factor of the flow stress (m, 8) of a body's yielding cells, None without a layer."""
+    def strength(self, body: MeshedBody, here: Bools) -> Array | None:
+        """Return the factor of the flow stress (m, 8) of a part's yielding cells, None without a layer."""
         if self.spec.skin is None:
             return None
         from fem_impact.solid.skin import below_outline, strengths
@@ -262,7 +278,7 @@ class Builder:
             assert not isinstance(rod, Faceted), "the plan refuses a hardened layer on a mesh of its own"
             outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
             under = below_outline(self.meshed.geometry.rod.mesh.points, outline)
-        return strengths(body.mesh.cells[body.yields], under, self.spec.skin)
+        return strengths(body.mesh.cells[body.yields & here], under, self.spec.skin)
 
     @cached_property
     def contact(self) -> PlaneContact | MovingPlane | SurfaceContact:

@@ -30,14 +30,14 @@ SHAPES = np.prod(1 + SIGNS[None] * CORNERS[:, None], axis=2) / 8  # (points, nod
 
 def skin_share(model: Model) -> float:
     """Return the share of the barrier's plastic work done above `DEPTH`; 0 where it cannot yield."""
-    for zone in model.zones:
-        if zone.body == "barrier":
-            return _share_above(zone, -model.start[0][zone.places()][:, :, 2])
-    return 0.0
+    zones = [zone for zone in model.zones if zone.body == "barrier"]
+    above = sum(_work_above(zone, -model.start[0][zone.places()][:, :, 2]) for zone in zones)
+    whole = float(sum(zone.spent()[1].sum() for zone in zones))
+    return above / whole if whole else 0.0
 
 
-def _share_above(zone: YieldingZone, nodes: Array) -> float:
-    """Return the share above `DEPTH` of elements whose nodes lie ``nodes`` (m, 8), m, under the surface.
+def _work_above(zone: YieldingZone, nodes: Array) -> float:
+    """Return the work, J, above `DEPTH` of elements whose nodes lie ``nodes`` (m, 8), m, under the surface.
 
     Within an element work divides as plastic strain does; a Gauss point's is spread over half the height.
     """
@@ -49,7 +49,7 @@ def _share_above(zone: YieldingZone, nodes: Array) -> float:
     strain, work = zone.spent()
     total = strain.sum(axis=1)
     parts = np.divide((above * strain).sum(axis=1), total, out=np.zeros_like(total), where=total > 0)
-    return float(parts @ work / work.sum()) if work.any() else 0.0
+    return float(parts @ work)
 
 
 DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
@@ -115,7 +115,7 @@ def border_strain(model: Model, zone: YieldingZone) -> float:
     g = model.geometry
     mesh = g.rod.mesh if zone.body == "rod" or g.barrier is None else g.barrier
     yields = g.may_yield[zone.body]
-    border = np.isin(mesh.cells[yields], mesh.cells[~yields]).any(axis=1)
+    border = np.isin(mesh.cells[zone.cells], mesh.cells[~yields]).any(axis=1)
     return float(np.max(zone.plastic_strain(), where=border, initial=0.0))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos, sin
 
@@ -13,6 +14,7 @@ from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
+from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
@@ -105,14 +107,23 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
-def cell_shear(scene: Scene, z: Array, count: int) -> Array:
-    """Return the shear moduli (count,), Pa: of the rod's cells, at ``z`` (k,), m, then the barrier's."""
+def cell_shear(scene: Scene, z: Array, depth: Array) -> Array:
+    """Return the shear moduli, Pa, of the rod's cells at ``z`` (k,), m, then the barrier's at ``depth``."""
     rod = scene.projectile
     metals = [part.material for part in rod.segments] or [rod.material]
-    ends = np.array([part.to for part in rod.segments[:-1]])
-    shear = np.full(count, lame_constants(scene.barrier.material.E, scene.barrier.material.nu)[1])
-    shear[: len(z)] = np.array([lame_constants(m.E, m.nu)[1] for m in metals])[np.searchsorted(ends, z)]
-    return shear
+    strata = scene.barrier.strata
+    return np.concatenate(
+        [
+            _shear([part.to for part in rod.segments[:-1]], metals, z),
+            _shear([end for end, _ in strata[:-1]], [material for _, material in strata], depth),
+        ]
+    )
+
+
+def _shear(ends: Sequence[float], materials: Sequence[Material], place: Array) -> Array:
+    """Return the shear moduli, Pa, at places, m, among materials that end at ``ends``, m, the last open."""
+    moduli = np.array([lame_constants(m.E, m.nu)[1] for m in materials])
+    return np.asarray(moduli[np.searchsorted(np.array(ends), place)])
 
 
 def mises(gradient: Array, u: Array, shear: Array) -> Array:
@@ -150,12 +161,14 @@ class FieldSampler:
         """Prepare."""
         g = model.geometry
         points, cells, places = g.rod_points, g.rod.mesh.cells, model.layout.rod
+        depth = np.zeros(0)
         if g.barrier is not None:
+            depth = -g.barrier.points[g.barrier.cells, 2].mean(axis=1)
             cells = np.concatenate([cells, g.barrier.cells + len(points)])
             points = np.concatenate([points, g.barrier.points])
             places = np.concatenate([places, model.layout.barrier])
         body = (np.arange(len(cells)) >= len(g.rod.mesh.cells)).astype(np.int8)
-        shear = cell_shear(scene, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), len(cells))
+        shear = cell_shear(scene, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), depth)
         return cls(model, view, shear, points, cells, body, places, centre_gradients(points, cells))
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:
@@ -172,7 +185,7 @@ class FieldSampler:
         local[:n] = self._turned_back(state, x[:n]) - self.points[:n]
         stress, strain = mises(self.gradient, local[self.cells], self.shear), np.zeros(len(self.cells))
         for zone in self.model.zones:
-            rows = self._yielding(zone.body)
+            rows = zone.cells + (0 if zone.body == "rod" else len(self.model.geometry.rod.mesh.cells))
             stress[rows], strain[rows] = zone.mises(), zone.plastic_strain()
         return {"mises": stress, "plastic_strain": strain}
 
@@ -180,8 +193,3 @@ class FieldSampler:
         angle = self.view.angle(state, self.model)
         c, s = np.cos(angle), np.sin(angle)
         return np.stack([c * x[:, 0] + s * x[:, 2], x[:, 1], c * x[:, 2] - s * x[:, 0]], axis=1)
-
-    def _yielding(self, body: str) -> Ints:
-        g = self.model.geometry
-        first = 0 if body == "rod" else len(g.rod.mesh.cells)
-        return first + np.flatnonzero(g.may_yield[body])

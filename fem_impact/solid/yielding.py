@@ -24,7 +24,7 @@ class YieldingZone:
 
     Attributes
     ----------
-    body : ``rod`` or ``barrier``
+    body : ``rod`` or ``barrier``; cells : (count,) int64, numbers of the elements in its mesh
     count : number of true elements
     blocks : their places and state
     around : nodes (k, 3), starts and entries for `subtract_nodal`
@@ -37,6 +37,7 @@ class YieldingZone:
 
     moving: ClassVar[tuple[str, ...]] = ("blocks.stress", "blocks.strain", "blocks.flow", "blocks.work")
     body: str
+    cells: Ints
     count: int
     blocks: Blocks
     around: tuple[Counts, Ints, Counts]
@@ -51,6 +52,7 @@ class YieldingZone:
     def of(
         cls,
         body: str,
+        cells: Ints,
         dof: Ints,
         points: Array,
         E: float,
@@ -60,7 +62,7 @@ class YieldingZone:
         full: bool = False,
         strength: Array | None = None,
     ) -> YieldingZone:
-        """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
+        """Build from numbers (m,), places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
 
         ``strength`` (m, 8) is a factor of the flow stress at each Gauss point, 1 unless given.
         """
@@ -82,7 +84,9 @@ class YieldingZone:
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         room = np.zeros(ROWS * LANES)
-        return cls(body, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, law.rate, full)
+        return cls(
+            body, cells, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, law.rate, full
+        )
 
     def add(self, state: State) -> None:
         """Advance the blocks and subtract their nodal forces."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.errors import RunError, SceneError
+from fem_impact.plan.layers import require_one_material
 from fem_impact.plan.limits import require_turned
 from fem_impact.verdict.change import (
     Answer,
@@ -123,6 +124,7 @@ def assess(
     """
     _check(fidelity, tolerance, budget_s)
     require_turned(scene, "a verdict")
+    require_one_material(scene, "a verdict")
     tell("the reduced model, at this inclination and at others ...")
     pair, notes = modal_pair(scene), list[str]()
     failed = unfinished(pair)

@@ -22,6 +22,7 @@ SECOND = {f"{name}-tip-a": name for name in ("t3-machined", "t3-contaminated", "
 OWN_BARRIERS = ("plate-10mm", "free-barrier-5kg", "moving-barrier", "spinning-rod")
 OTHER_METALS = ("aluminium-rod", "tungsten-rod")
 OWN_SHAPES = ("tube", "ogive", "heavy-tail", "sphere-cone")
+LAYERS = ("layered",)
 
 
 def test_the_thirteen_sets_and_others_are_shipped():
@@ -34,6 +35,7 @@ def test_the_thirteen_sets_and_others_are_shipped():
         *OWN_BARRIERS,
         *OWN_SHAPES,
         *OTHER_METALS,
+        *LAYERS,
     )
     assert shipped() == (*MEASURED_SETS, *others)
     assert tuple(set_ids()) == MEASURED_SETS
