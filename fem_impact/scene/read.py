@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from math import isclose
 from pathlib import Path
-from typing import Any, NoReturn, TypeVar
+from typing import Any
 
-from fem_impact.errors import SceneError, UsageError, did_you_mean
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene import fields, library
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_choice, check_names, check_text
-from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.own_mesh import OwnMesh
@@ -29,6 +28,7 @@ from fem_impact.scene.shapes import (
     sizes_of,
     stated_points,
 )
+from fem_impact.scene.tables import Table, check_keys, listed, needed, numbers_of, within
 from fem_impact.scene.types import (
     OWN,
     Accuracy,
@@ -111,8 +111,6 @@ def _parse(text: str, source: str) -> dict[str, Any]:
 SMOOTH = Surface("custom", 0.0, 0.0, 0.0, "no surface is stated and no friction effect named")
 SEGMENT = '{to = "50 mm", material = "rod-steel"}'
 ROD = ("length", "diameter", "tip_radius")
-T = TypeVar("T")
-Table = Mapping[str, Any]
 _TOP = (
     "id",
     "title",
@@ -133,22 +131,22 @@ def read_scene(data: Table) -> Scene:
     """Make a scene from its tables; keys in messages are dotted from the top."""
     if not isinstance(data, Mapping):
         raise SceneError("a scene must be a table of tables.", value=data)
-    _check_keys(data, _TOP)
+    check_keys(data, _TOP)
     effects = check_names(data.get("effects", "auto"), "effects")
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
     scene = Scene(
-        id=_needed(data, "id"),
+        id=needed(data, "id"),
         title=data.get("title", data["id"]),
-        projectile=_within(data, "projectile", _projectile),
-        barrier=_within(data, "barrier", _barrier),
-        surface=_within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
-        impact=_within(data, "impact", _impact),
+        projectile=within(data, "projectile", _projectile),
+        barrier=within(data, "barrier", _barrier),
+        surface=within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
+        impact=within(data, "impact", _impact),
         effects=effects,
-        accuracy=_within(data, "accuracy", _accuracy, {}),
-        save=_within(data, "save", lambda t: Save(**_numbers(t, fields.SAVE)), {}),
-        heating=_within(data, "heating", lambda t: Heating(**_numbers(t, fields.HEATING)), {}),
+        accuracy=within(data, "accuracy", _accuracy, {}),
+        save=within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
+        heating=within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
         measured=data.get("measured"),
         restitution=restitution,
     )
@@ -187,7 +185,7 @@ def _projectile(table: Table) -> ProjectileSpec:
     """Read a rod with a tip, a named shape, a profile or a mesh, with a bore and segments or without."""
     own = {
         "bore": stated_points(table.get("bore", ()), "bore"),
-        "segments": _tables(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
+        "segments": listed(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
     }
     known = {key: value for key, value in table.items() if key not in own}
     if own["segments"]:
@@ -202,26 +200,26 @@ def _projectile(table: Table) -> ProjectileSpec:
 
 
 def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    _check_keys(table, ("profile", "profile_smooth", "material"))
+    check_keys(table, ("profile", "profile_smooth", "material"))
     points = stated_points(table["profile"], "profile")
     shape = Profile(points, table.get("profile_smooth", False))
-    return ProjectileSpec.turned(shape, _within(table, "material", _material), **own)
+    return ProjectileSpec.turned(shape, within(table, "material", _material), **own)
 
 
 def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
-    _check_keys(table, ("mesh", "mesh_unit", "mesh_content", "material"))
+    check_keys(table, ("mesh", "mesh_unit", "mesh_content", "material"))
     if own["bore"]:
         raise SceneError("stands beside a mesh, which has its own.", key="bore", remedy="Leave it out.")
     path = check_text(table["mesh"], "mesh", 1000)
     mesh = OwnMesh.of(path, table.get("mesh_unit", "m"), table.get("mesh_content"))
-    return ProjectileSpec.meshed(mesh, _within(table, "material", _material), own["segments"])
+    return ProjectileSpec.meshed(mesh, within(table, "material", _material), own["segments"])
 
 
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     """Read a shape by name; those that are rods with a published kind of tip become such rods."""
     name = table["shape"]
-    sizes = _numbers(table, sizes_of(name), ("shape", "material"))
-    material = _within(table, "material", _material)
+    sizes = numbers_of(table, sizes_of(name), ("shape", "material"))
+    material = within(table, "material", _material)
     if name not in TIPS:
         return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values())), material, **own)
     radius = {"flat": 0.0, "hemisphere": sizes["diameter"] / 2}.get(name) or sizes.get("edge_radius", 0.0)
@@ -230,63 +228,47 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     )
 
 
-def _tables(tables: Any, key: str, read: Callable[[Table], T], example: str) -> tuple[T, ...]:
-    """Read a list of tables, each by ``read``; messages name its number, from 1."""
-    if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
-        raise SceneError(f"must be a list of {key}.", key=key, remedy=f"Write {key} = [{example}, ...].")
-
-    def one(number: int, table: Table) -> T:
-        try:
-            return read(table)
-        except SceneError as error:
-            raise error.under(f"{key}[{number}]") from None
-
-    return tuple(one(number, table) for number, table in enumerate(tables, 1))
-
-
 def _segment(table: Table) -> Segment:
-    _check_keys(table, ("to", "material"))
-    return Segment(
-        parse_quantity(_needed(table, "to"), "length", "to"), _within(table, "material", _material)
-    )
+    check_keys(table, ("to", "material"))
+    return Segment(parse_quantity(needed(table, "to"), "length", "to"), within(table, "material", _material))
 
 
 def _layer(table: Table) -> Layer:
     return Layer(
-        **_numbers(table, fields.LAYER, ("material",)), material=_within(table, "material", _material)
+        **numbers_of(table, fields.LAYER, ("material",)), material=within(table, "material", _material)
     )
 
 
 def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     refuse_as_tip(table.get("tip"))
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
-    numbers = _numbers(table, fields.PROJECTILE, ("tip", "material"), plain)
+    numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     return ProjectileSpec(
-        tip=_needed(table, "tip"), material=_within(table, "material", _material), **numbers, **own
+        tip=needed(table, "tip"), material=within(table, "material", _material), **numbers, **own
     )
 
 
 def _barrier(table: Table) -> Barrier:
     words = ("boundary", "support")
-    numbers = _numbers(table, fields.BARRIER, ("material", "layers", *words))
+    numbers = numbers_of(table, fields.BARRIER, ("material", "layers", *words))
     given = {key: table[key] for key in words if key in table}
     if "layers" in table:
-        given["layers"] = _tables(
+        given["layers"] = listed(
             table["layers"], "layers", _layer, '{thickness = "2 mm", material = "rod-steel"}'
         )
-    return Barrier(_within(table, "material", _material), **numbers, **given)
+    return Barrier(within(table, "material", _material), **numbers, **given)
 
 
 def _impact(table: Table) -> Impact:
     """Read a motion that a height, a speed or velocities state."""
     known = (*fields.IMPACT, fields.HEIGHT, fields.SPEED)
     given = {p.key for p in known if {p.key, p.si_key} & set(table)}
-    _check_keys(table, (*(p.key for p in known), *(p.si_key for p in known)), [p.key for p in known])
+    check_keys(table, (*(p.key for p in known), *(p.si_key for p in known)), [p.key for p in known])
     way = the_way(given)
     if way == WAYS[2]:
-        return Impact(**_numbers(table, fields.IMPACT))
+        return Impact(**numbers_of(table, fields.IMPACT))
     made = Impact.dropped if way == WAYS[0] else Impact.thrown
-    return made(**_numbers(table, (fields.ANGLE, fields.OMEGA, *(p for p in known if p.key in way))))
+    return made(**numbers_of(table, (fields.ANGLE, fields.OMEGA, *(p for p in known if p.key in way))))
 
 
 def _accuracy(table: Table | str) -> Accuracy:
@@ -294,7 +276,7 @@ def _accuracy(table: Table | str) -> Accuracy:
     if isinstance(table, str):
         return Accuracy(target=parse_share(table, ""))
     choices = ("element", "yielding_element", "unresolved")
-    numbers = _numbers(table, fields.ACCURACY, (*choices, "target"))
+    numbers = numbers_of(table, fields.ACCURACY, (*choices, "target"))
     numbers |= {key: table[key] for key in choices if key in table}
     if "target" not in table:
         return Accuracy(**numbers)
@@ -309,13 +291,13 @@ def _accuracy(table: Table | str) -> Accuracy:
 def _material(table: Table | str) -> Material:
     if isinstance(table, str):
         return library.material(table)
-    numbers = _numbers(table, fields.MATERIAL, ("name", "law", "rate"))
+    numbers = numbers_of(table, fields.MATERIAL, ("name", "law", "rate"))
     stated: dict[str, Any] = {
         f.key: f.checked(numbers[f.key]) for f in fields.MATERIAL if numbers[f.key] is not None
     }
     law = {"law": table["law"]} if "law" in table else {}
-    rate = _within(table, "rate", _rate) if "rate" in table else None
-    made = Material(name=_needed(table, "name"), **stated, **law, rate=rate)
+    rate = within(table, "rate", _rate) if "rate" in table else None
+    made = Material(name=needed(table, "name"), **stated, **law, rate=rate)
     known = library.materials().get(made.name)
     if known is not None and known != made:
         raise SceneError(
@@ -328,16 +310,16 @@ def _material(table: Table | str) -> Material:
 
 
 def _rate(table: Table) -> Rate:
-    law = check_choice(_needed(table, "law"), tuple(RATES), "law")
-    return RATES[law](**_numbers(table, fields.RATES[law], ("law",)))
+    law = check_choice(needed(table, "law"), tuple(RATES), "law")
+    return RATES[law](**numbers_of(table, fields.RATES[law], ("law",)))
 
 
 def _surface(table: Table) -> Surface:
-    state = _needed(table, "state")
+    state = needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
     skin = [f.key for f in fields.SKIN] + [f.si_key for f in fields.SKIN if f.si_key]
-    _check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
+    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
     known = library.surface(state)
     for key, value in table.items():
         if key in skin:
@@ -349,73 +331,12 @@ def _surface(table: Table) -> Surface:
                 value=value,
                 remedy='Leave it out, or write state = "custom" with your own friction and its source.',
             )
-    layer = _numbers({key: value for key, value in table.items() if key in skin}, fields.SKIN)
+    layer = numbers_of({key: value for key, value in table.items() if key in skin}, fields.SKIN)
     return replace(known, **layer)
 
 
 def _custom_surface(table: Table) -> Surface:
-    f = _needed(table, "friction")
+    f = needed(table, "friction")
     wanted = (*fields.SURFACE, *fields.SKIN)
-    numbers = _numbers(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
-    return Surface(state="custom", source=_needed(table, "source"), **numbers)
-
-
-def _numbers(
-    table: Table, wanted: tuple[Parameter, ...], others: Iterable[str] = (), instead: Table | None = None
-) -> dict[str, Any]:
-    """Read the numbers of one table: each with its unit, as its SI key, or left to its default.
-
-    ``others`` are keys of the table that hold no number; ``instead`` are defaults that replace the tables'.
-    """
-    keys = [f.key for f in wanted]
-    _check_keys(table, [*others, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*others, *keys])
-    return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
-
-
-def _number(table: Table, field: Parameter, default: Any) -> Any:
-    if field.si_key and field.si_key in table:
-        if field.key in table:
-            raise SceneError(
-                f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
-            )
-        return parse_number(table[field.si_key], field.si_key)
-    if field.key not in table:
-        return default if default is not None or field.derived else _stated(field)
-    value = table[field.key]
-    if field.dimension:
-        return parse_quantity(value, field.dimension, field.key)
-    parse_number(value, field.key)
-    return value
-
-
-def _stated(field: Parameter) -> NoReturn:
-    """Refuse a table without a number that nothing else stands for."""
-    how = "with its unit" if field.dimension else "as a bare number"
-    remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
-    raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)
-
-
-def _within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:
-    """Read one sub-table and place its complaints below its key."""
-    table = data.get(key, default) if default is not None else _needed(data, key)
-    if not isinstance(table, Mapping) and not (key in ("material", "accuracy") and isinstance(table, str)):
-        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
-    try:
-        return read(table)
-    except SceneError as error:
-        raise error.under(key) from None
-
-
-def _needed(table: Table, key: str) -> Any:
-    if key not in table:
-        raise SceneError(
-            "is missing.", key=key, remedy="`fem-impact scenes` lists complete scenes to start from."
-        )
-    return table[key]
-
-
-def _check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) -> None:
-    for key in table:
-        if key not in known:
-            remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
-            raise SceneError("is not a known key.", key=str(key), remedy=remedy)
+    numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
+    return Surface(state="custom", source=needed(table, "source"), **numbers)

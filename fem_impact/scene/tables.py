@@ -1,0 +1,90 @@
+"""Tables of a scene as stated: their numbers, inner tables and keys, with complaints that name the place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, NoReturn, TypeVar
+
+from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.scene.fields import Parameter
+from fem_impact.scene.units import parse_number, parse_quantity
+
+T = TypeVar("T")
+Table = Mapping[str, Any]
+
+
+def numbers_of(
+    table: Table, wanted: tuple[Parameter, ...], others: Iterable[str] = (), instead: Table | None = None
+) -> dict[str, Any]:
+    """Read the numbers of one table: each with its unit, as its SI key, or left to its default.
+
+    ``others`` are keys of the table that hold no number; ``instead`` are defaults that replace the tables'.
+    """
+    keys = [f.key for f in wanted]
+    check_keys(table, [*others, *keys, *(f.si_key for f in wanted if f.si_key)], shown=[*others, *keys])
+    return {f.key: _number(table, f, (instead or {}).get(f.key, f.default)) for f in wanted}
+
+
+def _number(table: Table, field: Parameter, default: Any) -> Any:
+    if field.si_key and field.si_key in table:
+        if field.key in table:
+            raise SceneError(
+                f"is given twice, here and as {field.si_key}.", key=field.key, remedy="Keep one."
+            )
+        return parse_number(table[field.si_key], field.si_key)
+    if field.key not in table:
+        return default if default is not None or field.derived else _stated(field)
+    value = table[field.key]
+    if field.dimension:
+        return parse_quantity(value, field.dimension, field.key)
+    parse_number(value, field.key)
+    return value
+
+
+def within(data: Table, key: str, read: Callable[[Any], T], default: Table | None = None) -> T:
+    """Read one sub-table and place its complaints below its key."""
+    table = data.get(key, default) if default is not None else needed(data, key)
+    if not isinstance(table, Mapping) and not (key in ("material", "accuracy") and isinstance(table, str)):
+        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
+    try:
+        return read(table)
+    except SceneError as error:
+        raise error.under(key) from None
+
+
+def listed(tables: Any, key: str, read: Callable[[Table], T], example: str) -> tuple[T, ...]:
+    """Read a list of tables, each by ``read``; messages name its number, from 1."""
+    if not isinstance(tables, list) or not tables or not all(isinstance(table, Mapping) for table in tables):
+        raise SceneError(f"must be a list of {key}.", key=key, remedy=f"Write {key} = [{example}, ...].")
+
+    def one(number: int, table: Table) -> T:
+        try:
+            return read(table)
+        except SceneError as error:
+            raise error.under(f"{key}[{number}]") from None
+
+    return tuple(one(number, table) for number, table in enumerate(tables, 1))
+
+
+def needed(table: Table, key: str) -> Any:
+    """Return the value of a key that must be there."""
+    if key not in table:
+        raise SceneError(
+            "is missing.", key=key, remedy="`fem-impact scenes` lists complete scenes to start from."
+        )
+    return table[key]
+
+
+def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) -> None:
+    """Refuse a key that is not known, and name the nearest, or those ``shown``."""
+    for key in table:
+        if key not in known:
+            remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
+            raise SceneError("is not a known key.", key=str(key), remedy=remedy)
+
+
+def _stated(field: Parameter) -> NoReturn:
+    """Refuse a table without a number that nothing else stands for."""
+    how = "with its unit" if field.dimension else "as a bare number"
+    remedy = f"Give it {how}; `fem-impact scenes` lists complete scenes."
+    raise SceneError(f"is missing: the {field.meaning}.", key=field.key, remedy=remedy)

@@ -1,0 +1,91 @@
+"""Layers as a scene states them: read, written, refused where no mesh and no model holds them."""
+
+from math import inf
+
+import pytest
+
+from fem_impact.errors import SceneError
+from fem_impact.plan.plan import plan
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import digest, to_dict, to_toml
+
+PLATE = {"thickness": "2 mm", "material": "steel-4340"}
+
+
+def layered(layers, fidelity="solid", **barrier):
+    data = to_dict(load("layered"))
+    data["barrier"] = {"material": "aluminium-6061-t6", "layers": layers, **barrier}
+    scene = read_dict(data)
+    plan(scene, fidelity)
+    return scene
+
+
+def test_materials_are_those_from_the_top_down():
+    barrier = layered([PLATE, {"thickness": "4 mm", "material": "copper"}]).barrier
+    assert [(round(end, 9), metal.name) for end, metal in barrier.strata] == [
+        (2e-3, "steel-4340"),
+        (6e-3, "copper"),
+        (inf, "aluminium-6061-t6"),
+    ]
+    assert barrier.struck.name == "steel-4340"
+
+
+def test_a_written_scene_reads_back_equal_and_layers_are_part_of_it():
+    import tomllib
+
+    one = layered([PLATE])
+    assert read_dict(tomllib.loads(to_toml(one))) == one
+    assert digest(one) != digest(layered([{**PLATE, "thickness": "2.5 mm"}]))
+
+
+@pytest.mark.parametrize(
+    ("layers", "more", "reason"),
+    [
+        ("steel", {}, r"barrier.layers: must be a list of layers\. Write layers = \[\{thickness"),
+        ([], {}, "must be a list of layers"),
+        ([{"material": "steel-4340"}], {}, r"barrier.layers\[1\].thickness"),
+        ([PLATE, {**PLATE, "thickness": "-1 mm"}], {}, r"barrier.layers\[2\].thickness = .*at least"),
+        ([{**PLATE, "thickness": 2}], {}, r"barrier.layers\[1\].thickness"),
+        ([{**PLATE, "hardness": 3}], {}, r"barrier.layers\[1\].hardness: is not a known key"),
+        ([{**PLATE, "material": "unobtainium"}], {}, r"barrier.layers\[1\].material"),
+        ([PLATE], {"thickness": "10 mm", "support": "infinite"}, "lie on a plate that bends"),
+        ([PLATE], {"mass": "5 kg"}, "free to move: only a massive one"),
+        (
+            [{**PLATE, "thickness": "0.6 mm"}],
+            {},
+            r"layers\[1\].thickness = .0.6 mm.: fits no row of .* cells, 2.38 mm wide: .*across = \d+",
+        ),
+    ],
+)
+def test_what_cannot_be_layered_is_refused_with_what_to_do(layers, more, reason):
+    with pytest.raises(SceneError, match=reason):
+        layered(layers, **more)
+
+
+def test_the_advised_cells_take_the_thin_layer():
+    data = to_dict(load("layered"))
+    data["barrier"]["layers"][0]["thickness"] = "0.6 mm"
+    with pytest.raises(SceneError) as told:
+        plan(read_dict(data))
+    data["accuracy"]["across"] = int(told.value.remedy.split("across = ")[1].split(",")[0])
+    assert plan(read_dict(data)).scene.accuracy.across > 8
+
+
+def test_the_reduced_model_is_refused_and_the_estimates_are_told():
+    with pytest.raises(SceneError, match="not known to the reduced model, on which the modal fidelity rests"):
+        layered([PLATE], "modal")
+    planned = plan(load("layered"))
+    assert any("first layer alone" in sentence for sentence in planned.validity)
+    assert any("is thin for a contact" in sentence for sentence in planned.warnings)
+    assert plan(load("layered"), "rigid").fidelity == "rigid"
+
+
+def test_a_soft_base_is_seen_to_yield_under_a_hard_layer_that_cannot():
+    data = to_dict(load("layered"))
+    on = {}
+    for base in ("lead", "titanium-6al-4v"):
+        data["barrier"] = {"material": base, "layers": [{"thickness": "1.5 mm", "material": "alumina"}]}
+        data["effects"] = "auto"
+        on[base] = "barrier-elastoplastic" in plan(read_dict(data)).active
+    assert on == {"lead": True, "titanium-6al-4v": False}
