@@ -85,15 +85,13 @@ def build_geometry(
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, fine = _touching(rod.mesh, points, zones)
     may_yield = {
-        "rod": fine
-        & _round(points[rod.mesh.cells], zones.reach, zones.half)
-        & _first_segment(scene, rod.mesh)
+        "rod": fine & _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(scene, rod.mesh)
     }
     barrier = None
     if meshed_barrier:
         barrier = _block(scene, zones)
         split = barrier.level > 0
-        may_yield["barrier"] = split & _round(barrier.points[barrier.cells], zones.along, zones.half)
+        may_yield["barrier"] = split & _round(barrier, barrier.points, zones.along, zones.half)
     sizes = zones.tip_size, zones.barrier_size
     return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching)
 
@@ -173,15 +171,14 @@ def _touching(mesh: HexMesh, points: Array, zones: Zones) -> tuple[Bools, Bools]
     return np.asarray(near), np.asarray(near)
 
 
-def _round(corners: Array, along: float, radii: tuple[float, float, float]) -> Bools:
-    """Return the mask (m,) of the cells with ``corners`` (m, 8, 3), m, that reach into an ellipsoid.
-
-    It lies about the contact.
+def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float, float]) -> Bools:
+    """Return the mask (m,) of the cells that reach into an ellipsoid about the contact.
 
     The ellipsoid has half axes ``radii``, m, and is swept by ``along``, m, towards -t.
     """
     core = Zone(np.zeros(3), np.eye(3), np.array([-along, 0.0, 0.0]) / radii, np.zeros(3))
-    return np.asarray(core.gap(corners / radii, np.zeros(len(corners))) < ROUND)
+    away = core.gap(points[mesh.cells] / radii, np.zeros(len(mesh.cells)))
+    return np.asarray(away < ROUND)
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:

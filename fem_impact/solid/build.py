@@ -137,8 +137,8 @@ def yielding_zone(
     m, here = part or (body.material, body.yields)
     cells = np.flatnonzero(body.yields & here)
     nodes = body.mesh.cells[cells]
-    where, full = (body.places[nodes], body.points[nodes]), body.yielding == "full"
-    return YieldingZone.of(body.name, cells, *where, m.E, m.nu, law, layout.dummy, full, strength)
+    dof, points, full = body.places[nodes], body.points[nodes], body.yielding == "full"
+    return YieldingZone.of(body.name, dof, points, m.E, m.nu, law, layout.dummy, full, strength, cells)
 
 
 def facing_skin(body: MeshedBody) -> Ints:

@@ -52,7 +52,6 @@ class YieldingZone:
     def of(
         cls,
         body: str,
-        cells: Ints,
         dof: Ints,
         points: Array,
         E: float,
@@ -61,10 +60,12 @@ class YieldingZone:
         dummy: Ints,
         full: bool = False,
         strength: Array | None = None,
+        cells: Ints | None = None,
     ) -> YieldingZone:
-        """Build from numbers (m,), places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
+        """Build from places (m, 8, 3) and start positions (m, 8, 3) of the elements' nodes.
 
-        ``strength`` (m, 8) is a factor of the flow stress at each Gauss point, 1 unless given.
+        ``strength`` (m, 8) is a factor of the flow stress at each Gauss point, 1 unless given; ``cells``
+        (m,) are the numbers of the elements in the body's mesh, counted from 0 unless given.
         """
         blocks = -(-len(dof) // LANES)
         filled = np.concatenate([dof, np.broadcast_to(dummy, (blocks * LANES - len(dof), 8, 3))])
@@ -84,9 +85,9 @@ class YieldingZone:
         )
         constants = np.array([law.yield_stress, law.slope, law.exponent])
         room = np.zeros(ROWS * LANES)
-        return cls(
-            body, cells, len(dof), state, _around(dof), room, G, lame + 2 * G / 3, constants, law.rate, full
-        )
+        numbers, bulk = np.arange(len(dof)) if cells is None else cells, lame + 2 * G / 3
+        around = _around(dof)
+        return cls(body, numbers, len(dof), state, around, room, G, bulk, constants, law.rate, full)
 
     def add(self, state: State) -> None:
         """Advance the blocks and subtract their nodal forces."""
