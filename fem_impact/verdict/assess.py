@@ -169,7 +169,7 @@ def _solid(
 ) -> tuple[Change | None, list[str]]:
     """Return what finite elements say, None where the budget allows no mesh or no run gives an e; and notes.
 
-    One mesh alone counts where the reduced model, ``quick``, does not contradict it.
+    One mesh alone counts where the reduced model, ``quick``, bears it out.
     """
     ladder, notes = Ladder.of(scene, *means), list[str]()
     least = LEAST_PAIRS if fidelity == "solid" else 0
@@ -187,7 +187,7 @@ def _solid(
             )
             ladder.drop()
             break
-    return _found(ladder, quick, notes), notes
+    return _found(ladder, quick, tolerance, notes), notes
 
 
 def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int) -> bool:
@@ -195,16 +195,21 @@ def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int)
     if not ladder.pairs or len(ladder.pairs) < least:
         return False
     change = ladder.change()
-    supported = len(ladder.pairs) >= LEAST_PAIRS or (quick is not None and quick.meets(change))
+    supported = len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance)
     return supported and change.answer(tolerance) != "undecided"
 
 
-def _found(ladder: Ladder, quick: Change | None, notes: list[str]) -> Change | None:
-    """Return what the ladder says; the band of one mesh that the reduced model contradicts holds both."""
+def _bears_out(quick: Change | None, change: Change, tolerance: float) -> bool:
+    """Say whether the reduced model agrees with one mesh, and is itself known well enough for that to count."""
+    return quick is not None and quick.band <= tolerance and quick.meets(change)
+
+
+def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[str]) -> Change | None:
+    """Return what the ladder says; the band of one mesh that the reduced model does not bear out holds both."""
     if not ladder.pairs:
         return None
     change = ladder.change()
-    if len(ladder.pairs) >= LEAST_PAIRS or quick is None or quick.meets(change):
+    if len(ladder.pairs) >= LEAST_PAIRS or quick is None or _bears_out(quick, change, tolerance):
         return change
     notes.append(
         f"One mesh of finite elements says {change.value:+.3f} ± {change.band:.3f}, the reduced model "
