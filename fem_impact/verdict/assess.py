@@ -200,12 +200,12 @@ def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int)
 
 
 def _bears_out(quick: Change | None, change: Change, tolerance: float) -> bool:
-    """Say whether the reduced model agrees with one mesh, and is itself known well enough for that to count."""
+    """Say whether the reduced model agrees with one mesh, and is known well enough for that to count."""
     return quick is not None and quick.band <= tolerance and quick.meets(change)
 
 
 def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[str]) -> Change | None:
-    """Return what the ladder says; the band of one mesh that the reduced model does not bear out holds both."""
+    """Return what the ladder says; the band of one mesh that nothing bears out holds the reduced model's."""
     if not ladder.pairs:
         return None
     change = ladder.change()
