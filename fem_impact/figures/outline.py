@@ -43,7 +43,7 @@ def drawn(body: Body, touch: tuple[float, float], joints: Sequence[float] = ()) 
 
 
 HEIGHT = 3.2  # inches
-POINTS = 1500
+POINTS = 400
 FILLS = ("sky", "orange", "green", "purple", "yellow", "sand")  # one material after the other
 Part = tuple[float, str]
 """End of a segment, m from the tip, and the name of its material."""
