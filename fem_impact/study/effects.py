@@ -83,7 +83,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     """Return the runs of every scene with ``auto`` and all effects; of `COSTED`, those with one changed."""
     jobs = []
     for name, scene in _scenes(request).items():
-        jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", everything(scene))]
+        jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", all_on(scene))]
         if name in COSTED:
             jobs += [Job(f"{name}{change}", replace(scene, effects=e)) for change, e in _changes(scene)]
     return jobs
@@ -106,11 +106,23 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         if isinstance(run := results[f"{name}{change}"], Outcome)
     ]
     beside = [
-        expected_row(name, whole, quick_impact(everything(scenes[name])))
+        expected_row(name, whole, quick_impact(all_on(scenes[name])))
         for name, (_, whole) in pairs.items()
         if isinstance(whole, Outcome)
     ]
     return publish(_study_report(rows, costs, beside), request, results)
+
+
+def all_on(scene: Scene) -> Scene:
+    """Return the scene with all effects on that it can have."""
+    whole, impossible = everything(scene), _impossible(scene)
+    return replace(whole, effects=tuple(name for name in whole.effects if name not in impossible))
+
+
+def _impossible(scene: Scene) -> set[str]:
+    """Return the effects of which the scene does not state what they are about."""
+    skin = set() if scene.surface.skin_depth else {"machined-skin"}
+    return skin if scene.barrier.bends else skin | {"plate-bending"}
 
 
 def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:
@@ -182,6 +194,8 @@ def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
     """Return each change of one effect: its suffix in the job's name, and the scene's ``effects``."""
     changes: list[tuple[str, tuple[str, ...]]] = []
     for choice in choices(scene):
+        if choice.name in _impossible(scene):
+            continue
         if choice.name in BARRIERS and not choice.on:
             changes.append((f"-with-{choice.name}", ("auto", choice.name)))
         elif choice.name not in BARRIERS:

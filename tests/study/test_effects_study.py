@@ -6,8 +6,8 @@ from math import isclose
 import pytest
 from outcome_maker import altered, outcome
 
-from fem_impact.effects.registry import BARRIERS
-from fem_impact.effects.slots import Harm, quick_impact
+from fem_impact.effects.registry import BARRIERS, EFFECTS
+from fem_impact.effects.slots import Harm, ModelSpec, quick_impact
 from fem_impact.physics.beam_impact import BeamImpact
 from fem_impact.plan.choose import active, choices, everything, resolved
 from fem_impact.run.simulate import simulate
@@ -17,6 +17,15 @@ from fem_impact.study.document import Request
 from fem_impact.study.effects import COSTED, DESIGNED, cost_row, expected_change, expected_row, plan, row
 
 RUN = outcome(e_edge=0.4, E_vib_over_E_0=2e-3, cpu_s=3.0, steps=100, effects=["vibration", "friction"])
+
+
+def test_no_job_has_an_effect_that_its_scene_cannot_have(tmp_path):
+    """Each effect fills the model of every job that has it, or its run would fail."""
+    for job in plan(Request(tmp_path), {}):
+        whole = active(job.scene)
+        assert not {"machined-skin", "plate-bending"} & set(whole), job.name
+        for name in whole:
+            EFFECTS[name].fill(job.scene, ModelSpec())
 
 
 def test_every_scene_runs_with_auto_and_with_everything(tmp_path):
