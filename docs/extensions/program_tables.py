@@ -18,7 +18,7 @@ from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.plan.measured import summary
 from fem_impact.scene import fields, library
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.tables.table import Table
 from fem_impact.verify.catalogue import PROBLEMS, problem

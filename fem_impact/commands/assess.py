@@ -53,7 +53,7 @@ def _scene(options: Options) -> Scene:
     if options.scene:
         if given:
             remedy = "A scene states its rod and impact itself: change it with --set key=value."
-            raise UsageError("stands beside a scene.", key=given[0], remedy=remedy)
+            raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
         return changed_scene(options.scene, options.changes)
     missing = [f"--{name}" for name in SHORT if not getattr(options, name, None)]
     if options.changes or missing:

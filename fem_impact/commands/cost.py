@@ -80,7 +80,7 @@ def _family(scene: Scene, finest: str) -> list[Mesh]:
     sizes = [mesh.sizes(scene)[0] for mesh in FAMILY]
     if least > sizes[1]:
         raise UsageError(
-            "leaves less than two meshes.",
+            "leaves fewer than two meshes.",
             key="--finest",
             value=finest,
             remedy=f"Give at most {1e3 * sizes[1]:.3g} mm.",

@@ -26,11 +26,14 @@ _IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
 
-def print_outcome(outcome: Outcome, out: Path) -> None:
-    """Print the motion after impact, where the energy went, and every warning."""
+def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
+    """Print the motion after impact, where the energy went, and every warning.
+
+    ``own_tests``: the scene names tests of the user's own, whose arms e is worked out with.
+    """
     lines = [f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}", ""]
-    # only a measured set has arms of the paper
-    arms = ("paper's", "e_paper") if or_none(outcome.restitution.paper.e) is not None else ("tip's", "e_edge")
+    known_by_tests = or_none(outcome.restitution.paper.e) is not None
+    arms = ("tests'" if own_tests else "paper's", "e_paper") if known_by_tests else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
     barrier = outcome.barrier
     moved = any((barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))

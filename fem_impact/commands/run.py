@@ -24,7 +24,7 @@ from fem_impact.options import RunOptions
 from fem_impact.progress import clock_text
 from fem_impact.scene.library import shipped
 from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Scene
+from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
 
@@ -40,7 +40,7 @@ def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
-        problem, remedy = "is of finite elements: this run takes seconds.", "Leave it out."
+        problem, remedy = "is for finite elements only: this run takes seconds.", "Leave it out."
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     say_fall(scene, options)
     _say_plan(scene, options)
@@ -61,7 +61,7 @@ def run(options: Options) -> int:
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
-        print_outcome(outcome, out)
+        print_outcome(outcome, out, own_tests=(scene.measured or "").endswith(OWN))
         _say_comparison(scene, outcome, options)
         _say_screening(scene, options)
     if outcome.validity.finished:

@@ -139,7 +139,8 @@ class LiveMeter:
         from rich.table import Column
 
         line = Column(no_wrap=True, overflow="ellipsis")
-        columns = BarColumn(bar_width=20), TextColumn("{task.description}", markup=False, table_column=line)
+        bar_of = BarColumn(bar_width=20, table_column=Column(width=20))
+        columns = bar_of, TextColumn("{task.description}", markup=False, table_column=line)
         bar = Bar(*columns, console=self._console, auto_refresh=False)
         bar.add_task("")
         bar.start()

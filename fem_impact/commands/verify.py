@@ -26,7 +26,8 @@ from fem_impact.verify.problem import Problem, Verification
 def verify(options: Options) -> int:
     """Run one problem, or all of them; the exit code says whether every check passed."""
     if options.parameters and (options.changes or options.page):
-        raise UsageError("only lists.", key="--parameters", remedy="Leave out --set and --page, or itself.")
+        remedy = "Leave it out, or leave out --set and --page."
+        raise UsageError("lists parameters and runs nothing.", key="--parameters", remedy=remedy)
     if options.parameters:
         return _show_parameters(options)
     if options.page:
@@ -65,7 +66,7 @@ HARD_CASES = (
 def _write_page(options: Options) -> int:
     """Run all problems at their defaults and write the page."""
     if options.problem or options.changes:
-        raise UsageError("takes all problems at their defaults.", key="--page")
+        raise UsageError("runs all problems with their default values.", key="--page")
     path, done = checked_page(options.page), []
     for name in PROBLEMS:
         done.append(problem(name).run())
@@ -158,7 +159,7 @@ def _chosen(options: Options) -> list[str]:
     if not options.only:
         return list(CASES)
     if options.page:
-        raise UsageError("takes all cases.", key="--page", remedy="Leave --only out.")
+        raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
     if options.only not in CASES:
         hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
         raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)

@@ -174,7 +174,7 @@ def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) 
 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> NotMeasured:
-    how = "is another" if distance == inf else f"is {distance:.2g} times what is allowed away in its"
+    how = "differs in" if distance == inf else f"differs by {distance:.2g} times what is allowed in"
     allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
     return NotMeasured(
         f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "

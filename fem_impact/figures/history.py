@@ -78,6 +78,6 @@ def ledger_picture(history: Table, e_0: float) -> Picture:
     rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
     caption = (
         "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
-        "Strain energies include what stays locked in."
+        "Strain energies include that of residual stress."
     )
     return Picture("ledger", caption, (panel,), 1, Table.of(columns, rows))

@@ -62,7 +62,7 @@ def study_partition_picture(rows: Sequence[Outcome]) -> Picture:
     panel = Panel("", AXIS, "", bars, rows=names, x_range=(0.0, 103.0))
     columns = ("scene_id", *(share.key.name for share in listed))
     numbers = Table.of(columns, zip(names, *fractions.values(), strict=True))
-    caption = "Shares of E₀ after the last separation; a white rest is not known."
+    caption = "Shares of E₀ after the last separation; a white part is not known."
     return Picture("partition", caption, (panel,), 1, numbers)
 
 

@@ -42,7 +42,9 @@ class Provenance:
     versions: Mapping[str, str] = key("versions", "", "Version of Python and of each package that took part.")
     effects: tuple[str, ...] = key("effects", "", "Names of the effects that were in the model.")
     effect_choices: tuple[EffectChoice, ...] | Unknown = key(
-        "effect_choices", "", "Each effect: number, threshold, verdict, harm, cost."
+        "effect_choices",
+        "",
+        "Each effect: number, threshold, verdict, changes without it, share of the run time.",
     )
 
 

@@ -138,7 +138,7 @@ def _surface(scene: Scene, active: Collection[str]) -> str:
     if "friction" not in active or bare in known:
         return ""
     f, source = scene.surface.friction, scene.surface.source
-    return f"friction f = {f:g} is not the committed value of a surface state ({source})"
+    return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"
 
 
 def _idealised(active: Collection[str]) -> str:

@@ -129,9 +129,9 @@ def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
 
 
 def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
-    # only a measured set has arms of the paper
+    # only a scene that names tests has arms of theirs
     measured = not isinstance(outcome.restitution.paper.e, Unknown)
-    restitution = ("e, paper's arms", "e_paper", "") if measured else ("e, the tip's arms", "e_edge", "")
+    restitution = ("e, the tests' arms", "e_paper", "") if measured else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
     cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
     residual = number(outcome.energy.residual, 2)
@@ -165,7 +165,7 @@ def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
 def _arms(outcome: Outcome) -> Markup:
     head = ("arms", "d_c, mm", "d_d, mm", "e", "e_m", "E_ln / E₀", "E_lt / E₀")
     titles = {
-        "paper": "the paper's",
+        "paper": "of the measured tests",
         "edge": "contact on the edge radius",
         "impulse": "centre of the impulse",
     }

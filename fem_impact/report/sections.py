@@ -88,7 +88,7 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
         force = figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
         return section("Over time", paragraph(f"No curves over time: {error}"))
-    return join([section("Ledger over time", ledger), section("Contact force", force)])
+    return join([section("Energy over time", ledger), section("Contact force", force)])
 
 
 def waves_section(folder: Path) -> Markup:

@@ -72,7 +72,7 @@ def _closure(rows: Sequence[Outcome]) -> Verdict:
         Series("(I Omega^2/2)(1 + 1/e_m)", range(len(rows)), identity, "rings"),
         Series("vibration", range(len(rows)), lost, "points"),
     )
-    panel = Panel("Closure of the computed sets", "set", "% of E_0", series, names=_names(rows))
+    panel = Panel("The paper's energy terms, less E_0", "set", "% of E_0", series, names=_names(rows))
     return Verdict("closure", sentence, panel)
 
 

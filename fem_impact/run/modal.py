@@ -36,7 +36,7 @@ from fem_impact.scene.types import Scene
 WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")
-NO_STRESS = Unknown("a local contact law knows no residual stress")
+NO_STRESS = Unknown("the reduced model does not compute residual stress")
 KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
@@ -136,7 +136,7 @@ def _cost(result: ModalResult) -> RunCost:
         cpu=result.cpu,
         setup_wall=KEPT,
         setup_cpu=KEPT,
-        peak_memory=Unknown("the march holds a few vectors; the process is larger than it"),
+        peak_memory=Unknown("the reduced model needs hardly any memory beside that of the program"),
         min_step=result.step,
     )
 
@@ -157,9 +157,9 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
     rows = reduced_table()
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
-        f"Beside the finite elements, over {len(rows)} yielding scenes (the measured sets, and scenes drawn "
-        "at random on coarser meshes), half and nine tenths of them within: "
-        f"{', '.join(parts)}.",
+        f"Error of the reduced model, against the finite elements over {len(rows)} yielding scenes (the "
+        "measured sets, and scenes drawn at random on coarser meshes). Half of them have less than the "
+        f"first number, nine of ten less than the second: {', '.join(parts)}.",
     ]
     own = next((row for row in rows if row["name"] == scene.measured), None)
     if own:

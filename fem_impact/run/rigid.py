@@ -43,7 +43,7 @@ WITHOUT = (
 )
 ASSUMPTIONS = (
     "The rod is rigid, the contact one point of its tip, and the impact takes no time.",
-    "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no tangential give.",
+    "The impulse ratio follows from the sliding path with Coulomb's f: no ploughing, no elastic shear.",
 )
 
 

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from fem_impact.errors import SceneError
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 
 _ID = re.compile(r"[a-z0-9](?:[a-z0-9-]{0,62}[a-z0-9])?")
 

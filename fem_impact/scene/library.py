@@ -12,8 +12,8 @@ from typing import Any
 from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.plugins import added, wrong
 from fem_impact.scene import fields
-from fem_impact.scene.fields import Parameter
 from fem_impact.scene.material import RATES, Material, Rate
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.types import MEASURED_SETS, Surface
 from fem_impact.scene.units import parse_quantity
 

@@ -9,6 +9,7 @@ from typing import ClassVar, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
+from fem_impact.scene.parameter import Parameter
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ class Material:
         return self.yield_stress < inf
 
 
-def _stated(metal: Material) -> tuple[fields.Parameter, ...]:
+def _stated(metal: Material) -> tuple[Parameter, ...]:
     """Return the numbers of a material but for the strengths of one that never yields."""
     absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(metal, key) == inf]
     return tuple(p for p in fields.MATERIAL if p.key not in absent)

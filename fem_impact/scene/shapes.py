@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import SceneError
 from fem_impact.scene.checks import check_choice
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import parse_quantity
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import Any
 
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.fields import Parameter
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
 from fem_impact.scene.types import Accuracy, Scene

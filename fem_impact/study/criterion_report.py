@@ -195,9 +195,9 @@ def _onsets(families: Families, solid: Sequence[str]) -> list[str]:
             f"{r.error:.3f} ± {r.error_high - r.error:.3f} at gamma {r.drop.gamma:.0f}"
             for r in rods[:1] + rods[-1:]
         ]
-        told = "; ".join(passed) if passed else "no level within the map"
+        told = "; ".join(passed) if passed else "less than all stated levels"
         sentences.append(
-            f"{name}, by finite elements: vibration changes e by {told}; it is {' and '.join(tops)}."
+            f"{name}, by finite elements: vibration changes e by {told}; the change is {' and '.join(tops)}."
             if rods
             else f"{name}, by finite elements: no rod was computed (see what failed)."
         )
@@ -244,9 +244,9 @@ def _origin(families: Families, solid: Sequence[str]) -> list[str]:
         powers = [(level, exponent(rods, level)) for level in LEVELS]
         exponents = ", ".join(f"{p:.2f} at {level:.0%}" for level, p in powers if p is not None)
         sentences.append(
-            f"{name}: the error of e passes {_levels_passed(rods, error_of) or 'no level within the map'} "
+            f"{name}: the error of e passes {_levels_passed(rods, error_of) or 'none of the stated levels'} "
             "(19 mm); the length at which it does grows with the diameter to the power "
-            f"{exponents or 'that the map does not show'} (published {EXPONENT})."
+            f"{exponents or 'that these rods do not show'} (published {EXPONENT})."
         )
     return sentences
 
@@ -265,11 +265,12 @@ def _verdicts(families: Families) -> list[str]:
         if onset is None:
             safe = max((r.error for r in of_body(rods)), default=0.0) < JUDGED
             where = "never reaches" if safe else "is always above"
-            sentences.append(f"{name}: the error {where} {JUDGED:.0%} in the map.")
+            sentences.append(f"{name}: the error {where} {JUDGED:.0%} on these rods.")
             continue
         word = "unsafe" if onset < LIMIT else "too strict" if onset > 1.15 * LIMIT else "about right and safe"
         sentences.append(
-            f"{name}: with {JUDGED:.0%} allowed, gamma <= {LIMIT} is {word}: it comes at {onset:.1f}."
+            f"{name}: with {JUDGED:.0%} allowed, gamma <= {LIMIT} is {word}: e is off by that at "
+            f"gamma {onset:.1f}."
         )
     return sentences
 

@@ -46,7 +46,7 @@ def later_picture(curves: Curves) -> Picture:
             Series("after the last contact", gamma, _percent([p.own for p in points]), "joined", 0),
         )
         panels.append(Panel(f"{kind}, {_state(points)}", GAMMA, SHARE, series, MARKS))
-    caption = "What later contacts give back to the rigid motion or take from it; own mesh of each point."
+    caption = "What later contacts give back to the rigid motion or take from it; each point on its own mesh."
     return Picture("later-contacts", caption, tuple(panels))
 
 

@@ -150,7 +150,7 @@ def miss_sentence(explained: Sequence[Row]) -> str:
     lost = sum(not row["could"] for row in explained)
     return (
         f"{len(explained)} computed quantities lie outside the 95 % interval of the measured mean. An "
-        f"uncertain input, changed alone, could explain: {listed}. None of them explains {lost}."
+        f"uncertain input, changed alone, could explain: {listed}. No single input explains {lost}."
     )
 
 

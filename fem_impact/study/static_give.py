@@ -28,11 +28,11 @@ from fem_impact.tables.table import Cell, Table
 SHORT = 14.5  # gamma, m^-0.3815: below it vibration takes less than 0.5 % of E_0 at any angle
 SHOWN = (5.0, 45.0, 70.0)  # degrees: angles in the picture
 Gives = Sequence[tuple[Rod, NDArray[np.float64]]]
-"""Rods, each with its e (n,) by static give alone at the rod's n angles."""
+"""Rods, each with its e (n,) by quasi-static bending alone at the rod's n angles."""
 
 
 def gives_of(rods: Rods) -> Gives:
-    """Return the 19 mm rods by slenderness, and their e by static give alone at every angle."""
+    """Return the 19 mm rods by slenderness, and their e by quasi-static bending alone at every angle."""
     return [
         (r, np.array([static_restitution(replace(r.drop, angle=float(a))) for a in r.angles]))
         for r in of_body(rods)
@@ -40,7 +40,7 @@ def gives_of(rods: Rods) -> Gives:
 
 
 def give_picture(gives: Gives) -> Picture:
-    """Return e of the vibrating rod, by static give alone, and of the rigid rod, at three angles."""
+    """Return e of the vibrating rod, by quasi-static bending alone, and of the rigid rod, at three angles."""
     gamma, panels = [rod.drop.gamma for rod, _ in gives], []
     for angle in SHOWN:
         at = [int(np.abs(rod.angles - angle).argmin()) for rod, _ in gives]
@@ -48,7 +48,7 @@ def give_picture(gives: Gives) -> Picture:
         vibrating, static, rigid = zip(*curves, strict=True)
         series = (
             Series("vibrating", gamma, vibrating, "points"),
-            Series("static give alone", gamma, static, "line"),
+            Series("quasi-static bending alone", gamma, static, "line"),
             Series("rigid", gamma, rigid, "dashed"),
         )
         panels.append(Panel(f"{gives[0][0].angles[at[0]]:g} degrees", "gamma, m^-0.3815", "e", series))
@@ -68,27 +68,27 @@ def give_sentences(gives: Gives) -> list[str]:
         rod, give = next((r, e) for r, e in gives if r.drop.length == length)
         at = int(np.abs(rod.angles - 45.0).argmin())
         values.append(
-            f"{name} rod: rigid {rod.e_rigid[at]:.2f}, give {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
+            f"{name} rod: rigid {rod.e_rigid[at]:.2f}, bending {give[at]:.2f}, vibrating {rod.e[at]:.2f}"
         )
     return [
         f"Yielding, frictionless: below gamma {SHORT:g} the error, up to {error:.3f}, is no loss to "
         "vibration. A rod that deforms elastically stores part of the energy and returns it, so that less is "
-        "left for plastic flow and e is larger than that of a rigid rod; static give alone predicts e within "
-        f"{left:.3f}, and it goes to zero with gamma.",
+        "left for plastic flow and e is larger than that of a rigid rod. This quasi-static bending alone "
+        f"predicts e within {left:.3f}, and it goes to zero with gamma.",
         "Without friction this makes long rods bounce more than short ones, which no contact law does; e at "
         f"45 degrees: {'; '.join(values)}.",
     ]
 
 
 def give_sheet(gives: Gives) -> Sheet:
-    """Return the table of e of every rod and angle: rigid, by static give, vibrating."""
+    """Return the table of e of every rod and angle: rigid, by quasi-static bending, vibrating."""
     rows: list[list[Cell]] = [
         [r.drop.gamma, float(a), float(stiff), float(slow), float(e)]
         for r, give in gives
         for a, stiff, slow, e in zip(r.angles, r.e_rigid, give, r.e, strict=True)
     ]
     head = ("gamma", "angle_deg", "e_rigid", "e_static_give", "e_vibrating")
-    caption = "Yielding tip, frictionless, 19 mm: e of a rigid rod, with static give, with vibration"
+    caption = "Yielding tip, frictionless, 19 mm: e of a rigid rod, with quasi-static bending, with vibration"
     return Sheet("static_give", caption, Table.of(head, rows), shown=False)
 
 

@@ -105,7 +105,7 @@ def _calibrated_sentences(calibration: Calibration) -> list[str]:
         f"{len(calibration.residuals)} values of e, mu and Omega within two standard uncertainties."
     )
     missed = [f"{r.quantity} of {r.set}" for r in calibration.residuals if not r.met]
-    return [sentence + (f" Left over: {', '.join(missed)}." if missed else "")]
+    return [sentence + (f" Not met: {', '.join(missed)}." if missed else "")]
 
 
 def _errors(compared: Sequence[Comparison]) -> Picture:
@@ -254,7 +254,7 @@ def _calibrated_sheets(calibration: Calibration, sets: Sequence[ValidatedSet]) -
         ),
         Sheet(
             "left-over",
-            "What the best constants leave over",
+            "Differences that remain with the best constants",
             Table.of(("set", "quantity", "measured", "best", "difference", "u", "within_2u"), left),
         ),
     ]

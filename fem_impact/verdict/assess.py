@@ -183,7 +183,7 @@ def _solid(
         failed = unfinished(ladder.pairs[-1])
         if failed:
             notes.append(
-                f"Finite elements have no answer on the {COUNT[len(ladder.pairs) - 1]} mesh: {failed}"
+                f"Finite elements give no result on the {COUNT[len(ladder.pairs) - 1]} mesh: {failed}"
             )
             ladder.drop()
             break

@@ -90,6 +90,8 @@ def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, A
     low, high = (document["coefficients"]["e_m"]["bootstrap"][name] for name in ("low", "high"))
     if low is None or high is None:
         return [*notes, "e_m is not determined: the impulse passes through the mass centre within the errors"]
-    inside = "(no moment at the contact) lies within the 95 % interval: read no physics into e_m"
+    inside = (
+        "(no moment at the contact) lies within the 95 % interval: e_m then tells nothing about the contact"
+    )
     outside = "lies outside the 95 % interval: the impulse did not act at the stated contact point"
     return [*notes, f"e_m = -1 {inside if low <= -1.0 <= high else outside}"]

@@ -101,7 +101,7 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         ("case", case_sentence(v.scene)),
         ("T1/tau and gamma", f"{v.screening.sentence}."),
         ("with vibration", _motion(free)),
-        ("its twin that cannot vibrate", _motion(stiff)),
+        ("the same scene with a rod that cannot vibrate", _motion(stiff)),
         ("fidelity", f"{v.fidelity}. {v.here.source}"),
         *_other_angles(v),
         *_friction(v),

@@ -100,7 +100,7 @@ def _heat(d: Document) -> Iterator[str]:
     for sentence in h["assumptions"]:
         yield from _wrap(f"- {sentence}")
     yield from _wrap(
-        f"Sharper: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
+        f"Closer bound: {h['rigid_rod_J']:.3g} J ({100 * h['rigid_rod_over_E_0']:.1f} %) for "
         f"{h['rigid_rod_assumption']}."
     )
 

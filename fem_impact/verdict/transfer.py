@@ -191,6 +191,6 @@ def _slenderness(case: DroppedRod) -> dict[str, Any]:
         "verdict": verdict,
         "meaning": (
             "the limit was found for bars that rebound elastically; a tip that yields lengthens the "
-            "contact and quietens the rod, so gamma alone decides nothing about a yielding tip"
+            "contact, and the rod then vibrates less: gamma alone decides nothing about a yielding tip"
         ),
     }

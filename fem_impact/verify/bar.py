@@ -10,7 +10,7 @@ import numpy as np
 
 import meshes
 from fem_impact.reference.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march

@@ -15,7 +15,7 @@ import numpy as np
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import plan
 from fem_impact.reference.rod_end import bar_speed
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march

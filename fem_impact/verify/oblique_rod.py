@@ -10,7 +10,7 @@ reference                     37, f = 0   37, f = 0.57   0.08 m, f = 0
 ============================  ==========  =============  ================
 beam as long as the rod       0.379       1.074          0.0155
 beam of the rod's volume      0.431       1.073          0.0155
-and the edge's static give    0.434       1.034          0.0176
+and the edge's own bending    0.434       1.034          0.0176
 and an interface that leans   0.434       1.025          0.0176
 and waves into the barrier    0.436       1.022          0.0175
 solver, cells of 0.15 mm      0.431       1.025          0.0171
@@ -35,7 +35,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.contact import plain_rod
 from fem_impact.plan.plan import plan
 from fem_impact.reference.oblique import ObliqueRebound
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
 from fem_impact.verify import setups as steel

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import exp, log
 
 from fem_impact.reference.zener import zener_impact
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.verify import setups as steel
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import TipImpact, run_strike

@@ -9,7 +9,7 @@ from math import inf, isfinite
 from typing import Any, Literal
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 
 Values = Mapping[str, float]
 Kind = Literal["relative", "absolute", "at most", "shown"]

@@ -33,7 +33,7 @@ from fem_impact.errors import SceneError
 from fem_impact.fem.flight import flight
 from fem_impact.reference.hertz import contact_modulus
 from fem_impact.reference.rod_end import AxialImpact, bar_speed, end_law, rod_impact, sears
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of

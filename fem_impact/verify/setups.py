@@ -9,8 +9,8 @@ import numpy as np
 
 import meshes
 from fem_impact.fem.flight import RigidMotion
-from fem_impact.scene.fields import Parameter
 from fem_impact.scene.material import Material
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.solid.march import march

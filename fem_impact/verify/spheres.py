@@ -14,7 +14,7 @@ from fem_impact.reference.finite_sphere import ball_impact
 from fem_impact.reference.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
 from fem_impact.reference.sphere import oblique_ball, oblique_sphere
 from fem_impact.reference.waves import radiated_energy
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import Block, FreeBody, body_model, placed

@@ -14,7 +14,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.elements import Kind
 from fem_impact.reference.bricks import Bar, spring_force, wall_stress
 from fem_impact.reference.rod_end import bar_speed
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State

@@ -33,7 +33,7 @@ from fem_impact.physics.hardening import linear_hardening
 from fem_impact.reference.axisymmetric import Metal
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.reference.taylor import taylor_bar
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed

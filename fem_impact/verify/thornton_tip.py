@@ -22,7 +22,7 @@ from fem_impact.reference.hertz import (
     thornton_restitution,
     yield_speed,
 )
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel
 from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of

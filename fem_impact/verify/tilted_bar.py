@@ -35,7 +35,7 @@ import numpy as np
 import meshes
 from fem_impact.reference.bricks import rebound
 from fem_impact.reference.rod_end import bar_speed
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.verify import setups as steel

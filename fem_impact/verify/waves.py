@@ -19,7 +19,7 @@ from fem_impact.fem.sparse import assemble, tie_operator
 from fem_impact.reference.free_modes import Frequencies, bending_modes, cylinder_frequencies
 from fem_impact.reference.rod_end import bar_speed
 from fem_impact.reference.waves import flexural_speed, longitudinal_speed
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of

@@ -108,10 +108,10 @@ def test_study_passes_what_is_asked(cli, stand):
 
 
 def test_options_that_nothing_would_look_at_are_refused(cli, stand):
-    assert "is of finite elements" in cli("run", "t5b", "--fidelity", "modal", "--resume")[2]
+    assert "is for finite elements only" in cli("run", "t5b", "--fidelity", "modal", "--resume")[2]
     assert "there is no option --quick" in cli("study", "report", "--quick")[2]
     assert "are about one scene" in cli("cost", "paper", "--target", "5 %")[2]
-    assert "only lists" in cli("verify", "bar", "--parameters", "--set", "length=1")[2]
+    assert "lists parameters and runs nothing" in cli("verify", "bar", "--parameters", "--set", "length=1")[2]
     assert not stand.calls
 
 

@@ -180,7 +180,7 @@ def test_an_unknown_case_and_a_page_of_something_else_are_refused(cli, tmp_path)
     code, _, err = cli("stress", "--page", "page.md")
     assert code == 2 and "holds something else" in err
     code, _, err = cli("stress", "--only", "six-elements", "--page", "new.md")
-    assert code == 2 and "takes all cases" in err
+    assert code == 2 and "runs all cases" in err
 
 
 def test_the_page_tells_what_failed(tmp_path):

@@ -79,7 +79,7 @@ def test_the_papers_conclusions_are_judged(results):
     assert ",0.123," in ledger[2]
     assert "<code>fem-impact study sets</code>" in page
     assert {"partition.csv", "closure.csv"} <= set(re.findall(r'download="([\w.-]+)"', page))
-    assert "could explain: hardness 1. None of them explains 0." in page
+    assert "could explain: hardness 1. No single input explains 0." in page
     assert "hardness (" in page
     assert set(re.findall(r'href="#([\w-]+)"', page)) <= set(re.findall(r'id="([\w-]+)"', page))
     assert "within 0.003 m/s along n, 0.003 m/s along t and 0.1 rad/s" in page

@@ -78,7 +78,7 @@ def test_run_report_is_whole_and_refers_to_nothing_outside(run):
     assert [len(panels) for panels in reader.figures()] == [1, 1, 1]  # shares, ledger, force
     for title in (
         "Where the energy went",
-        "Ledger over time",
+        "Energy over time",
         "Contact force",
         "What is not known",
         "Sources",

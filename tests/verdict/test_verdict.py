@@ -294,7 +294,7 @@ def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
 @pytest.mark.parametrize(
     ("line", "code", "words"),
     [
-        (("t5b", "--length", "80 mm"), 2, "stands beside a scene"),
+        (("t5b", "--length", "80 mm"), 2, "describes a rod, but a scene is named too"),
         ((), 2, "no scene is given"),
         (("--length", "80 mm"), 2, "--diameter"),
         (("t5b", "--tolerance", "five"), 2, "is not a number"),

@@ -7,7 +7,7 @@ import pytest
 
 from fem_impact.commands.main import main
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.verify.catalogue import PROBLEMS, problem, verify
 from fem_impact.verify.problem import Check, Problem, Solved
 

@@ -59,7 +59,7 @@ def test_the_short_rod_on_an_elastic_block(f):
 
 @pytest.mark.validation
 def test_the_short_rod_comes_nearer_with_smaller_cells():
-    """Without the static give of its edge the reference lies 13 % below the solver's limit."""
+    """Without the elastic bending of its edge the reference lies 13 % below the solver's limit."""
     errors = [
         checks(verify("oblique-rod", SHORT | {"f": 0.0, "tip_size": h}))["bending energy / E_0"].error
         for h in (6e-4, 3e-4, 1.5e-4)
