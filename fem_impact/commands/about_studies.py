@@ -57,13 +57,13 @@ STUDIES = {
     ),
     "convergence": Study(
         "their limits for vanishing elements",
-        "Measured sets on a family of five meshes, each at several places of the plate's grid, and what "
+        "Measured sets on three meshes, each at several places of the plate's grid, and what "
         "vanishing elements would give: the limit of each quantity, its order, and the band of two meshes "
         "beside it.",
         "40 runs, some 15 min",
-        "without the finest mesh, one place of the grid: 8 runs, some 2 min",
+        "a coarser mesh for the finest, one place of the grid: 12 runs, some 2 min",
         40,
-        8,
+        12,
         "t3-machined, t3-contaminated, t5b, t6-17",
     ),
     "gamma": Study(

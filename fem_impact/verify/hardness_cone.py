@@ -24,8 +24,8 @@ from fem_impact.errors import RunError, SceneError
 from fem_impact.physics.hardening import KGF_PER_MM2, TABOR, TABOR_STRAIN, Hardening, power_hardening
 from fem_impact.reference.axisymmetric import Metal
 from fem_impact.reference.cone import REACH, Indentation, cone_speed, indent
-from fem_impact.scene.fields import Parameter
 from fem_impact.scene.library import material
+from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
