@@ -118,7 +118,7 @@ def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
     scene = load("t5b")
     for key, value in changes.items():
         scene = replace(scene, key.replace("__", "."), value)
-    words = f"nearest scene with a measured cost, t5b, is [^T]*({differs})[^T]* Tip, .*fem-impact cost"
+    words = f"nearest scene with a measured cost, t5b, differs [^T]*({differs})[^T]* Tip, .*fem-impact cost"
     with pytest.raises(SceneError, match=words):
         choose_setting(replace(scene, "accuracy.target", "20 %"))
 
