@@ -46,9 +46,9 @@ def write_cost(cost: CostStudy, out: Path, names: tuple[str, ...]) -> None:
         by_name = (one.value, one.error, one.scatter, one.band)
         numbers = (values.get(name) for values in by_name for name in NAMES)
         rows.append([*fields, *numbers, " ".join(one.front)])
-    write_text(out / "cost.csv", Table.of(COLUMNS, rows).csv())
     write_text(out / "cost.txt", text_table(cost) + "\n")
-    draw(cost_picture(cost.settings, names), out / "cost.svg")
+    draw(cost_picture(cost.settings, names), out / "cost.svg")  # with its data, for which the table stands
+    write_text(out / "cost.csv", Table.of(COLUMNS, rows).csv())
 
 
 COST_COLUMNS = (

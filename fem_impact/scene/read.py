@@ -16,7 +16,6 @@ from fem_impact.scene.checks import check_choice, check_names, check_text
 from fem_impact.scene.impact import WAYS, Impact, the_way
 from fem_impact.scene.material import RATES, Material, Rate
 from fem_impact.scene.own_mesh import OwnMesh
-from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec, Segment
 from fem_impact.scene.shapes import (
     HEIGHT,

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn, TypeVar
 
 from fem_impact.errors import SceneError, did_you_mean
-from fem_impact.scene.fields import Parameter
+from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import parse_number, parse_quantity
 
 T = TypeVar("T")
