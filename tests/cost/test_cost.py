@@ -308,7 +308,7 @@ def test_documents(cost, tmp_path):
     assert "1.00" in text.splitlines()[4]
     assert "modal" in text and "changes in % by leaving an effect out" in text
     assert float(rows[-1]["scatter_e"]) == cost.settings[-1].scatter["e"]
-    line = text.split("scatter of the grid's places")[1].splitlines()[2]
+    line = text.split("scatter between places of the barrier's grid")[1].splitlines()[2]
     known = by_name(cost, "solid 0.594 mm fully").scatter["e"]
     assert line.startswith("solid 0.594 mm ") and f" {100 * known:.3g} " in line
 
