@@ -11,7 +11,8 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import compiled_before
-from fem_impact.modal.march import (
+from fem_impact.modal.march import drop
+from fem_impact.modal.motion import (
     AWAY_N,
     AWAY_T,
     BASE_N,
@@ -30,7 +31,6 @@ from fem_impact.modal.march import (
     ModalEnd,
     Modes,
     Start,
-    drop,
 )
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.beam import horizon
@@ -63,7 +63,7 @@ class ModalResult:
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
     finished, reason : whether the impact is over, and why the march ended
-    record : (m, 15) what moved over time, see `fem_impact.modal.march`; no rows where none was wanted
+    record : (m, 15) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from fem_impact.files.atomic import write_text
 from fem_impact.modal.impact import ModalResult
-from fem_impact.modal.march import (
+from fem_impact.modal.motion import (
     BASE_ROW,
     F_N_ROW,
     F_T_ROW,

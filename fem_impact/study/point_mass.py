@@ -12,7 +12,8 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import ALONE, MOST_CONTACTS, RIGID, Bounds, Start, drop
+from fem_impact.modal.march import drop
+from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, Bounds, Start
 from fem_impact.physics.contact_law import ContactLaw
 from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.reference.oblique import ObliqueRod

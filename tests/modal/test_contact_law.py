@@ -8,7 +8,8 @@ import pytest
 
 from fem_impact.modal.furrow import indent
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import (
+from fem_impact.modal.march import drop
+from fem_impact.modal.motion import (
     ALONE,
     FLOWED,
     HARDEST,
@@ -21,7 +22,6 @@ from fem_impact.modal.march import (
     WORK_T,
     Bounds,
     Start,
-    drop,
 )
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution

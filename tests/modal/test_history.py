@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from fem_impact.figures.history import force_picture, ledger_picture
-from fem_impact.modal.march import MOST_ROWS
+from fem_impact.modal.motion import MOST_ROWS
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known
 from fem_impact.run.simulate import simulate

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 import fem_impact.modal.impact as impact
 from fem_impact.modal.impact import solve
-from fem_impact.modal.march import ALONE
+from fem_impact.modal.motion import ALONE
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.contact import contact_modulus, projectile
 from fem_impact.plan.plan import plan

@@ -8,7 +8,8 @@ import pytest
 from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start, drop
+from fem_impact.modal.march import drop
+from fem_impact.modal.motion import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
