@@ -95,8 +95,8 @@ MUTANTS = (
     Mutant(
         "gravity half a step ahead in the flight of the reduced model",
         "fem_impact/modal/march.py",
-        "rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[BASE_N])",
-        "rigid[HEIGHT] += dt * (rigid[V_N] + dt * g_n - rigid[BASE_N])",
+        "rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[SURFACE_N])",
+        "rigid[HEIGHT] += dt * (rigid[V_N] + dt * g_n - rigid[SURFACE_N])",
         "tests/modal/test_modal_limits.py::test_the_ledger_closes_with_gravity",
     ),
     Mutant(
