@@ -62,7 +62,7 @@ def test_a_scene_uses_what_the_package_adds(tmp_path):
 
 def test_without_the_package_its_names_are_refused():
     done = run(SCENE, dict(os.environ))
-    assert "is not a shipped material" in done.stderr
+    assert "is a shape, not one of the published tips" in done.stderr
 
 
 @pytest.mark.parametrize(

@@ -67,7 +67,7 @@ def test_an_added_tip_has_no_usual_radius(ball, cli):
 
 def test_a_tip_nobody_added_is_refused(cli):
     with pytest.raises(ValueError, match='"A", "B" or "plain"'):
-        replace(load("t5b"), "projectile.tip", "ball")
+        replace(load("t5b"), "projectile.tip", "dome")
     code, _, err = cli("assess", *ROD, *DROP, "--tip", "plane")
     assert code == 2
     assert "Did you mean plain?" in err
