@@ -139,10 +139,16 @@ class _Worker:
             self._pipe.close()
 
 
+def _leave(*_: object) -> None:
+    """End the process by way of its blocks of `finally`, which remove the drafts of files; only once."""
+    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    sys.exit(1)
+
+
 def _serve(pipe: Connection) -> None:
     """Answer calls until the other end is gone or SIGTERM comes."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process of the study decides what an interrupt stops
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # blocks of `finally` remove the drafts of files
+    signal.signal(signal.SIGTERM, _leave)
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))  # before the first call imports numpy
     threading.Thread(target=_end_with_parent, daemon=True).start()
     while True:
