@@ -149,6 +149,20 @@ MUTANTS = (
         f"{YIELDING}::test_small_increments_see_the_stiffness_of_their_element",
     ),
     Mutant(
+        "a spin that turns the stress before the step",
+        "fem_impact/solid/yielding_kernel.py",
+        "m0, m1, m2 = s0 + 0.5 * d0, s1 + 0.5 * d1, s2 + 0.5 * d2",
+        "m0, m1, m2 = s0, s1, s2",
+        f"{YIELDING}::test_an_element_that_rocks_keeps_neither_stress_nor_energy",
+    ),
+    Mutant(
+        "a turn of the stress to first order",
+        "fem_impact/solid/yielding_kernel.py",
+        "m0, m1, m2 = m0 + 0.5 * a0, m1 + 0.5 * a1, m2 + 0.5 * a2",
+        "m0, m1, m2 = m0, m1, m2",
+        f"{YIELDING}::test_turning_a_stressed_element_turns_its_stress_with_it",
+    ),
+    Mutant(
         "a search that drops the nodes on the symmetry plane",
         "fem_impact/solid/contact/patch.py",
         "SLACK = 1e-6",

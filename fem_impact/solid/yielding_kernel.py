@@ -81,44 +81,58 @@ def _increment_gradient(w, l, X, Y, Z):  # type: ignore[no-untyped-def]
 
 
 @inlined
-def _jaumann(s0, s1, s2, s3, s4, s5, w01, w12, w02):  # type: ignore[no-untyped-def]
-    """Rotate the deviator (xx, yy, zz, xy, yz, zx) with the increment of spin."""
+def _spun(s0, s1, s2, s3, s4, s5, w01, w12, w02):  # type: ignore[no-untyped-def]
+    """Return the change of the deviator (xx, yy, zz, xy, yz, zx) by an increment of spin, Jaumann's term."""
     return (
-        s0 + 2.0 * (w01 * s3 + w02 * s5),
-        s1 + 2.0 * (w12 * s4 - w01 * s3),
-        s2 - 2.0 * (w02 * s5 + w12 * s4),
-        s3 + w01 * (s1 - s0) + w02 * s4 + w12 * s5,
-        s4 + w12 * (s2 - s1) - w01 * s5 - w02 * s3,
-        s5 + w02 * (s2 - s0) + w01 * s4 - w12 * s3,
+        2.0 * (w01 * s3 + w02 * s5),
+        2.0 * (w12 * s4 - w01 * s3),
+        -2.0 * (w02 * s5 + w12 * s4),
+        w01 * (s1 - s0) + w02 * s4 + w12 * s5,
+        w12 * (s2 - s1) - w01 * s5 - w02 * s3,
+        w02 * (s2 - s0) + w01 * s4 - w12 * s3,
+    )
+
+
+@inlined
+def _stretched(w, l, G2, X, Y, Z):  # type: ignore[no-untyped-def]
+    """Return the increments of the elastic deviator, Pa, and of spin of one Gauss point's lane."""
+    h00, h01, h02, h10, h11, h12, h20, h21, h22 = _increment_gradient(w, l, X, Y, Z)
+    mean = (h00 + h11 + h22) * THIRD
+    return (
+        G2 * (h00 - mean),
+        G2 * (h11 - mean),
+        G2 * (h22 - mean),
+        0.5 * G2 * (h01 + h10),
+        0.5 * G2 * (h12 + h21),
+        0.5 * G2 * (h02 + h20),
+        0.5 * (h01 - h10),
+        0.5 * (h12 - h21),
+        0.5 * (h02 - h20),
     )
 
 
 @inlined
 def _trial(w, stress, G2, X, Y, Z):  # type: ignore[no-untyped-def]
-    """Write the elastic trial deviator of one Gauss point into ``stress``."""
+    """Write the elastic trial deviator of one Gauss point into ``stress``.
+
+    The spin turns the stress of the middle of the step, to second order. The stress before the step, turned
+    to first order, gives elements that ring a little more energy with every step: 2e-3 of E_0 in 1.7 ms.
+    """
     for l in range(LANES):
-        h00, h01, h02, h10, h11, h12, h20, h21, h22 = _increment_gradient(w, l, X, Y, Z)
-        mean = (h00 + h11 + h22) * THIRD
-        t0, t1, t2, t3, t4, t5 = _jaumann(
-            stress[l],
-            stress[l + LANES],
-            stress[l + 2 * LANES],
-            stress[l + 3 * LANES],
-            stress[l + 4 * LANES],
-            stress[l + 5 * LANES],
-            0.5 * (h01 - h10),
-            0.5 * (h12 - h21),
-            0.5 * (h02 - h20),
-        )
+        s0, s1, s2 = stress[l], stress[l + LANES], stress[l + 2 * LANES]
+        s3, s4, s5 = stress[l + 3 * LANES], stress[l + 4 * LANES], stress[l + 5 * LANES]
+        d0, d1, d2, d3, d4, d5, w01, w12, w02 = _stretched(w, l, G2, X, Y, Z)
+        m0, m1, m2 = s0 + 0.5 * d0, s1 + 0.5 * d1, s2 + 0.5 * d2
+        m3, m4, m5 = s3 + 0.5 * d3, s4 + 0.5 * d4, s5 + 0.5 * d5
+        a0, a1, a2, a3, a4, a5 = _spun(m0, m1, m2, m3, m4, m5, w01, w12, w02)
+        m0, m1, m2 = m0 + 0.5 * a0, m1 + 0.5 * a1, m2 + 0.5 * a2
+        m3, m4, m5 = m3 + 0.5 * a3, m4 + 0.5 * a4, m5 + 0.5 * a5
+        a0, a1, a2, a3, a4, a5 = _spun(m0, m1, m2, m3, m4, m5, w01, w12, w02)
+        t0, t1, t2, t3, t4, t5 = s0 + a0, s1 + a1, s2 + a2, s3 + a3, s4 + a4, s5 + a5
         r = ROTATED * LANES + l
         w[r], w[r + LANES], w[r + 2 * LANES] = t0, t1, t2
         w[r + 3 * LANES], w[r + 4 * LANES], w[r + 5 * LANES] = t3, t4, t5
-        t0 += G2 * (h00 - mean)
-        t1 += G2 * (h11 - mean)
-        t2 += G2 * (h22 - mean)
-        t3 += 0.5 * G2 * (h01 + h10)
-        t4 += 0.5 * G2 * (h12 + h21)
-        t5 += 0.5 * G2 * (h02 + h20)
+        t0, t1, t2, t3, t4, t5 = t0 + d0, t1 + d1, t2 + d2, t3 + d3, t4 + d4, t5 + d5
         stress[l], stress[l + LANES], stress[l + 2 * LANES] = t0, t1, t2
         stress[l + 3 * LANES], stress[l + 4 * LANES], stress[l + 5 * LANES] = t3, t4, t5
         w[TRIAL2 * LANES + l] = 1.5 * (t0 * t0 + t1 * t1 + t2 * t2) + 3.0 * (t3 * t3 + t4 * t4 + t5 * t5)
