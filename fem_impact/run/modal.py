@@ -97,7 +97,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         vibration=vibration,
         vibration_check=Unknown("the free flight is exact in modes, so there is nothing to check it against"),
         vibration_floor=floor,
-        below_floor=vibration < floor,
+        below_floor=bool(vibration < floor),
         friction=result.friction / E_0,
         skin=result.skin / E_0,
         plastic_rod=plastic_rod,
