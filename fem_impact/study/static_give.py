@@ -82,8 +82,8 @@ def give_sentences(gives: Gives) -> list[str]:
     return [
         f"Yielding, frictionless, up to {STEEPEST:g} degrees: below gamma {SHORT:g} e changes by up to "
         f"{error:.3f} without a loss to vibration. A rod that deforms elastically stores part of the energy "
-        "and returns it, so that less is left for plastic flow and e is larger than that of a rigid rod. This "
-        f"quasi-static bending alone gives e within {left:.3f}. Long rods vibrate instead; e at "
+        "and returns it, so that less is left for plastic flow and e is larger than that of a rigid rod. "
+        f"This quasi-static bending alone gives e within {left:.3f}. Long rods vibrate instead; e at "
         f"{rod.angles[at]:g} degrees: {'; '.join(values)}.",
     ]
 
