@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from html import escape
-from math import degrees
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +13,9 @@ from fem_impact.files.atomic import make_directory, write_text
 from fem_impact.files.signed_json import signed
 from fem_impact.report.html import Markup, bullets, paragraph, section, table
 from fem_impact.report.page import figure, page, sources
-from fem_impact.scene import fields
-from fem_impact.scene.library import source_of, stated_keys
-from fem_impact.scene.material import Material
+from fem_impact.scene.library import source_of
 from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_toml
+from fem_impact.scene.write import to_dict, to_toml
 from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table
 from fem_impact.verdict.assess import Verdict
@@ -26,7 +23,8 @@ from fem_impact.verdict.chart import chart
 from fem_impact.verdict.screening import screening
 from fem_impact.verdict.sentences import Line, screening_lines
 
-STATED = "stated in the scene"
+STATED = "the scene, or its default"
+MOST_POINTS = 6  # of a profile or a bore; longer ones stand in the scene
 
 
 def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
@@ -91,27 +89,26 @@ def _titled(lines: Sequence[Line]) -> Markup:
 
 def _inputs(scene: Scene) -> Markup:
     """Return every value that enters with where it comes from."""
-    rod, impact, surface = scene.projectile, scene.impact, scene.surface
+    surface, tables = scene.surface, to_dict(scene)
     interval = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
-    rows: list[tuple[str, str, str]] = [
-        *((f"rod, {p.key}", str(p.write(getattr(rod, p.key))), STATED) for p in fields.PROJECTILE),
-        ("rod, tip", rod.tip, STATED),
-        *_material("rod", rod.material),
-        *_material("barrier", scene.barrier.material),
-        ("friction f", interval, surface.source),
-        ("inclination", f"{degrees(impact.angle):.4g} deg", STATED),
-        *((p.key, str(p.write(getattr(impact, p.key))), STATED) for p in fields.IMPACT if p.key != "angle"),
-    ]
+    rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
+    rows.append(("surface, friction f", interval, surface.source))
     return table(Table.of(("input", "value", "source"), rows, left=range(3)))
 
 
-def _material(body: str, steel: Material) -> list[tuple[str, str, str]]:
-    named, keys = [(f"{body}, material", steel.name, STATED)], stated_keys(steel)
-    return named + [
-        (f"{body}, {p.key}", str(p.write(getattr(steel, p.key))), source_of(steel.name, p.key))
-        for p in fields.MATERIAL
-        if p.key in keys
-    ]
+def _rows(name: str, value: Any, source: str = STATED) -> list[tuple[str, str, str]]:
+    """Return (input, value, source) of each value below a name of the scene."""
+    if isinstance(value, dict):
+        metal, rows = value.get("name") if "rho" in value else None, []
+        for key, part in value.items():
+            known = metal is not None and key != "name"
+            rows += _rows(f"{name}, {key}", part, source_of(str(metal), key) if known else source)
+        return rows
+    if value and isinstance(value, (list, tuple)) and isinstance(value[0], dict):
+        return [row for number, part in enumerate(value, 1) for row in _rows(f"{name} {number}", part)]
+    if isinstance(value, (list, tuple)) and len(value) > MOST_POINTS:
+        return [(name, f"{len(value)} points", source)]
+    return [(name, str(value), source)]
 
 
 def _signatures() -> Markup:

@@ -42,7 +42,7 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
 
 def _may(v: Verdict) -> str:
     return (
-        f"{v.answer.upper()}: leaving vibration out changes e by {_signed(v.here)} at this inclination "
+        f"{v.answer.upper()}: vibration changes e by {_signed(v.here)} at this inclination "
         f"(allowed: {v.tolerance:g}). {_anywhere(v)}"
     )
 
@@ -57,8 +57,8 @@ def _anywhere(v: Verdict) -> str:
     if v.worst_answer == "undecided":
         return f"Whether rigid theory may be used at other inclinations is undecided: {largest}."
     here = v.answer == "no" and v.worst.answer(v.tolerance) != "no"
-    which = "not at this one" if here else f"not at {degrees(v.worst.angle):.0f} degrees"
-    return f"Rigid theory may not be used at every inclination, {which}: {largest}."
+    where = "this inclination" if here else f"{degrees(v.worst.angle):.0f} degrees"
+    return f"Rigid theory may not be used at {where}: {largest}."
 
 
 def _signed(change: Change) -> str:
