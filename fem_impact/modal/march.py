@@ -286,6 +286,23 @@ def enter(
 
 
 @inlined
+def enter_contact(
+    row: Array,
+    time: float,
+    force: tuple[float, float],
+    held: tuple[float, float],
+    works: Array,
+    work_t: float,
+    yields: bool,
+) -> None:
+    """Fill a row of the record with time, s, forces n, t, N, and energies of the contact, J."""
+    row[T_ROW], row[F_N_ROW], row[F_T_ROW] = time, force[0], force[1]
+    row[HELD_ROW] = held[0] + held[1]
+    row[FLOW_ROW] = works[0] + works[1] if yields else 0.0
+    row[RUB_ROW] = works[2] if yields else -work_t - held[1]
+
+
+@inlined
 def thinned(record: Array, rows: int, every: int) -> tuple[int, int]:
     """Drop every second row of a full record; return the number of rows and the steps from row to row."""
     if rows < len(record):
@@ -325,23 +342,19 @@ def drop(
     depth, force = 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
         c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-        depth = start.radius - rigid[HEIGHT] - arm_n
+        arm, depth = (c, s, arm_t, arm_n - start.radius), start.radius - rigid[HEIGHT] - arm_n
         place = rigid[ALONG] + arm_t - start.centre_t - start.radius * rigid[TURN]
         force = meet(law, flow, springs, furrow, depth, place, place - before)
         struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
         late = force[0] > 0.0 and time > bounds.latest
         if len(record) and steps % every == 0:
-            row, arm = record[rows], (c, s, arm_t, arm_n - start.radius)
+            row = record[rows]
             work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
-            row[T_ROW], row[F_N_ROW], row[F_T_ROW] = time, force[0], force[1]
             held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
-            row[HELD_ROW] = held[0] + held[1]
-            row[FLOW_ROW] = furrow.works[0] + furrow.works[1] if flow.yields else 0.0
-            row[RUB_ROW] = furrow.works[2] if flow.yields else -work[1] - held[1]
+            enter_contact(row, time, force, held, furrow.works, work[1], flow.yields)
             rows, every = thinned(record, rows + 1, every)
         if force[0] > 0.0:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
-            arm = (c, s, arm_t, arm_n - start.radius)
             p_n, p_t = span * force[0], span * force[1]
             push(now, start, modes, arm, p_n, p_t, tally)
             rigid[HEIGHT] += p_n * start.give  # a plate sinks away under the force

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from math import exp, log
 from typing import Any
 
 import numpy as np
+from random_scenes import spread
 
 from fem_impact.scene.library import materials
 from fem_impact.scene.read import read_dict
@@ -50,8 +50,8 @@ def random_own(seed: int, number: int) -> Scene:
 
 def _projectile(random: np.random.Generator) -> Tables:
     """Return a shape, in one of two cases with a bore, in one of three with two segments."""
-    diameter = _between(random, DIAMETER)
-    length = max(_between(random, LENGTH), 2.0 * diameter)
+    diameter = spread(random, DIAMETER)
+    length = max(spread(random, LENGTH), 2.0 * diameter)
     shape = str(random.choice([*NEEDS, "profile", "profile"]))
     table = (
         _profile(random, length, diameter) if shape == "profile" else _named(random, shape, length, diameter)
@@ -96,9 +96,9 @@ def _barrier(random: np.random.Generator) -> Tables:
     kind = str(random.choice(["massive", "massive", "backed", "infinite", "free", "moving"]))
     table: Tables = {"material": str(random.choice(METALS))}
     if kind in ("backed", "infinite"):
-        table |= {"thickness": _mm(_between(random, (5e-3, 0.1))), "support": kind}
+        table |= {"thickness": _mm(spread(random, (5e-3, 0.1))), "support": kind}
     if kind == "free":
-        table["mass"] = f"{_between(random, (0.2, 100.0))} kg"
+        table["mass"] = f"{spread(random, (0.2, 100.0))} kg"
     if kind == "moving":
         table["v_n"] = f"{random.uniform(0.1, 3.0)} m/s"
     return table
@@ -106,11 +106,7 @@ def _barrier(random: np.random.Generator) -> Tables:
 
 def _impact(random: np.random.Generator) -> Tables:
     angle = float(random.choice([0.0, *random.uniform(*ANGLE, 4)]))
-    return {"angle": f"{angle} deg", "speed": f"{_between(random, SPEED)} m/s"}
-
-
-def _between(random: np.random.Generator, ends: tuple[float, float]) -> float:
-    return exp(random.uniform(log(ends[0]), log(ends[1])))
+    return {"angle": f"{angle} deg", "speed": f"{spread(random, SPEED)} m/s"}
 
 
 def _mm(metres: float) -> str:

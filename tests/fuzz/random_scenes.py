@@ -39,8 +39,8 @@ EFFECTS = (
 
 def random_rod(random: np.random.Generator) -> ProjectileSpec:
     """Return a rod of any length, diameter, tip and metal, at least 1.05 diameters long."""
-    diameter = _spread(random, DIAMETER)
-    length = max(_spread(random, LENGTH), 1.05 * diameter)
+    diameter = spread(random, DIAMETER)
+    length = max(spread(random, LENGTH), 1.05 * diameter)
     tip = str(random.choice(TIPS))
     radius = 0.0 if tip == "plain" else float(random.uniform(0.05, 1.0)) * diameter / 2
     return ProjectileSpec(length, diameter, tip, radius, _metal(random))
@@ -56,7 +56,7 @@ def random_scene(
     random = np.random.default_rng([seed, number])
     rod = rod_of(random)
     f = float(random.choice([0.0, random.uniform(*FRICTION), random.uniform(0.0, 1.0)]))
-    speed = _spread(random, SPEED)
+    speed = spread(random, SPEED)
     angle = radians(random.choice([0.0, random.uniform(0.0, 10.0), *random.uniform(*ANGLE, 3)]))
     fall = angle if random.random() < 0.7 else float(random.uniform(0.0, 1.2))
     omega = 0.0 if random.random() < 0.5 else float(random.normal()) * 3 * speed / rod.length
@@ -78,7 +78,7 @@ def one_of(rods: list[ProjectileSpec]) -> Callable[[np.random.Generator], Projec
     return lambda random: rods[random.integers(len(rods))]
 
 
-def _spread(random: np.random.Generator, ends: tuple[float, float]) -> float:
+def spread(random: np.random.Generator, ends: tuple[float, float]) -> float:
     """Return a number between two ends, as often in each decade."""
     return exp(random.uniform(log(ends[0]), log(ends[1])))
 
