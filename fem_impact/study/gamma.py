@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
 BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods
 QUICK_BETWEEN = (LIMIT, 70.0)
-FEWER = (15.0, LIMIT, 57.3, 90.0)  # where diameters and speeds are changed
+FEWER = (15.0, LIMIT, 57.3, 90.0)  # where diameters, speeds and the reading of the strength are changed
 DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the curve
 ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
@@ -47,7 +47,7 @@ def line(quick: bool) -> list[Drop]:
 
 
 def others(quick: bool) -> list[Drop]:
-    """Return the drops with another diameter, speed or angle than the curve's."""
+    """Return the drops with another diameter, speed, angle or flow curve than the curve's."""
     if quick:
         return []
     changed = [
@@ -55,7 +55,12 @@ def others(quick: bool) -> list[Drop]:
         *(Drop(length_of(g), speed=v) for g in FEWER for v in SPEEDS),
         *(Drop(length, angle) for length in PAPER_RODS.values() for angle in ANGLES),
     ]
-    return [replace(drop, friction=STATES[PLAIN[y]], yields=y) for y in (False, True) for drop in changed]
+    harder = [Drop(length_of(g), law="hardness") for g in FEWER]
+    return [
+        replace(drop, friction=STATES[PLAIN[y]], yields=y)
+        for y in (False, True)
+        for drop in (*changed, *(harder if y else []))
+    ]
 
 
 def members(quick: bool) -> list[Member]:

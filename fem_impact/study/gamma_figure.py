@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,12 @@ MARKS = (
     *(Mark(float(slenderness(length, BODY)), name) for name, length in PAPER_RODS.items()),
     Mark(LIMIT, "limit of Eq 29"),
 )
-SPEED = 2.1  # m/s, of the curve
+USUAL = {"diameter": BODY, "speed": 2.1, "law": "tensile"}  # of the curve: m, m/s, flow curve
+LABELS: dict[str, tuple[str, Callable[[Any], str]]] = {
+    "diameter": ("diameter", lambda d: f"{d * 1e3:g} mm"),
+    "speed": ("speed", lambda v: f"{v:g} m/s"),
+    "law": ("flow curve", lambda law: f"from {'ultimate stress' if law == 'tensile' else law}"),
+}
 Place = Callable[[Point], float | None]
 
 
@@ -51,14 +57,14 @@ def later_picture(curves: Curves) -> Picture:
 
 
 def others_picture(curves: Curves) -> Picture:
-    """Return vibration by diameter and by speed over gamma, and of the paper's rods over the angle."""
-    panels = [
-        _by(curves, yields, name, scale, unit)
-        for name, scale, unit in (("diameter", 1e3, "mm"), ("speed", 1.0, "m/s"))
-        for yields in KINDS
-    ]
+    """Return vibration by diameter, speed and flow curve over gamma, and of three rods over the angle."""
+    panels = [_by(curves, yields, name) for name in ("diameter", "speed") for yields in KINDS]
     panels += [_by_angle(curves, yields) for yields in KINDS]
-    caption = "Other diameters, speeds and inclinations: elastic frictionless, yielding machined."
+    panels += [_by(curves, True, "law")]
+    caption = (
+        "Other diameters, speeds, inclinations, and the flow curve from hardness instead of the ultimate "
+        "stress: elastic frictionless, yielding machined."
+    )
     return Picture("other-inputs", caption, tuple(panels))
 
 
@@ -96,22 +102,22 @@ def _partition(curves: Curves, yields: bool) -> Panel:
     return Panel(title, GAMMA, "share of E_0, %", tuple(series), MARKS)
 
 
-def _by(curves: Curves, yields: bool, name: str, scale: float, unit: str) -> Panel:
+def _by(curves: Curves, yields: bool, name: str) -> Panel:
     changed = [p for p in curves.others if p.drop.yields == yields and p.drop.angle == 45.0]
-    usual = {"diameter": BODY, "speed": SPEED}
-    fixed = {key: value for key, value in usual.items() if key != name}
+    fixed = {key: value for key, value in USUAL.items() if key != name}
     points = [*among(changed, **fixed), *plain_line(curves, yields)]
+    title, label = LABELS[name]
     series = [
-        _series(f"{value * scale:g} {unit}", among(points, **{name: value}), _gamma, "joined", at)
+        _series(label(value), among(points, **{name: value}), _gamma, "joined", at)
         for at, value in enumerate(sorted({getattr(p.drop, name) for p in points}))
     ]
-    return Panel(f"{KINDS[yields]}: by {name}", GAMMA, SHARE, tuple(series), MARKS)
+    return Panel(f"{KINDS[yields]}: by {title}", GAMMA, SHARE, tuple(series), MARKS)
 
 
 def _by_angle(curves: Curves, yields: bool) -> Panel:
     series = []
     for at, (rod, length) in enumerate(PAPER_RODS.items()):
-        changed = among(curves.others, length=length, yields=yields, diameter=BODY, speed=SPEED)
+        changed = among(curves.others, length=length, yields=yields, **USUAL)
         points = [*changed, *among(plain_line(curves, yields), length=length)]
         points.sort(key=lambda point: point.drop.angle)
         series.append(_series(f"{rod} rod", points, lambda point: point.drop.angle, "joined", at))

@@ -19,6 +19,7 @@ PLAIN = {False: "frictionless", True: "machined"}
 """Surface state, elastic and yielding, at which other inputs are changed and the partition is drawn."""
 
 ONE_PERCENT = 0.01  # of E_0: where vibration is no longer small
+ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +48,7 @@ def findings(curves: Curves) -> list[str]:
         *(how_much(curves, yields) for yields in (True, False)),
         *(where_it_peaks(curves, yields) for yields in (True, False)),
         what_the_limit_says(curves),
+        *(other_inputs(curves, yields) for yields in (True, False)),
         measured_sets(curves),
         *(beside_modes(curves, yields) for yields in (True, False)),
         how_sure([*curves.line, *curves.others, *curves.sets]),
@@ -130,6 +132,38 @@ def _passes(points: Sequence[Point]) -> str:
             gamma = low + (high - low) * (ONE_PERCENT - below) / (above - below)
             return f"it passes {ONE_PERCENT:.0%} of E_0 at gamma {gamma:.1f}"
     return f"it never reaches {ONE_PERCENT:.0%} of E_0"
+
+
+def other_inputs(curves: Curves, yields: bool) -> str:
+    """Return vibration of rods as slender as the longest of the paper with one input changed."""
+    usual = Drop(max(PAPER_RODS.values()), friction=STATES[PLAIN[yields]], yields=yields)
+    alike = [
+        f"{_changed(p.drop, usual)} {share(p)}"
+        for p in curves.others
+        if p.drop.yields == yields
+        and abs(p.drop.gamma - usual.gamma) < ALIKE
+        and p.value(VIBRATION) is not None
+    ]
+    curve = [
+        share(p) for p in among(curves.line, length=usual.length, friction=usual.friction, yields=yields)
+    ]
+    if not alike or not curve:
+        return ""
+    kind = f"{'yielding' if yields else 'elastic'}, {PLAIN[yields]}"
+    return (
+        f"Other inputs at gamma {usual.gamma:.0f}, {kind}: vibration is {curve[0]} of E_0 on the curve "
+        f"({usual.diameter * 1e3:g} mm, {usual.speed:g} m/s, {usual.angle:g} degrees), and with "
+        f"{', '.join(alike)}."
+    )
+
+
+def _changed(drop: Drop, usual: Drop) -> str:
+    """Return the input of a drop that is not the usual one."""
+    if drop.law != usual.law:
+        return f"strength from {drop.law}"
+    if drop.angle != usual.angle:
+        return f"{drop.angle:g} degrees"
+    return f"{drop.speed:g} m/s" if drop.speed != usual.speed else f"{drop.diameter * 1e3:g} mm"
 
 
 def measured_sets(curves: Curves) -> str:

@@ -191,7 +191,7 @@ def _vibration(run: Result | None) -> float | None:
     return or_none(run.energy.vibration) if isinstance(run, Outcome) else None
 
 
-def among(points: Iterable[Point], **values: float | bool) -> list[Point]:
+def among(points: Iterable[Point], **values: object) -> list[Point]:
     """Return the points whose drops have the given values, by slenderness."""
     same = (p for p in points if all(getattr(p.drop, name) == value for name, value in values.items()))
     return sorted(same, key=lambda point: point.drop.gamma)

@@ -15,7 +15,7 @@ from fem_impact.tables.table import Cell, Table
 KINDS = {False: "elastic", True: "yielding"}
 BANDED = (VIBRATION, RESTITUTION, "mu", "Omega_rad_per_s", FORCE)
 SHARES = tuple(share.key.name for share in shares("figure") if share.key.name != VIBRATION)
-INPUTS = ("point", "gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact")
+INPUTS = ("point", "gamma", "diameter_m", "length_m", "speed_m_per_s", "angle_deg", "f", "contact", "law")
 
 
 def rod_table(curves: Curves) -> Table:
@@ -116,4 +116,4 @@ def reduced_table(curves: Curves) -> Table:
 
 def _inputs(name: str, drop: Drop) -> list[Cell]:
     numbers = (drop.gamma, drop.diameter, drop.length, drop.speed, drop.angle, drop.friction)
-    return [name, *numbers, KINDS[drop.yields]]
+    return [name, *numbers, KINDS[drop.yields], drop.law]

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 from math import cos, radians, sin
 
 from fem_impact.reference.free_modes import bending_period
+from fem_impact.scene.fields import FlowLaw
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import surfaces
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import Save, Scene, Surface
 from rigid.slenderness import EXPONENT
 
@@ -17,6 +18,14 @@ PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 
 PAPER = load("t5b")
 """Scene whose steels, barrier and tip all drops have: tip B, the edge of the face, rounded by 3 mm."""
+
+READINGS: dict[FlowLaw, Scene] = {
+    "tensile": PAPER,
+    "hardness": replace_all(
+        PAPER, {"projectile.material.law": "hardness", "barrier.material.law": "hardness"}
+    ),
+}
+"""That scene with the flow curve of both steels from their ultimate stress, and from their hardness."""
 
 STATES = {"frictionless": 0.0} | dict(sorted((name, one.friction) for name, one in surfaces().items()))
 """f of no friction and of the shipped surface states, in the order of their names."""
@@ -41,8 +50,9 @@ def length_of(gamma: float, diameter: float = BODY) -> float:
 class Drop:
     """A rod that falls on the plate without spin: lengths in m, angle in degrees, speed in m/s.
 
-    With ``yields`` both bodies yield; without ``vibrates`` the rod is rigid, on the same contact. A
-    ``tip_radius`` of None is in proportion to the diameter.
+    With ``yields`` both bodies yield, on the flow curve that ``law`` names (see `Material`); without
+    ``vibrates`` the rod is rigid, on the same contact. A ``tip_radius`` of None is in proportion to the
+    diameter.
     """
 
     length: float
@@ -53,6 +63,7 @@ class Drop:
     tip_radius: float | None = None
     speed: float = 2.1
     vibrates: bool = True
+    law: FlowLaw = "tensile"
 
     @property
     def gamma(self) -> float:
@@ -63,6 +74,7 @@ class Drop:
     def name(self) -> str:
         """Identifier of rounded numbers: lengths in um, angle in 0.01 deg, f in 0.001, speed in mm/s."""
         kind = ("y" if self.yields else "e") + ("v" if self.vibrates else "r")
+        kind += "" if self.law == "tensile" else self.law[0]
         lengths = (self.length * 1e6, self.diameter * 1e6, self.radius * 1e6)
         numbers = (*lengths, self.angle * 1e2, self.friction * 1e3, self.speed * 1e3)
         return "-".join([kind, *(str(round(n)) for n in numbers)])
@@ -90,12 +102,14 @@ class Drop:
 
     def scene(self) -> Scene:
         """Return the scene, on the mesh that it gets by itself."""
-        angle, rod = radians(self.angle), PAPER.projectile
+        angle, paper = radians(self.angle), READINGS[self.law]
         return replace(
-            PAPER,
+            paper,
             id=self.name,
             title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {self.friction:g}",
-            projectile=replace(rod, length=self.length, diameter=self.diameter, tip_radius=self.radius),
+            projectile=replace(
+                paper.projectile, length=self.length, diameter=self.diameter, tip_radius=self.radius
+            ),
             surface=surface_of(self.friction),
             impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
             effects=self.effects,

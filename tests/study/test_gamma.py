@@ -17,7 +17,7 @@ from fem_impact.scene.types import Accuracy, Save
 from fem_impact.study import document
 from fem_impact.study.document import Request
 from fem_impact.study.gamma import ANGLES, FULL, SETS, conclude, line, members, others, plan, reduced
-from fem_impact.study.gamma_findings import share
+from fem_impact.study.gamma_findings import Curves, other_inputs, share
 from fem_impact.study.gamma_points import (
     FIRST,
     SLACK,
@@ -90,6 +90,13 @@ def test_a_drop_has_the_effects_of_a_measured_set_but_for_what_it_states():
     assert "barrier-elastic" in elastic and "rod-plasticity" not in elastic
 
 
+def test_a_drop_takes_the_strength_of_both_steels_from_hardness():
+    drop = Drop(0.24, yields=True, law="hardness")
+    scene = drop.scene()
+    assert scene.projectile.material.law == scene.barrier.material.law == "hardness"
+    assert drop.name != replace(drop, law="tensile").name
+
+
 def test_the_full_study_covers_what_it_promises():
     curve = line(False)
     gammas = sorted({round(d.gamma, 6) for d in curve})
@@ -99,6 +106,7 @@ def test_the_full_study_covers_what_it_promises():
     more = others(False)
     assert len({d.diameter for d in more}) == len({d.speed for d in more}) == 3
     assert {d.angle for d in more} == {45.0, *ANGLES}
+    assert {d.law for d in more if d.yields} == {"tensile", "hardness"}
     assert {(d.friction, d.yields) for d in reduced(False)} == {(d.friction, d.yields) for d in curve}
     assert {one.name for one in members(False)} >= set(SETS)
 
@@ -230,6 +238,27 @@ def test_a_point_by_finite_elements(tmp_path):
     assert abs(point.run.energy.residual) < 1e-4
     assert 0.1 < point.ratio < 0.5
     assert point.value("e_edge") == pytest.approx(point.e_rigid, abs=0.05)
+
+
+def test_other_inputs_are_told_beside_the_point_of_the_curve(monkeypatch):
+    monkeypatch.setattr(Point, "value", lambda self, name: 0.1 * self.drop.speed)
+    monkeypatch.setattr(Point, "band", lambda self, name: 0.01)
+    usual = Drop(0.24, friction=STATES["machined"], yields=True)
+    drops = [
+        usual,
+        replace(usual, speed=4.2),
+        replace(usual, angle=15.0),
+        replace(usual, law="hardness"),
+        replace(usual, length=length_of(57.3, 0.03), diameter=0.03),
+        replace(usual, length=length_of(90.0), speed=1.3),
+    ]
+    points = [Point(d.name, d, Failure(d.name, "none"), None, None, None, None) for d in drops]
+    assert other_inputs(Curves(points[:1], points[1:], [], []), yields=True) == (
+        "Other inputs at gamma 57, yielding, machined: vibration is 21.00 ± 1.00 % of E_0 on the curve "
+        "(19 mm, 2.1 m/s, 45 degrees), and with 4.2 m/s 42.00 ± 1.00 %, 15 degrees 21.00 ± 1.00 %, "
+        "strength from hardness 21.00 ± 1.00 %, 30 mm 21.00 ± 1.00 %."
+    )
+    assert other_inputs(Curves(points[:1], points[1:], [], []), yields=False) == ""
 
 
 def test_vibration_below_zero_is_told_as_a_bound(monkeypatch):
