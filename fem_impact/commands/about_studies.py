@@ -70,9 +70,9 @@ STUDIES = {
         "vibration against slenderness",
         "Which share of the energy vibration takes, against the slenderness gamma from 10 to 120: steel rods "
         "of 19 mm at 45 degrees and 2.1 m/s, elastic and yielding, for every state of the surface; then "
-        "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, three "
-        "measured sets and the reduced model beside them. It says what the published limit, gamma = 26.45, "
-        "means.",
+        "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, "
+        "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
+        "26.45, means.",
         "1055 runs, half of them finite elements, some 55 min, and up to 2.5 h more on finer meshes where "
         "the band is wide",
         "five rods on coarse elements: 61 runs, some 2 min",
