@@ -38,7 +38,7 @@ from fem_impact.run.common import (
 )
 from fem_impact.run.doubts import doubts
 from fem_impact.run.markers import replay
-from fem_impact.run.resolution import is_resolved, too_narrow, without
+from fem_impact.run.resolution import unresolved, without
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
@@ -66,7 +66,8 @@ def reduce(result: SolidResult) -> Outcome:
     struck = barrier_motion(plan.scene, *result.base, error)
     coefficients, energy = restitution(plan.scene, moved, struck, fallen), _energy(result, moved)
     origin = provenance(plan, _choices(result))
-    withheld = not is_resolved(result) and plan.scene.accuracy.unresolved == "withhold"
+    reason = unresolved(result)
+    withheld = bool(reason) and plan.scene.accuracy.unresolved == "withhold"
     doubted = [] if withheld else doubts(origin, moved, coefficients, energy)
     outcome = Outcome(
         provenance=origin,
@@ -79,7 +80,7 @@ def reduce(result: SolidResult) -> Outcome:
         heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
         cost=_cost(result),
     )
-    return without(outcome, Unknown(too_narrow(result))) if withheld else outcome
+    return without(outcome, Unknown(reason)) if withheld else outcome
 
 
 def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
@@ -101,8 +102,8 @@ def _validity(result: SolidResult, V_n: float, doubts: list[str]) -> Validity:
 
 
 def _doubts(result: SolidResult) -> list[str]:
-    narrow = [] if is_resolved(result) else [too_narrow(result)]
-    return [*narrow, *result.warnings, *_ringing(result), *_untimed(result)]
+    told = (unresolved(result), *result.warnings, *_ringing(result), *_untimed(result))
+    return [sentence for sentence in told if sentence]
 
 
 def _ringing(result: SolidResult) -> list[str]:
