@@ -29,6 +29,8 @@ from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
 
 if TYPE_CHECKING:
+    from fem_impact.cost.own_ladder import OwnLadder
+    from fem_impact.cost.to_target import ChosenSetting
     from fem_impact.outcome.record import Outcome
 
 
@@ -43,7 +45,8 @@ def run(options: Options) -> int:
         problem, remedy = "is for finite elements only: this run takes seconds.", "Leave it out."
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
     say_fall(scene, options)
-    _say_plan(scene, options)
+    chosen = _setting(scene, options)
+    _say_plan(scene, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.commands.outcome import print_outcome
     from fem_impact.cost.to_target import simulate
@@ -52,7 +55,7 @@ def run(options: Options) -> int:
     meter, before = chosen_meter(options), earlier(out)
     try:
         run_options = RunOptions(out, meter, options.resume, options.checkpoint)
-        outcome = simulate(scene, options.fidelity or None, run_options, cores(), budget_s=_budget(options))
+        outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
     finally:
@@ -107,14 +110,18 @@ def _say_screening(scene: Scene, options: Options) -> None:
     sys.stdout.write("\n".join(lines) + "\n")
 
 
-def _say_plan(scene: Scene, options: Options) -> None:
-    """Print the setting chosen for the scene's target error, or without one the time of a long run."""
+def _setting(scene: Scene, options: Options) -> ChosenSetting | OwnLadder | None:
+    """Return what is run for the target error of a scene; None where the scene gives a mesh."""
     if scene.accuracy.target is None:
-        sentence = "" if options.fidelity in ("rigid", "modal") else _long_run(scene)
-    else:
-        from fem_impact.cost.to_target import settle
+        return None
+    from fem_impact.cost.to_target import settle
 
-        sentence = settle(scene, options.fidelity or None, cores(), _budget(options)).sentence
+    return settle(scene, options.fidelity or None, cores(), _budget(options))
+
+
+def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
+    """Print the setting chosen for the scene's target error, or without one the time of a long run."""
+    sentence = chosen or ("" if options.fidelity in ("rigid", "modal") else _long_run(scene))
     if sentence and not options.quiet:
         sys.stderr.write(f"{sentence}\n")
 

@@ -231,6 +231,7 @@ def simulate(
     options: RunOptions = RunOptions(),
     workers: int = 1,
     budget_s: float = BUDGET,
+    chosen: ChosenSetting | OwnLadder | None = None,
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
@@ -238,7 +239,8 @@ def simulate(
     finer mesh at the first place, with the limits of two meshes, or the means of one, in its ``validity``.
     Files of the other runs stand below ``options.out``. With two or more ``workers`` a second process does
     half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
-    ``budget_s``, s, and the outcome says what they reached.
+    ``budget_s``, s, and the outcome says what they reached. ``chosen`` is what `settle` returned for this
+    scene, where the caller has asked already.
 
     Raises
     ------
@@ -247,7 +249,7 @@ def simulate(
     """
     if scene.accuracy.target is None:
         return run.simulate(scene, fidelity or "solid", options)
-    chosen = settle(scene, fidelity, workers, budget_s)
+    chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):
         if isinstance(chosen, OwnLadder):
             return chosen.simulate(scene, options, workers)
