@@ -1,16 +1,17 @@
 """An effect as in docs/tutorials/extend.md: number and slot, and an item with its own account."""
 
 from dataclasses import dataclass, replace
-from math import exp, hypot
+from math import exp
 
 import numpy as np
 import pytest
+from own_package.my_impact_parts import LUNAR_GRAVITY as EFFECT
+from own_package.my_impact_parts import MOON
 
 from fem_impact.effects import registry as effect_names
 from fem_impact.effects.registry import EFFECTS
-from fem_impact.effects.slots import Effect, Harm, bodies_of
 from fem_impact.options import RunOptions
-from fem_impact.physics.contact import contact_estimate, projectile
+from fem_impact.physics.contact import projectile
 from fem_impact.plan import choose
 from fem_impact.plan.choose import active, choices, neglected
 from fem_impact.plan.plan import plan
@@ -23,30 +24,6 @@ from fem_impact.solid.elastic import Weight
 from fem_impact.solid.march import march
 from fem_impact.solid.observers import Watch
 from fem_impact.tables.table import read_csv
-
-MOON = 1.62  # m/s2
-
-
-def number(scene):
-    """Speed gained during the contact over the impact speed."""
-    return MOON * contact_estimate(bodies_of(scene)).duration / hypot(scene.impact.v_n, scene.impact.v_t)
-
-
-def fill(scene, spec):
-    spec.gravity = MOON
-
-
-EFFECT = Effect(
-    name="lunar-gravity",
-    sentence="The Moon pulls the rod down.",
-    absence="No Moon under the plate.",
-    measure="g tau/v",
-    threshold=0.005,
-    source="a quarter of the 2 % that e may be off",
-    number=number,
-    harm=lambda scene: Harm(number(scene), 0.0),
-    fill=fill,
-)
 
 
 @pytest.fixture
