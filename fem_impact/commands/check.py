@@ -11,7 +11,8 @@ from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
-from fem_impact.scene.library import intervals_of, source_of, stated_keys
+from fem_impact.scene.inputs import STATED, inputs, materials_of
+from fem_impact.scene.library import intervals_of
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.tables.table import Table
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
-    from fem_impact.scene.material import Material
 
 
 DRAWINGS = (".png", ".svg")
@@ -71,7 +71,7 @@ def _statement(planned: Plan) -> dict[str, Any]:
         "scene": to_dict(scene),
         "digest": digest(scene),
         "body": _body_entry(scene),
-        "sources": _sources(scene),
+        "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
         "intervals": _intervals(scene),
         "flow_stress_Pa": _flow_stresses(planned),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
@@ -151,27 +151,11 @@ def _flat(choice: EffectChoice) -> dict[str, Any]:
     return {key.name: key.of(choice) for key in keys_of(type(choice))}
 
 
-def _materials(scene: Scene) -> dict[str, Material]:
-    """Return all materials by the place of the scene that states them."""
-    layers = enumerate(scene.barrier.layers, 1)
-    return {**scene.materials, **{f"barrier.layers[{number}]": one.material for number, one in layers}}
-
-
-def _sources(scene: Scene) -> dict[str, str]:
-    """Return where each material value and the friction come from, by dotted key."""
-    sources = {
-        f"{body}.material.{key}": source_of(metal.name, key)
-        for body, metal in _materials(scene).items()
-        for key in stated_keys(metal)
-    }
-    return sources | {"surface.friction": scene.surface.source}
-
-
 def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
     """Return the intervals that a shipped material states for its values, by dotted key."""
     return {
-        f"{body}.material.{key}": interval
-        for body, metal in _materials(scene).items()
+        f"{place}.{key}": interval
+        for place, metal in materials_of(scene).items()
         for key, interval in intervals_of(metal.name).items()
     }
 
@@ -198,7 +182,8 @@ def _flow_lines(statement: dict[str, Any]) -> list[str]:
 
 def _readable(planned: Plan, statement: dict[str, Any]) -> str:
     lines = [to_toml(planned.scene).rstrip(), "", "Sources"]
-    lines += _wrapped(f"{key}: {source}" for key, source in statement["sources"].items())
+    rows = inputs(planned.scene).rows
+    lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in rows if source != STATED)
     lines += _wrapped(
         f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
     )

@@ -13,18 +13,14 @@ from fem_impact.files.atomic import make_directory, write_text
 from fem_impact.files.signed_json import signed
 from fem_impact.report.html import Markup, bullets, paragraph, section, table
 from fem_impact.report.page import figure, page, sources
-from fem_impact.scene.library import source_of
+from fem_impact.scene.inputs import inputs
 from fem_impact.scene.types import Scene
-from fem_impact.scene.write import to_dict, to_toml
+from fem_impact.scene.write import to_toml
 from fem_impact.tables.symbols import markup
-from fem_impact.tables.table import Table
 from fem_impact.verdict.assess import Verdict
 from fem_impact.verdict.chart import chart
 from fem_impact.verdict.screening import screening
 from fem_impact.verdict.sentences import Line, screening_lines
-
-STATED = "the scene, or its default"
-MOST_POINTS = 6  # of a profile or a bore; longer ones stand in the scene
 
 
 def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
@@ -66,7 +62,7 @@ def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) ->
         verdict_box(document["box"], verdict.answer),
         section("What the verdict rests on", _titled(document["basis"])),
         section("This scene among other rods", charted),
-        section("Inputs and their sources", _inputs(scene)),
+        section("Inputs and their sources", table(inputs(scene))),
         section("What the verdict does not cover", bullets(document["not_covered"])),
         section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
         _signatures(),
@@ -85,30 +81,6 @@ def _titled(lines: Sequence[Line]) -> Markup:
     return bullets(
         Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}") for title, sentence in lines
     )
-
-
-def _inputs(scene: Scene) -> Markup:
-    """Return every value that enters with where it comes from."""
-    surface, tables = scene.surface, to_dict(scene)
-    interval = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
-    rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
-    rows.append(("surface, friction f", interval, surface.source))
-    return table(Table.of(("input", "value", "source"), rows, left=range(3)))
-
-
-def _rows(name: str, value: Any, source: str = STATED) -> list[tuple[str, str, str]]:
-    """Return (input, value, source) of each value below a name of the scene."""
-    if isinstance(value, dict):
-        metal, rows = value.get("name") if "rho" in value else None, []
-        for key, part in value.items():
-            known = metal is not None and key != "name"
-            rows += _rows(f"{name}, {key}", part, source_of(str(metal), key) if known else source)
-        return rows
-    if value and isinstance(value, (list, tuple)) and isinstance(value[0], dict):
-        return [row for number, part in enumerate(value, 1) for row in _rows(f"{name} {number}", part)]
-    if isinstance(value, (list, tuple)) and len(value) > MOST_POINTS:
-        return [(name, f"{len(value)} points", source)]
-    return [(name, str(value), source)]
 
 
 def _signatures() -> Markup:

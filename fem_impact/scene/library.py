@@ -6,7 +6,6 @@ import tomllib
 from collections.abc import Collection
 from functools import cache
 from importlib.resources import files
-from math import inf
 from typing import Any
 
 from fem_impact.errors import SceneError, did_you_mean
@@ -76,17 +75,9 @@ def surface(state: str) -> Surface:
     return known[state]
 
 
-def source_of(name: str, key: str = "") -> str:
-    """Return where a value of a shipped material (name, key) or surface (state) comes from."""
-    if not key:
-        return str(_table("surfaces.toml").get(name, {}).get("source", "stated in the scene"))
+def source_of(name: str, key: str) -> str:
+    """Return where a value of a shipped material comes from."""
     return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
-
-
-def stated_keys(metal: Material) -> list[str]:
-    """Return the keys of the values that a material states."""
-    keys = [field.key for field in fields.MATERIAL]
-    return [key for key in (*keys, "rate") if getattr(metal, key) not in (None, inf)]
 
 
 def intervals_of(name: str) -> dict[str, tuple[float, float]]:

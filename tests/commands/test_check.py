@@ -25,7 +25,8 @@ def test_check_prints_values_units_sources_and_effects(cli):
     for words in (
         'length = "80 mm"',
         "footnote 2",
-        "barrier.material.rate: C of steel 1006",
+        "barrier.material.E = 206 GPa: measured on the test plates",
+        "tested 0.002 /s: C of steel 1006",
         "rate_factor: interval 1.1 to 1.6",
         "Flow stress at 8 % plastic strain",
         "barrier 482 615 643 671",

@@ -9,7 +9,8 @@ from fem_impact.errors import SceneError, UsageError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Impact
-from fem_impact.scene.library import materials, shipped, source_of, stated_keys, surfaces
+from fem_impact.scene.inputs import STATED, inputs, materials_of
+from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.types import MEASURED_SETS, Accuracy, Heating, Save
@@ -100,9 +101,27 @@ def test_one_friction_interval_serves_every_rod_speed_and_angle():
 
 def test_every_surface_and_material_value_carries_a_source():
     stated = [surface.source for surface in surfaces().values()]
-    stated += [source_of(name, key) for name, metal in materials().items() for key in stated_keys(metal)]
+    for name in materials():
+        rows = inputs(replace(load("quick"), "projectile.material", name)).rows
+        stated += [
+            source for key, _, source in rows if "material" in key and not key.endswith((".name", ".law"))
+        ]
     assert len(stated) > 100
-    assert all(len(source) > 20 and source != "stated in the scene" for source in stated)
+    assert all(len(source) > 20 and source not in ("stated in the scene", STATED) for source in stated)
+
+
+def test_inputs_name_each_segment_and_layer_once():
+    tail = inputs(replace(load("heavy-tail"), "barrier.thickness", "50 mm"))
+    rows = {key: (value, source) for key, value, source in tail.rows}
+    assert len(rows) == len(tail)
+    assert rows["projectile.segments[2].to"] == ("120 mm", STATED)
+    assert rows["projectile.segments[2].material.name"][0] == "tungsten-heavy-alloy"
+    assert "makeitfrom" in rows["projectile.segments[2].material.E"][1]
+    assert rows["barrier.thickness"] == ("50 mm", STATED)
+    assert "barrier.layers[1].material.E" in inputs(load("layered")).texts("input")
+    assert [*materials_of(load("layered"))][1:] == ["barrier.layers[1].material", "barrier.material"]
+    ogive = inputs(load("ogive")).texts("input")
+    assert "projectile.calibre_radius" in ogive and "projectile.tip_radius" not in ogive
 
 
 def test_the_steels_are_those_of_the_paper():

@@ -12,7 +12,6 @@ from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
-from fem_impact.report.verdict_page import _inputs
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.verdict import assess as assess_module
@@ -329,12 +328,3 @@ def test_a_plain_run_names_the_command_of_the_verdict(cli):
 def test_measured_tests_are_not_carried_over_to_other_bodies_and_barriers(name, reason):
     with pytest.raises(SceneError, match=reason):
         dropped(load(name))
-
-
-def test_the_inputs_of_the_page_are_those_of_the_scene():
-    """A shape, its segments and a plate stand with their sizes; what the scene cannot state is not there."""
-    tail = str(_inputs(replace_all(load("heavy-tail"), {"barrier.thickness": "50 mm"})))
-    for words in ("segments 2, to", "120 mm", "tungsten-heavy-alloy", "barrier, thickness", "50 mm"):
-        assert words in tail
-    ogive = str(_inputs(load("ogive")))
-    assert "calibre_radius" in ogive and "tip_radius" not in ogive

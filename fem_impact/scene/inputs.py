@@ -1,0 +1,61 @@
+"""The inputs of a scene: every value that enters a model, with where it comes from."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from fem_impact.scene.library import source_of
+from fem_impact.scene.material import Material
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_dict
+from fem_impact.tables.table import Table
+
+STATED = "the scene, or its default"
+MOST_POINTS = 6  # of a profile or a bore that is written out; longer ones stand in the scene
+
+
+def inputs(scene: Scene) -> Table:
+    """Return the table of inputs of projectile, barrier, impact and surface.
+
+    Columns: ``input``, the dotted key as `replace` takes it (a part of a list by its number, from 1);
+    ``value`` with its unit; ``source``, `STATED` for values that no shipped table holds.
+    """
+    tables, surface = to_dict(scene), scene.surface
+    rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
+    friction = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
+    rows.append(("surface.friction", friction, surface.source))
+    return Table.of(("input", "value", "source"), rows, left=range(3))
+
+
+def materials_of(scene: Scene) -> dict[str, Material]:
+    """Return every material of a scene by the dotted key of its section."""
+    rod, barrier = scene.projectile, scene.barrier
+    parts = {f"projectile.segments[{at}].material": part.material for at, part in enumerate(rod.segments, 1)}
+    layers = {f"barrier.layers[{at}].material": part.material for at, part in enumerate(barrier.layers, 1)}
+    return {
+        **(parts or {"projectile.material": rod.material}),
+        **layers,
+        "barrier.material": barrier.material,
+    }
+
+
+def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, str]]:
+    """Return (input, value, source) of each value below a key; the law of the rate is one value."""
+    if isinstance(value, dict) and key.endswith(".rate"):
+        return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
+    if isinstance(value, dict):
+        return [
+            row for name, part in value.items() for row in _rows(f"{key}.{name}", part, _source(value, name))
+        ]
+    if value and isinstance(value, list) and isinstance(value[0], dict):
+        return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
+    if isinstance(value, list) and len(value) > MOST_POINTS:
+        return [(key, f"{len(value)} points", source)]
+    return [(key, str(value), source)]
+
+
+def _source(table: dict[str, Any], key: str) -> str:
+    """Return where a value of a section comes from; a section with a density is a material."""
+    if "rho" not in table or key in ("name", "law"):
+        return STATED
+    return source_of(table["name"], key)
