@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import csv
-import io
-import math
-import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from fem_impact.errors import ResultError
-from fem_impact.files.atomic import read_text
-from fem_impact.scene.units import DIMENSIONS, Unit
+from fem_impact.scene.units import Unit
+from fem_impact.scene.user_table import UserTable, in_si, read_user_table
 from rigid.arrays import Floats
 
 KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega": "angular speed"}
@@ -23,10 +19,6 @@ ARMS = {"d_c": "length", "d_d": "length"}
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 LARGEST = 1e6
 """Bound of the size of a velocity, m/s or rad/s."""
-
-_NAME = re.compile(r"(v_n|v_t|V_n|V_t|Omega|d_c|d_d)(?:_(\w+)|\s*[\[(](.+)[\])])?")
-Line = tuple[int, list[str]]
-"""Number and cells of a line of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,106 +59,40 @@ def read_camera(path: str | Path) -> Camera:
     ResultError
         Names the file, and the row and column where there is one.
     """
-    lines = list(lines_of(read_text(path), path))
-    if not lines:
-        raise ResultError(f"{path}: is empty. Begin it with the header {HEADER}.")
-    (_, header), *rows = lines
-    names = [name.strip() for name in header]
-    places = _places(names, path)
-    for line, cells in rows:
-        if len(cells) != len(names):
-            raise ResultError(f"{path}: line {line} has {len(cells)} cells, the header {len(names)}.")
-    if len(rows) < 2:
-        raise ResultError(f"{path}: holds {len(rows)} tests; an uncertainty needs at least two.")
-    columns = {}
-    for name, (at, unit) in places.items():
-        cells_of = [(f"{path}: line {line}, column {names[at]}", cells[at].strip()) for line, cells in rows]
-        columns[name] = np.array([_number(place, text, unit) for place, text in cells_of])
-    motion = {name: columns[name] for name in KINDS}
-    arms = one_pair({name: columns[name] for name in ARMS if name in columns}, path)
-    _check_motion(motion, rows, names, places, path)
-    used = {names[at] for at, _ in places.values()}
-    labels = [
-        cells[names.index("test")].strip() if "test" in names else str(i)
-        for i, (_, cells) in enumerate(rows, 1)
-    ]
-    ignored = tuple(name for name in names if name not in (*used, "test"))
-    return Camera(motion, tuple(labels), ignored, arms)
+    table = read_user_table(path, HEADER)
+    columns = _columns(table)
+    records = list(table.records())
+    if len(records) < 2:
+        raise ResultError(f"{path}: holds {len(records)} tests; an uncertainty needs at least two.")
+    values = {
+        name: np.array([_number(place, text, unit) for place, text in table.column(stated)])
+        for name, (stated, unit) in columns.items()
+    }
+    motion = {name: values[name] for name in KINDS}
+    arms = one_pair({name: values[name] for name in ARMS if name in values}, path)
+    _check_motion(motion, table, {name: stated for name, (stated, _) in columns.items()})
+    labels = tuple(record.get("test", str(i)) for i, (_, record) in enumerate(records, 1))
+    used = {stated for stated, _ in columns.values()}
+    return Camera(motion, labels, tuple(name for name in table.names if name not in (*used, "test")), arms)
 
 
-def lines_of(text: str, path: str | Path) -> Iterator[Line]:
-    """Yield the lines that are neither blank nor comments (#)."""
-    reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
-    try:
-        for cells in reader:
-            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
-                yield reader.line_num, cells
-    except csv.Error as error:
-        raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
-
-
-def _places(names: Sequence[str], path: str | Path) -> dict[str, tuple[int, Unit]]:
-    """Return index and unit of the five columns by quantity."""
-    places: dict[str, tuple[int, Unit]] = {}
-    for at, name in enumerate(names):
-        match = _NAME.fullmatch(name)
-        if match is None:
-            continue
-        if match[1] in places:
-            raise ResultError(f"{path}: {match[1]} has two columns, the second is {name!r}. Keep one.")
-        places[match[1]] = at, unit_of(name, {**KINDS, **ARMS}[match[1]], match[1], f"{path}: column")
-    missing = [name for name in KINDS if name not in places]
+def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
+    """Return name and unit of the column of each quantity; refuse a header that lacks one."""
+    stated = {name: table.quantity(name, dimension) for name, dimension in {**KINDS, **ARMS}.items()}
+    missing = [name for name in KINDS if stated[name] is None]
     if missing:
-        hint = " Separate columns by commas." if any(";" in name or "\t" in name for name in names) else ""
-        lacks = f"{path}: the header lacks {', '.join(missing)}.{hint}"
+        hint = " Separate columns by commas." if any(";" in n or "\t" in n for n in table.names) else ""
+        lacks = f"{table.path}: the header lacks {', '.join(missing)}.{hint}"
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).")
-    return places
-
-
-def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:
-    """Return the unit of a quantity that is stated as ``name_unit`` or ``name [unit]``.
-
-    Raises
-    ------
-    ResultError
-        It states none, or none of its dimension; ``place`` is for the complaint.
-    """
-    kind, match = DIMENSIONS[dimension], _NAME.fullmatch(stated)
-    text = (match[2] or match[3]) if match else None
-    if not text:
-        remedy = f"Name it {name}_{kind.suffix} or {name} [{kind.units[0].symbol}]"
-        raise ResultError(f"{place} {stated!r} names no unit. {remedy} (units: {kind.symbols}).")
-    unit = kind.unit(text.strip().replace("_per_", "/"))
-    if unit is None:
-        wrong = f"{place} {stated!r}: {text!r} is not a unit of {kind.name}"
-        raise ResultError(f"{wrong} ({kind.symbols}).")
-    return unit
+    return {name: column for name, column in stated.items() if column}
 
 
 def _number(place: str, text: str, unit: Unit) -> float:
     """Read one cell in SI; ``place`` is for complaints."""
-    finite(place, text)
-    value = unit.to_si(text)
+    value = in_si(place, text, unit)
     if abs(value) > LARGEST:
         raise ResultError(f"{place}: {text[:40]} is no speed of a dropped rod.")
     return value
-
-
-def finite(place: str, text: str) -> float:
-    """Read one cell; ``place`` is for complaints.
-
-    Raises
-    ------
-    ResultError
-        It is not a finite number.
-    """
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not math.isfinite(number):
-        raise ResultError(f"{place}: {text[:40]!r} is not a finite number.")
-    return number
 
 
 def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[float, float] | None:
@@ -186,13 +112,7 @@ def one_pair(arms: Mapping[str, Iterable[float]], path: str | Path) -> tuple[flo
     return stated[0].pop(), stated[1].pop()
 
 
-def _check_motion(
-    motion: Mapping[str, Floats],
-    rows: Sequence[Line],
-    names: Sequence[str],
-    places: Mapping[str, tuple[int, Unit]],
-    path: str | Path,
-) -> None:
+def _check_motion(motion: Mapping[str, Floats], table: UserTable, stated: Mapping[str, str]) -> None:
     """Refuse a test that is no impact, usually because of a wrong sign."""
     wrong = (
         ("v_n", motion["v_n"] >= 0, "must be negative: n points out of the barrier, and the rod falls on it"),
@@ -200,5 +120,5 @@ def _check_motion(
     )
     for name, bad, rule in wrong:
         if bad.any():
-            (line, cells), at = rows[int(np.argmax(bad))], places[name][0]
-            raise ResultError(f"{path}: line {line}, column {names[at]}: {cells[at].strip()} {rule}.")
+            place, text = table.column(stated[name])[int(np.argmax(bad))]
+            raise ResultError(f"{place}: {text} {rule}.")

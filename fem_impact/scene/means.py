@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from fem_impact.errors import ResultError, did_you_mean
-from fem_impact.files.atomic import read_text
-from fem_impact.scene.camera import ARMS, LARGEST, finite, lines_of, one_pair, unit_of
+from fem_impact.scene.camera import ARMS, LARGEST, one_pair
+from fem_impact.scene.camera import HEADER as TESTS
+from fem_impact.scene.user_table import finite, read_user_table, unit_of
 
 KINDS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
 """Quantities that a row may state, and their dimensions; empty: a pure number."""
@@ -35,8 +36,7 @@ class Means:
 
 def holds_means(path: str | Path) -> bool:
     """Return whether a file is one of means: its header has a column ``quantity``."""
-    header = next(lines_of(read_text(path), path), (0, []))[1]
-    return "quantity" in (name.strip() for name in header)
+    return "quantity" in read_user_table(path, f"{TESTS} (single tests) or {HEADER} (means)").names
 
 
 def read_means(path: str | Path) -> Means:
@@ -55,16 +55,12 @@ def read_means(path: str | Path) -> Means:
     ResultError
         Names the file, and the line and column where there is one.
     """
-    (_, header), *rows = list(lines_of(read_text(path), path))
-    names = [name.strip() for name in header]
-    scatter = _scatter(names, path)
+    table = read_user_table(path, HEADER)
+    scatter = _scatter(table.names, path)
     means: dict[str, Mean] = {}
-    arms: dict[str, list[float]] = {name: [] for name in ARMS if f"{name}_m" in names}
-    for line, cells in rows:
+    arms: dict[str, list[float]] = {name: [] for name in ARMS if f"{name}_m" in table.names}
+    for line, row in table.records():
         place = f"{path}: line {line}"
-        if len(cells) != len(names):
-            raise ResultError(f"{place} has {len(cells)} cells, the header {len(names)}.")
-        row = dict(zip(names, (cell.strip() for cell in cells), strict=True))
         name, mean = _read_row(row, scatter, place)
         if name in means:
             raise ResultError(f"{place}: {name} has a line already. Keep one.")

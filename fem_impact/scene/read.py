@@ -9,7 +9,7 @@ from math import isclose
 from pathlib import Path
 from typing import Any
 
-from fem_impact.errors import SceneError, UsageError
+from fem_impact.errors import ResultError, SceneError, UsageError
 from fem_impact.scene import fields, library
 from fem_impact.scene.barrier import Barrier, Layer
 from fem_impact.scene.checks import check_choice, check_names, check_text
@@ -66,8 +66,8 @@ def _with_points(data: dict[str, Any], place: Path) -> dict[str, Any]:
         return data
     try:
         points = read_points(place.parent / rod["profile"])
-    except SceneError as error:
-        raise error.under("projectile", str(place)) from None
+    except ResultError as error:
+        raise SceneError(str(error), key="projectile.profile", source=str(place)) from None
     return data | {"projectile": {**rod, "profile": [[HEIGHT.write(z), RADIUS.write(r)] for z, r in points]}}
 
 

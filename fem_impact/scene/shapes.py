@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,10 +10,11 @@ from math import pi
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import ResultError, SceneError
 from fem_impact.scene.checks import check_choice
 from fem_impact.scene.parameter import Parameter
-from fem_impact.scene.units import parse_quantity
+from fem_impact.scene.units import DIMENSIONS, Unit, parse_quantity
+from fem_impact.scene.user_table import UserTable, in_si, read_user_table
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
@@ -228,9 +227,6 @@ def stated_points(points: Any, key: str) -> Any:
     )
 
 
-_HEADER = re.compile(r"\s*(z|r)\s*(?:[\[(_]\s*(m|mm|cm|um)\s*[\])]?)?\s*")
-
-
 def read_points(path: Path) -> tuple[Point, ...]:
     """Read points (z, r), m, from a CSV file with columns z and r.
 
@@ -239,26 +235,17 @@ def read_points(path: Path) -> tuple[Point, ...]:
 
     Raises
     ------
-    SceneError
-        Naming file and line.
+    ResultError
+        Naming file, line and column.
     """
-    example = "The first line names them, such as z_mm,r_mm."
-    try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()[: MOST_POINTS + 2]
-    except (OSError, ValueError) as error:
-        raise SceneError(f"cannot be read ({error}).", key="profile", value=str(path)) from None
-    rows = [row for row in csv.reader(lines) if any(cell.strip() for cell in row)]
-    names = [_HEADER.fullmatch(cell) for cell in rows[0]] if rows else []
-    found = {name[1]: (column, name[2] or "m") for column, name in enumerate(names) if name}
-    if set(found) != {"z", "r"}:
-        raise SceneError("has no columns z and r.", key="profile", value=str(path), remedy=example)
-    return tuple(
-        (_cell(row, *found["z"], f"{path} line {line}"), _cell(row, *found["r"], f"{path} line {line}"))
-        for line, row in enumerate(rows[1:], 2)
-    )
+    table, metre = read_user_table(path, "z_mm,r_mm"), DIMENSIONS["length"].units[0]
+    columns = [table.quantity(key, "length", bare=metre) for key in ("z", "r")]
+    z, r = (_lengths(table, column, path) for column in columns)
+    return tuple(zip(z, r, strict=True))
 
 
-def _cell(row: list[str], column: int, unit: str, where: str) -> float:
-    if column >= len(row):
-        raise SceneError("has too few columns.", key="profile", value=where)
-    return parse_quantity(f"{row[column].strip()} {unit}", "length", f"profile ({where})")
+def _lengths(table: UserTable, column: tuple[str, Unit] | None, path: Path) -> list[float]:
+    if column is None:
+        raise ResultError(f"{path}: has no columns z and r. The first line names them, such as z_mm,r_mm.")
+    name, unit = column
+    return [in_si(place, text, unit) for place, text in table.column(name)]

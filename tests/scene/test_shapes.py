@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import tomllib
-from math import radians
+from math import copysign, radians
 
 import numpy as np
 import pytest
 
-from fem_impact.errors import SceneError
+from fem_impact.errors import ResultError, SceneError
 from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict, read_toml
+from fem_impact.scene.shapes import read_points
 from fem_impact.scene.shipped import replace
 from fem_impact.scene.write import digest, to_toml
 
@@ -87,15 +88,36 @@ def test_a_profile_is_read_from_a_table_beside_the_scene(tmp_path):
     head, tail = text.split("profile = ")
     (tmp_path / "own.toml").write_text(f'{head}profile = "mine.csv"\n{tail.split(chr(10), 1)[1]}')
     assert read_toml(tmp_path / "own.toml") == read_dict(scene({"profile": POINTS}))
-    (tmp_path / "mine.csv").write_text("z_m,r_m\n0,0\n0.02,x\n")
-    with pytest.raises(SceneError, match=r"mine\.csv line 3"):
-        read_toml(tmp_path / "own.toml")
-    (tmp_path / "mine.csv").write_text("a,b\n0,0\n")
-    with pytest.raises(SceneError, match="has no columns z and r"):
+    (tmp_path / "mine.csv").write_text("z_m,r_m\n# tip\n0,0\n\n0.02,x\n")
+    told = r"own\.toml: projectile\.profile: .*mine\.csv: line 5, column r_m: 'x' is not a finite number"
+    with pytest.raises(SceneError, match=told):
         read_toml(tmp_path / "own.toml")
     (tmp_path / "mine.csv").unlink()
     with pytest.raises(SceneError, match="cannot be read"):
         read_toml(tmp_path / "own.toml")
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("a,b\n0,0\n", "has no columns z and r. The first line names them, such as z_mm,r_mm"),
+        ("z_mm,r_ft\n0,0\n", "'ft' is not a unit of length"),
+        ("z_mm,r_mm,z_m\n0,0,0\n", "z has two columns, the second is 'z_m'"),
+        ("z_mm,r_mm\n0,0\n\n9\n", "line 4 has 1 cells, the header 2"),
+        ("", "is empty. Begin it with the header z_mm,r_mm"),
+    ],
+)
+def test_a_table_of_points_that_cannot_be_read_is_refused(tmp_path, text, told):
+    (tmp_path / "mine.csv").write_text(text)
+    with pytest.raises(ResultError, match=told):
+        read_points(tmp_path / "mine.csv")
+
+
+def test_points_carry_the_unit_of_their_column(tmp_path):
+    (tmp_path / "mine.csv").write_text("\ufeffnote, r (cm) ,z\ntip,-0,0\ntail,1.5,0.25\n", encoding="utf-8")
+    points = read_points(tmp_path / "mine.csv")
+    assert points == ((0.0, 0.0), (0.25, 0.015))
+    assert copysign(1.0, points[0][1]) == 1.0
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,152 @@
+"""A table that a user wrote: CSV text with units in its header; complaints name file, line and column."""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from fem_impact.errors import ResultError
+from fem_impact.files.atomic import read_text
+from fem_impact.scene.units import DIMENSIONS, Unit
+
+Line = tuple[int, list[str]]
+"""Number and cells of a line of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class UserTable:
+    """Header and lines of a file.
+
+    Attributes
+    ----------
+    path : the file
+    names : names of its columns, as the header states them
+    lines : number and cells of each line below the header
+    """
+
+    path: str | Path
+    names: tuple[str, ...]
+    lines: tuple[Line, ...]
+
+    def records(self) -> Iterator[tuple[int, dict[str, str]]]:
+        """Yield number and cells by column of each line.
+
+        Raises
+        ------
+        ResultError
+            A line has another number of cells than the header.
+        """
+        for line, cells in self.lines:
+            if len(cells) != len(self.names):
+                counts = f"line {line} has {len(cells)} cells, the header {len(self.names)}"
+                raise ResultError(f"{self.path}: {counts}. Give each line one cell a column.")
+            yield line, dict(zip(self.names, cells, strict=True))
+
+    def column(self, name: str) -> list[tuple[str, str]]:
+        """Return place, for complaints, and text of each cell. Raises ResultError as `records`."""
+        return [(f"{self.path}: line {line}, column {name}", cells[name]) for line, cells in self.records()]
+
+    def quantity(self, key: str, dimension: str, bare: Unit | None = None) -> tuple[str, Unit] | None:
+        """Return name and unit of the column that states a quantity, None where none does.
+
+        Parameters
+        ----------
+        key : name of the quantity, such as ``v_n``
+        dimension : a name in `DIMENSIONS`
+        bare : unit where the header states none; None: it must state one
+
+        Raises
+        ------
+        ResultError
+            Two columns state it, or the unit is missing or of another dimension.
+        """
+        stated = [name for name in self.names if _stated(name, key)]
+        if len(stated) > 1:
+            raise ResultError(f"{self.path}: {key} has two columns, the second is {stated[1]!r}. Keep one.")
+        if not stated:
+            return None
+        if bare and stated[0] == key:
+            return key, bare
+        return stated[0], unit_of(stated[0], dimension, key, f"{self.path}: column")
+
+
+def read_user_table(path: str | Path, header: str) -> UserTable:
+    """Read UTF-8 CSV text; blank lines and comments (#) are left out.
+
+    Parameters
+    ----------
+    path : path
+    header : an example of its first line, for complaints
+
+    Raises
+    ------
+    ResultError
+        The file cannot be read, is empty, or is not CSV.
+    """
+    lines = list(_lines(read_text(path), path))
+    if not lines:
+        raise ResultError(f"{path}: is empty. Begin it with the header {header}.")
+    return UserTable(path, tuple(lines[0][1]), tuple(lines[1:]))
+
+
+def _lines(text: str, path: str | Path) -> Iterator[Line]:
+    reader = csv.reader(io.StringIO(text.removeprefix("\ufeff")), strict=True)
+    try:
+        for cells in reader:
+            if any(cell.strip() for cell in cells) and not cells[0].startswith("#"):
+                yield reader.line_num, [cell.strip() for cell in cells]
+    except csv.Error as error:
+        raise ResultError(f"{path}: line {reader.line_num} is not CSV ({error}).") from None
+
+
+def unit_of(stated: str, dimension: str, name: str, place: str) -> Unit:
+    """Return the unit of a quantity that is stated as ``name_unit`` or ``name [unit]``.
+
+    Raises
+    ------
+    ResultError
+        It states none, or none of its dimension; ``place`` is for the complaint.
+    """
+    kind, match = DIMENSIONS[dimension], _stated(stated, name)
+    text = (match["suffix"] or match["symbol"]) if match else None
+    if not text:
+        remedy = f"Name it {name}_{kind.suffix} or {name} [{kind.units[0].symbol}]"
+        raise ResultError(f"{place} {stated!r} names no unit. {remedy} (units: {kind.symbols}).")
+    unit = kind.unit(text.strip().replace("_per_", "/"))
+    if unit is None:
+        wrong = f"{place} {stated!r}: {text!r} is not a unit of {kind.name}"
+        raise ResultError(f"{wrong} ({kind.symbols}).")
+    return unit
+
+
+def finite(place: str, text: str) -> float:
+    """Read one cell; ``place`` is for complaints.
+
+    Raises
+    ------
+    ResultError
+        It is not a finite number.
+    """
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not math.isfinite(number):
+        raise ResultError(f"{place}: {text[:40]!r} is not a finite number. Write one such as -1.5 or 2e-3.")
+    return number
+
+
+def in_si(place: str, text: str, unit: Unit) -> float:
+    """Read one cell of a quantity in SI, 0 without a sign. Raises ResultError as `finite`."""
+    finite(place, text)
+    return unit.to_si(text) + 0.0
+
+
+def _stated(stated: str, name: str) -> re.Match[str] | None:
+    """Match ``name``, ``name_unit`` or ``name [unit]``."""
+    return re.fullmatch(rf"{re.escape(name)}(?:_(?P<suffix>\w+)|\s*[\[(](?P<symbol>.+)[\])])?", stated)
