@@ -284,7 +284,7 @@ def _finished(
     section_nodes = place[: nodes * len(heights)].reshape(-1, nodes)
     interface = section_nodes[first] if rest else np.zeros(0, dtype=np.int64)
     start = float(heights[first]) if rest else body.length
-    run = _run(body, heights, first) if rest else len(heights)
+    run = _run(body, heights, first, high) if rest else len(heights)
     whole = [np.flatnonzero(layer[:rest] == k) for k in range(run, len(heights) - 1)]
     body_cells = np.array(whole, dtype=np.int64).T if whole else np.zeros((0, 0), dtype=np.int64)
     kept = section_nodes[-1] >= 0
@@ -306,13 +306,16 @@ def _require_fair(mesh: HexMesh) -> None:
         )
 
 
-def _run(body: _Body, heights: FloatArray, first: int) -> int:
-    """Return the first section from which on to a flat tail all slices are the same; else their number."""
+def _run(body: _Body, heights: FloatArray, first: int, high: float) -> int:
+    """Return the first section from which on to a flat tail all slices are the same; else their number.
+
+    Sections up to the height ``high`` are round, those above have the area of the circle.
+    """
     if body.line[-1, 0] <= 0.0:
         return len(heights)
     step, outer, split = np.diff(heights), body.radius(heights), body.split_radius(heights)
     hollow = body.bored(heights[:-1], heights[1:])
-    same = (np.abs(step / step[-1] - 1.0) < SAME) & (hollow == hollow[-1])
+    same = (np.abs(step / step[-1] - 1.0) < SAME) & (hollow == hollow[-1]) & (heights[:-1] > high)
     for radius in (outer, split):
         same &= np.abs(radius[:-1] / radius[-1] - 1.0) < SAME
     start = int(np.flatnonzero(~same)[-1]) + 1 if (~same).any() else 0

@@ -27,6 +27,7 @@ SHAPES = {
     "hemisphere": np.concatenate([sphere_tip(R), [[R, 0.1]]]),
     "sphere-cone": np.concatenate([sphere_tip(3e-3, 70.0), [[R, 0.02], [R, 0.1]]]),
     "truncated cone": np.array([[0, 0], [4e-3, 0], [R, 0.02], [R, 0.1]]),
+    "rounded edge": np.concatenate([[[0, 0]], sphere_tip(1e-3) + [R - 1e-3, 0], [[R, 0.1]]]),
     "flat": np.array([[0, 0], [R, 0], [R, 0.1]]),
     "barrel": np.array([[0, 0], [6e-3, 0], [R, 0.05], [6e-3, 0.1]]),
     "heavy tail": np.concatenate([sphere_tip(4e-3, 80.0), [[4e-3, 0.05], [R, 0.06], [R, 0.1]]]),
@@ -63,8 +64,10 @@ def test_a_refined_tip_lies_on_the_exact_surface():
     assert quality(body.mesh).min_scaled_jacobian > 0.3
 
 
-def test_the_cylinder_behind_a_nose_is_made_of_equal_slices():
-    body = meshes.turned(SHAPES["sphere-cone"], 8)
+@pytest.mark.parametrize("name", ["sphere-cone", "rounded edge", "flat"])
+def test_the_cylinder_behind_a_nose_is_made_of_equal_slices(name):
+    """Sections up to the end of a nose grid are round; slices have the area of the circle."""
+    body = meshes.turned(SHAPES[name], 8)
     layers = body.mesh.points[body.body_nodes]
     step = np.diff(layers, axis=1)
     assert np.abs(step - [0.0, 0.0, body.slice_length]).max() < 1e-12
