@@ -27,7 +27,7 @@ SHAPES = {
     "hemisphere": np.concatenate([sphere_tip(R), [[R, 0.1]]]),
     "sphere-cone": np.concatenate([sphere_tip(3e-3, 70.0), [[R, 0.02], [R, 0.1]]]),
     "truncated cone": np.array([[0, 0], [4e-3, 0], [R, 0.02], [R, 0.1]]),
-    "rounded edge": np.concatenate([[[0, 0]], sphere_tip(1e-3) + [R - 1e-3, 0], [[R, 0.1]]]),
+    "rounded edge": np.concatenate([[[0, 0]], sphere_tip(1e-3) + np.array([R - 1e-3, 0.0]), [[R, 0.1]]]),
     "flat": np.array([[0, 0], [R, 0], [R, 0.1]]),
     "barrel": np.array([[0, 0], [6e-3, 0], [R, 0.05], [6e-3, 0.1]]),
     "heavy tail": np.concatenate([sphere_tip(4e-3, 80.0), [[4e-3, 0.05], [R, 0.06], [R, 0.1]]]),
