@@ -11,12 +11,10 @@ from sphinx.util.docutils import SphinxDirective
 
 from fem_impact.commands.about_studies import REPORT, STUDIES
 from fem_impact.commands.parser import build_parser, every_command
-from fem_impact.cost.document import summary_markdown
 from fem_impact.effects.registry import EFFECTS
 from fem_impact.errors import EXIT_CODES
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
-from fem_impact.plan.measured import summary
 from fem_impact.scene import fields, library
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
@@ -155,11 +153,6 @@ def studies() -> str:
     return Table.of(head, rows, left=range(4)).markdown()
 
 
-def cost() -> str:
-    """Return what accuracy costs, from the stored measurements."""
-    return summary_markdown(summary())
-
-
 def exit_codes() -> str:
     """Exit codes of the command."""
     return Table.of(("exit code", "meaning"), EXIT_CODES.items(), left=range(2)).markdown()
@@ -169,7 +162,7 @@ PARTS = {
     make.__name__.replace("_", "-"): make
     for make in (
         *(scene_numbers, scene_choices, scene_units, materials, surfaces, effects, problems),
-        *(outcome_keys, commands, studies, cost, exit_codes),
+        *(outcome_keys, commands, studies, exit_codes),
     )
 }
 

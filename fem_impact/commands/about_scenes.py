@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.commands.command import add_cluster, add_command, add_out, add_scene, add_workers
+from fem_impact.commands.command import add_cluster, add_command, add_out, add_page, add_scene, add_workers
 from fem_impact.commands.options import seconds
 from fem_impact.options import FIDELITIES
 
@@ -106,6 +106,7 @@ def add_cost(commands: Commands) -> None:
         parser.add_argument(option, default="", metavar=metavar, help=text)
     parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
     add_out(parser, "results/cost/SCENE")
+    add_page(parser, "with SCENE = paper, also")
 
 
 def add_assess(commands: Commands) -> None:

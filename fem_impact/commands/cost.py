@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shlex
 import sys
 from contextlib import closing
 from math import inf
@@ -19,9 +20,10 @@ if TYPE_CHECKING:
     from fem_impact.cost.measure import CostStudy
     from fem_impact.cost.settings import Mesh
     from fem_impact.scene.types import Scene
+    from fem_impact.study.document import StudyReport
 
 
-PAPER = "paper"
+PAPER, PAGE = "paper", "report.html"
 
 
 def cost(options: Options) -> int:
@@ -41,24 +43,48 @@ def cost(options: Options) -> int:
     scene = changed_scene(options.scene, options.changes)
     require_turned(scene, "a ladder of costs")
     names, family = chosen(asked, scene), _family(scene, options.finest)
+    if options.page:
+        raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
-    from fem_impact.cost.document import text_table, write_cost
-    from fem_impact.cost.judge import advice, pair_sentence
+    from fem_impact.cost.document import text_table
+    from fem_impact.cost.judge import pair_sentence
     from fem_impact.files.lock import directory_lock
+    from fem_impact.study.cost_report import answers, scene_report
 
     with directory_lock(out):
         study = _measured(scene, out, options, family, budget or inf)
-        write_cost(study, out, names)
-    answers = [*_left_out(scene, family, study, budget), *advice(study.settings, names, target, budget)]
+        notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
+    told = [*_left_out(scene, family, study, budget), *answers(study, names, target, budget)]
     if target is not None:
-        answers.append(pair_sentence(study.settings, study.quantities, names, target))
+        told.append(pair_sentence(study.settings, study.quantities, names, target))
     if options.json:
-        print_json({**study.to_dict(), "advice": answers})
+        print_json({**study.to_dict(), "advice": told, "notes": notes})
     else:
-        lines = [line for answer in answers for line in wrapped(answer)]
-        lines += [f"all quantities: {out / 'cost.txt'}", f"results: {out}"]
-        sys.stdout.write("\n".join([text_table(study, names), "", *lines]) + "\n")
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
+        lines = [line for answer in told for line in wrapped(answer)]
+        paths = [f"all quantities: {out / 'cost.txt'}", f"page: {out / PAGE}", f"results: {out}"]
+        sys.stdout.write("\n".join([*lines, "", text_table(study, names), "", *paths]) + "\n")
     return RunError.exit_code if study.failures else 0
+
+
+def _write(study: CostStudy, report: StudyReport, line: str, out: Path) -> list[str]:
+    """Write the tables of a scene's costs and its page; return what could not be made."""
+    from fem_impact.cost.document import write_cost
+    from fem_impact.progress import NullMeter
+    from fem_impact.report.present import present
+    from fem_impact.study.document import Request, publish
+
+    write_cost(study, out)
+    publish(report, Request(out, line=line), study.runs)
+    return present((), out, NullMeter())
+
+
+def _line(options: Options, scene: str = "") -> str:
+    words = ["fem-impact", "cost", scene or options.scene]
+    words += [word for change in options.changes for word in ("--set", change)]
+    stated = ("target", "budget", "of", "finest")
+    words += [word for key in stated if (text := getattr(options, key)) for word in (f"--{key}", text)]
+    return shlex.join(words)
 
 
 def _share(text: str) -> float:
@@ -110,13 +136,18 @@ def _left_out(scene: Scene, family: list[Mesh], study: CostStudy, budget: float 
 
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
-    """Measure all sets of the paper, one store each, and write summary.json."""
-    from fem_impact.cost.document import summary_markdown, write_cost
+    """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
+    from fem_impact.commands.page import asked_page, write_study_page
     from fem_impact.cost.to_target import summarise
     from fem_impact.files.atomic import write_text
     from fem_impact.files.lock import directory_lock
+    from fem_impact.progress import NullMeter
+    from fem_impact.report.present import present
     from fem_impact.scene.types import MEASURED_SETS
+    from fem_impact.study.cost_report import paper_report, scene_report
+    from fem_impact.study.document import Request, publish
 
+    page = asked_page(options)
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
     families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
@@ -124,12 +155,19 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     with directory_lock(out):
         for name, scene in scenes.items():
             costs[name] = _measured(scene, out / name, options, families[name])
-            write_cost(costs[name], out / name, names)
+            _write(costs[name], scene_report(costs[name], names), _line(options, name), out / name)
         document = summarise(costs)
         write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
-        write_text(out / "summary.md", summary_markdown(document))
+        runs = {name: run for cost in costs.values() for name, run in cost.runs.items()}
+        made = publish(paper_report(costs), Request(out, line=_line(options)), runs)
+        notes = present((), out, NullMeter())
+    if page:
+        write_study_page(page, _line(options), made.text, out)
     if options.json:
-        print_json(document)
+        print_json({**document, "notes": notes})
     else:
-        sys.stdout.write(f"results: {out}\nsummary: {out / 'summary.json'}\n")
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
+        answer = [line for finding in made.document["findings"] for line in wrapped(finding)]
+        paths = [f"page: {out / PAGE}", f"results: {out}", f"summary: {out / 'summary.json'}"]
+        sys.stdout.write("\n".join([*answer, "", *paths]) + "\n")
     return RunError.exit_code if any(cost.failures for cost in costs.values()) else 0

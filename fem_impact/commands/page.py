@@ -11,11 +11,17 @@ from pathlib import Path
 
 import fem_impact
 from fem_impact.commands.common import checked_file
+from fem_impact.commands.options import Options
 from fem_impact.errors import OutputPathError, UsageError
 from fem_impact.files.atomic import read_text, write_text
 from fem_impact.outcome.record import utc_now
 
 MADE = "Made by `"
+
+
+def asked_page(options: Options) -> Path | None:
+    """Return the page that ``--page`` names, None where it is left out; raises as `checked_page`."""
+    return checked_page(options.page) if options.page else None
 
 
 def checked_page(option: str) -> Path:

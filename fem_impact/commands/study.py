@@ -25,6 +25,7 @@ def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
     ids = _checked_ids(options.ids, own=options.name in OWN_TESTS)
     out = checked_out(options.out or Path("results") / options.name)
+    from fem_impact.commands.page import asked_page
     from fem_impact.files.lock import directory_lock
     from fem_impact.study.document import Request
 
@@ -32,7 +33,7 @@ def study(options: Options) -> int:
         with directory_lock(out):
             return _report(options, out)
     request = Request(out, ids, options.quick)
-    page = _page(options)
+    page = asked_page(options)
     with directory_lock(out), closing(chosen_meter(options)) as meter, _workers(options) as executor:
         if options.estimate:
             return _estimate(options, request, meter, executor)
@@ -56,6 +57,7 @@ def _report(options: Options, out: Path) -> int:
 def _study(
     options: Options, request: Request, meter: ProgressMeter, executor: Executor, page: Path | None
 ) -> int:
+    from fem_impact.commands.page import write_study_page
     from fem_impact.study.catalogue import run_study
 
     result, notes = run_study(options.name, request, meter, executor), []
@@ -65,8 +67,6 @@ def _study(
         notes = present(result.runs, request.out, meter)
     meter.close()
     if page:
-        from fem_impact.commands.page import write_study_page
-
         write_study_page(page, request.command(options.name), result.text, request.out)
     if options.json:
         print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
@@ -121,15 +121,6 @@ def _workers(options: Options) -> Iterator[Executor]:
     lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
     with lent as executor:
         yield executor
-
-
-def _page(options: Options) -> Path | None:
-    """Return the page to write, refused before any run where it cannot be written."""
-    if not options.page:
-        return None
-    from fem_impact.commands.page import checked_page
-
-    return checked_page(options.page)
 
 
 def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:

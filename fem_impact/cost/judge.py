@@ -125,11 +125,12 @@ def worst(judged: Judged, names: Iterable[str]) -> float:
 def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
     """Return the settings that no other beats in both time and worst error, in order of time.
 
-    Settings that leave an effect out are not compared: their error is not one against the limit.
+    Settings that leave an effect out are not compared: their error is not one against the limit. Nor is the
+    default run: it has one place of the barrier's grid, so that its error may be small by chance.
     """
     optimal: list[Judged] = []
     best = inf
-    whole = [one for one in judged if one.kind != "effect"]
+    whole = [one for one in judged if one.kind not in ("effect", "default")]
     for one in sorted(whole, key=lambda j: (j.cpu_s, worst(j, names))):
         if worst(one, names) < best:
             best = worst(one, names)
@@ -169,6 +170,18 @@ def advice(
             else f"No setting takes only {budget:.3g} s."
         )
     return lines
+
+
+def default_sentence(settings: Sequence[Judged], names: Sequence[str]) -> str:
+    """Say what the default run costs and errs, where it is among the settings."""
+    for one in settings:
+        if one.kind == "default":
+            errors = [(name, one.error[name]) for name in names]
+            told = " and ".join(
+                f"{100 * error:.2g} % in {name}" for name, error in errors if error is not None
+            )
+            return f"The default run takes {one.cpu_s:.2g} s of processor time; its error is at most {told}."
+    return ""
 
 
 def _sentence_of(setting: Judged, names: Sequence[str]) -> str:

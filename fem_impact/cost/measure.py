@@ -44,12 +44,14 @@ class CostStudy:
     truth : limit of each quantity that the finite-element runs give
     settings : judged, in order of CPU time
     failures : settings without a result, with the reason
+    runs : their results by the name of the run
     """
 
     scene: Scene
     truth: dict[str, Truth]
     settings: list[Judged]
     failures: list[dict[str, str]]
+    runs: Results
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
@@ -198,7 +200,7 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
         replace(one, front=[name for name, members in fronts.items() if one.name in members])
         for one in sorted(judged, key=lambda one: one.cpu_s)
     ]
-    return CostStudy(scene, truth, marked, failures)
+    return CostStudy(scene, truth, marked, failures, results)
 
 
 def _failure(result: Outcome | Failure) -> str | None:

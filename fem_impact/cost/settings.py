@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-Kind = Literal["rigid", "modal", "mesh", "pair", "numerics", "effect"]
+Kind = Literal["rigid", "modal", "mesh", "pair", "default", "numerics", "effect"]
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -55,6 +55,7 @@ FINEST = FAMILY[-1]
 # shifts of a meshed barrier's grid along t, in cells at the contact, at each of which a mesh is run; the
 # finest mesh, which scatters least and costs most, at fewer
 PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
+DEFAULT = "default run"  # one run as the scene states it
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
     "mean dilatation": replace(PLAIN, element="bbar"),
@@ -84,9 +85,11 @@ class Setting:
 def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     """Return the settings in order of cost; the meshes of ``family`` are given from coarse to fine."""
     scene = replace_all(scene, {"save.frames": 0})
+    scene = replace(scene, accuracy=replace(scene.accuracy, target=None))  # each setting states its own
     settings = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
     settings += [_solid(scene, mesh) for mesh in family]
     settings += _pairs(scene, family)
+    settings.append(Setting(DEFAULT, "default", "solid", ((_job(scene, DEFAULT, "solid"),),)))
     settings += [_solid(scene, mesh, "numerics", label) for label, mesh in NUMERICS.items()]
     return settings + _without(scene)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,6 +15,9 @@ DIGITS = 5
 """Significant digits of the numbers in a page; those of a shaded map have `SHADED`."""
 
 SHADED = 3
+WIDE = 2
+"""Most decades of a logarithmic axis that has ticks at 2 and 5 too."""
+
 GRID, SHADE = "#e2e5e9", "#eef2f6"
 RED_BLUE = [[0.0, "#053061"], [0.25, "#4393c3"], [0.5, "#f7f7f7"], [0.75, "#d6604d"], [1.0, "#67001f"]]
 
@@ -113,6 +117,8 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
     trace |= {"type": "scatter"} | {
         name: part | {"color": colour} if isinstance(part, dict) else part for name, part in look.items()
     }
+    if series.texts:
+        trace |= {"text": list(map(markup, series.texts))}
     if series.drawn == "area":
         trace |= {"fillcolor": colour}
     if series.band is not None:
@@ -132,7 +138,8 @@ def _hover(label: str, series: Series, panel: Panel) -> str:
         x += " ± %{error_x.array:.2g}" if series.band is not None else ""
         return f"<b>{label or '%{y}'}</b><br>{markup(panel.title or panel.x)}: {x}<extra></extra>"
     y += " ± %{error_y.array:.2g}" if series.band is not None else ""
-    return f"<b>{label}</b><br>{markup(panel.x)}: {x}<br>{markup(panel.y)}: {y}<extra></extra>"
+    named = "<br>%{text}" if series.texts else ""
+    return f"<b>{label}</b>{named}<br>{markup(panel.x)}: {x}<br>{markup(panel.y)}: {y}<extra></extra>"
 
 
 def _curves(panel: Panel) -> bool:
@@ -168,8 +175,8 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "plot_bgcolor": "#fff",
         "barmode": "stack",
         "hovermode": "x unified" if _curves(panel) else "closest",
-        "xaxis": _axis(panel.x, panel.x_range, panel) | _names("x", panel),
-        "yaxis": _axis(panel.y, panel.y_range, panel) | _names("y", panel),
+        "xaxis": _axis(panel.x, panel.x_range, panel) | _names("x", panel) | _decades("x", panel),
+        "yaxis": _axis(panel.y, panel.y_range, panel) | _names("y", panel) | _decades("y", panel),
         "shapes": shapes + [_rectangle(part.start, part.end) for part in panel.intervals],
         "annotations": [
             *(_beside(mark.at, mark.label, side) for mark, side in sides(panel.marks, low, high)),
@@ -202,7 +209,22 @@ def _axis(label: str, ends: tuple[float, float] | None, panel: Panel) -> dict[st
     }
     if ends:
         axis["range"] = list(ends)
-    return axis | ({"type": "log", "dtick": "D2"} if panel.logarithmic else {})
+    return axis | ({"type": "log"} if panel.logarithmic else {})
+
+
+def _decades(of: str, panel: Panel) -> dict[str, Any]:
+    """Return the ticks of a logarithmic axis in plain digits: powers of ten, with 2 and 5 where few fit."""
+    if not panel.logarithmic:
+        return {}
+    values = np.concatenate([np.asarray(getattr(series, of), float) for series in panel.series])
+    values = values[np.isfinite(values) & (values > 0)]
+    if not len(values):
+        return {}
+    low, high = math.floor(math.log10(values.min())), math.ceil(math.log10(values.max()))
+    steps = (1,) if high - low > WIDE else (1, 2, 5)
+    ticks = [step * 10.0**power for power in range(low, high + 1) for step in steps]
+    words = [np.format_float_positional(tick, 1, fractional=False, trim="-") for tick in ticks]
+    return {"tickvals": ticks, "ticktext": words}
 
 
 def _names(of: str, panel: Panel) -> dict[str, Any]:

@@ -44,7 +44,8 @@ class Series:
 
     The colour is an index of `COLOURS` or a name of the palette. ``band`` holds half-widths, NaN where there
     is none, about ``y``, or about ``x`` in a panel with rows; they are drawn as error bars. A value of NaN is
-    a gap. ``texts`` stand beside bars. Series of one label look the same in all panels of a figure.
+    a gap. ``texts`` stand beside bars; those of points are shown at the pointer. Series of one label look the
+    same in all panels of a figure.
     """
 
     label: str

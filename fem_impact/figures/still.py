@@ -163,12 +163,14 @@ def _axes(axes: Axes, panel: Panel) -> None:
 
 
 def _logarithmic(axes: Axes) -> None:
-    from matplotlib.ticker import MaxNLocator, NullFormatter
+    from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 
     axes.set(xscale="log", yscale="log")
     low, high = axes.get_ylim()
     if high < 10 * low:  # less than a decade: ticks at even round steps
         axes.yaxis.set_major_locator(MaxNLocator(5, steps=[1, 2, 2.5, 5, 10]))
+    elif high < 100 * low:  # less than two
+        axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_formatter("{x:g}")
         axis.set_minor_formatter(NullFormatter())

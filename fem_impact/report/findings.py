@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from html import escape
 from typing import Any
 
@@ -55,12 +55,19 @@ def _figure(entry: Mapping[str, Any], study: Study) -> Markup:
 
 def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
     columns, rows = sheet["columns"], sheet["rows"]
-    texts = {at for at in range(len(columns)) if any(isinstance(row[at], str) for row in rows)}
+    texts = {at for at in range(len(columns)) if _holds_words([row[at] for row in rows])}
     named = Table(
         tuple(Column(name, readable(name), left=at in texts) for at, name in enumerate(columns)),
         tuple(map(tuple, rows)),
     )
-    return details(sheet["caption"], table(named, compact=True), _file(sheet, study))
+    data = download(study.folder / f"{sheet['name']}.csv", f"its data ({sheet['name']}.csv)")
+    return details(sheet["caption"], table(named, compact=True), data)
+
+
+def _holds_words(cells: Sequence[Any]) -> bool:
+    """Return whether most of the texts of a column start with a letter; numbers with a sign or band do not."""
+    texts = [cell for cell in cells if isinstance(cell, str) and cell]
+    return 2 * sum(text[0].isalpha() for text in texts) > len(texts)
 
 
 def _file(sheet: Mapping[str, Any], study: Study) -> Markup:

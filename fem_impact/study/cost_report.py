@@ -1,0 +1,242 @@
+"""What accuracy costs as a study report: the answer, error against time, tables; of a scene or the paper."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from statistics import median
+from typing import NamedTuple
+
+from fem_impact.cost.document import cost_tables
+from fem_impact.cost.judge import Judged, advice, best_pair, cheapest, default_sentence, front
+from fem_impact.cost.measure import CostStudy
+from fem_impact.cost.quantities import TARGETED
+from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
+from fem_impact.study.document import Sheet, StudyReport
+from fem_impact.tables.table import Cell, Table
+
+STUDY, FIGURE = "cost", "error-against-time"
+WANTED = 0.02
+"""Error that is asked for where none is named, over the scale of the quantity."""
+SHOWN = ("t5b", "t6-17", "t3-machined")
+"""Sets of the figure over all sets: a short rod, the same less inclined, and a long one."""
+FRONT = "front: no other setting is both quicker and more accurate"
+LOOKS: dict[str, tuple[str, Look, str]] = {
+    "rigid": ("rigid theory", "squares", "purple"),
+    "modal": ("reduced model (modal)", "diamonds", "orange"),
+    "mesh": ("finite elements, one mesh", "points", "blue"),
+    "pair": ("finite elements, two meshes extrapolated", "triangles", "green"),
+    "numerics": ("other elements or half the step", "crosses", "vermilion"),
+    "default": ("default run", "rings", "ink"),
+}
+"""Label, look and colour of each kind of setting."""
+GUIDE = (
+    "The error of a setting is its distance from the limit for vanishing elements plus the uncertainty of "
+    "that limit; of two meshes it is the band of their own extrapolation where that is smaller.",
+    "Errors are divided by the value of the quantity, at least by 0.05 of e and by 0.5 % of E_0 of an "
+    "energy: 2 % of E_vib are then at least 1e-4 of E_0.",
+    "A time is the processor time of all runs of a setting with their set-up, on one core; two free cores "
+    "take half of it where a setting has several runs.",
+    "A mesh is run at several places of the barrier's grid (four, the finest at two), and their mean counts; "
+    "the default run and those with other elements or steps have one place.",
+)
+
+
+class Pair(NamedTuple):
+    """The best two meshes of a set for one quantity, and whether their band meets `WANTED`."""
+
+    cells: tuple[Cell, ...]
+    seconds: float
+    met: bool
+
+
+def scene_report(
+    cost: CostStudy, names: Sequence[str], target: float | None = None, budget: float | None = None
+) -> StudyReport:
+    """Return the report of one scene; `answers` are its answer."""
+    failed = [f"Not judged: {one['setting']}: {one['reason']}" for one in cost.failures]
+    panels = [_panel(cost.settings, name, name) for name in names]
+    return StudyReport(
+        STUDY,
+        f"What accuracy costs: {cost.scene.title}",
+        [" ".join(answers(cost, names, target, budget)), *failed],
+        [_picture({cost.scene.id: cost.settings}, names, panels)],
+        [Sheet(name, caption, table) for name, caption, table in cost_tables(cost, names)],
+        GUIDE,
+    )
+
+
+def answers(
+    cost: CostStudy, names: Sequence[str], target: float | None = None, budget: float | None = None
+) -> list[str]:
+    """Return the cheapest setting for each quantity and for all together, and what the default run errs.
+
+    One for a quantity alone is left out where it names the setting for all.
+    The error that is asked for is the ``target``, `WANTED` where neither it nor a ``budget``, s, is given.
+    """
+    wanted = WANTED if target is None and budget is None else target
+    listed = advice(cost.settings, names, wanted, budget)
+    if wanted is not None:
+        together = cheapest(cost.settings, names, wanted)
+        for name in names if len(names) > 1 else ():
+            if cheapest(cost.settings, (name,), wanted) != together:
+                listed += advice(cost.settings, (name,), wanted, None)
+    told = default_sentence(cost.settings, names)
+    return [*listed, *([told] if told else [])]
+
+
+def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
+    """Return the report of the measured sets, of the quantities that a target applies to."""
+    pairs = {
+        name: [_best(cost, quantity) for quantity in TARGETED]
+        for name, cost in costs.items()
+        if any(one.band for one in cost.settings)
+    }
+    answer = " ".join([*map(_reached, TARGETED, zip(*pairs.values(), strict=True)), _defaults(costs)]).strip()
+    shown = {name: costs[name].settings for name in SHOWN if name in costs} or {
+        name: cost.settings for name, cost in costs.items()
+    }
+    panels = [
+        _panel(settings, name, f"{scene}: {name}") for scene, settings in shown.items() for name in TARGETED
+    ]
+    failed = [
+        f"Not judged: {one['setting']}: {one['reason']}" for cost in costs.values() for one in cost.failures
+    ]
+    return StudyReport(
+        STUDY,
+        "What accuracy costs",
+        [answer, *failed],
+        [_picture(shown, TARGETED, panels)],
+        [_pair_sheet(pairs), _setting_sheet(costs)],
+        GUIDE,
+        conclusions=[(FIGURE, answer)],
+    )
+
+
+def _picture(
+    settings: Mapping[str, Sequence[Judged]], names: Sequence[str], panels: Sequence[Panel]
+) -> Picture:
+    caption = (
+        "Error against computing time, both logarithmic, a point for each setting; lower and further left is "
+        f"better. Below the dashed line the error is less than {100 * WANTED:g} %."
+    )
+    rows: list[tuple[Cell, ...]] = [
+        (scene, name, one.name, one.cpu_s, error, name in one.front)
+        for scene, judged in settings.items()
+        for name in names
+        for one in judged
+        if one.kind in LOOKS and (error := one.error[name]) is not None
+    ]
+    numbers = Table.of(("scene", "quantity", "setting", "cpu_s", "error", "on_front"), rows, left=range(3))
+    return Picture(FIGURE, caption, tuple(panels), 2, numbers)
+
+
+def _panel(settings: Sequence[Judged], name: str, title: str) -> Panel:
+    known = [one for one in settings if one.error[name] and one.kind in LOOKS]
+    best = Series(FRONT, *_points(front(known, [name]), name), "line", "grey")
+    kinds = [_series([one for one in known if one.kind == kind], name, kind) for kind in LOOKS]
+    level = (Mark(100 * WANTED),)
+    series = (best, *(one for one in kinds if one.texts))
+    return Panel(title, "computing time, s", "error, %", series, levels=level, logarithmic=True)
+
+
+def _series(settings: Sequence[Judged], name: str, kind: str) -> Series:
+    label, look, colour = LOOKS[kind]
+    texts = tuple(one.name for one in settings)
+    return Series(label, *_points(settings, name), look, colour, texts=texts)
+
+
+def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[float]]:
+    return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
+
+
+def _best(cost: CostStudy, name: str) -> Pair:
+    """Return the best pair of meshes for a quantity; its band is bold where it meets `WANTED`."""
+    pair = best_pair(cost.settings, (name,), WANTED)
+    assert pair is not None  # sets without a pair are left out
+    truth = cost.truth[name]
+    both = pair.band[name] * truth.scale + truth.uncertainty
+    off = abs((pair.value[name] or 0.0) - truth.value) / both if both else 0.0
+    value = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * truth.scale:.4f}"
+    met = pair.band[name] <= WANTED
+    band = f"**{_percent(pair.band[name])}**" if met else _percent(pair.band[name])
+    sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
+    shown = f"{band} ({_percent(pair.scatter[name])})"
+    return Pair((value, shown, sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"), pair.two_cores_s, met)
+
+
+def _reached(name: str, pairs: Sequence[Pair]) -> str:
+    """Say in how many sets two meshes know a quantity as well as `WANTED`, and how long that takes."""
+    met = [pair.seconds for pair in pairs if pair.met]
+    least = " (or to 1e-4 of E_0)" if name == "E_vib" else ""
+    took = f", in {min(met):.3g} to {max(met):.3g} s on two cores" if met else ""
+    return (
+        f"Two meshes together give {name} to {100 * WANTED:g} %{least} in {len(met)} of {len(pairs)} "
+        f"sets{took}."
+    )
+
+
+def _defaults(costs: Mapping[str, CostStudy]) -> str:
+    """Say what the default run costs and errs over the sets; nothing where it was not run."""
+    runs = [one for cost in costs.values() for one in cost.settings if one.kind == "default"]
+    if not runs:
+        return ""
+    times = [one.cpu_s for one in runs]
+    errors = {
+        name: [100 * error for one in runs if (error := one.error[name]) is not None] for name in TARGETED
+    }
+    told = " and ".join(
+        f"{median(found):.2g} % in {name} ({min(found):.2g} to {max(found):.2g} %)"
+        for name, found in errors.items()
+        if found
+    )
+    return (
+        f"One default run takes {min(times):.3g} to {max(times):.3g} s on one core; over the sets its error "
+        f"has a median of {told}."
+    )
+
+
+def _pair_sheet(pairs: Mapping[str, Sequence[Pair]]) -> Sheet:
+    columns = ("value", "band, % (scatter)", "meshes, mm", "off", "s on two cores")
+    head = ("set", *(f"{name}: {title}" for name in TARGETED for title in columns))
+    rows = [(name, *(cell for pair in found for cell in pair.cells)) for name, found in pairs.items()]
+    caption = (
+        f"The quickest two meshes with a band of {100 * WANTED:g} % (bold) or, where there are none, the two "
+        "widest apart; off: distance from the limit of all meshes over the sum of both bands, above 1 where "
+        "they contradict each other"
+    )
+    return Sheet("pairs", caption, Table.of(head, rows, left=range(len(head))))
+
+
+def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
+    # in order of cost, without pairs and settings that leave an effect out
+    kinds = ("rigid", "modal", "default", "mesh", "numerics")
+    named = {one.name: one for cost in costs.values() for one in cost.settings if one.kind in kinds}
+    columns = sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))
+    head = ("set", *(f"{name}, limit" for name in TARGETED), *columns)
+    rows = [
+        (
+            name,
+            *(f"{cost.truth[of].value:.3g} ± {cost.truth[of].uncertainty:.1g}" for of in TARGETED),
+            *(_setting_cell(cost.settings, column) for column in columns),
+        )
+        for name, cost in costs.items()
+    ]
+    caption = f"Errors of {' / '.join(TARGETED)} in %, ± their scatter, and processor time of each setting"
+    return Sheet("settings", caption, Table.of(head, rows, left=range(len(head))))
+
+
+def _setting_cell(settings: Sequence[Judged], name: str) -> str:
+    """Return errors with scatter, %, and processor time of a setting; empty where it was not run."""
+    setting = next((one for one in settings if one.name == name), None)
+    if setting is None:
+        return ""
+    errors = []
+    for quantity in TARGETED:
+        error, scatter = setting.error[quantity], setting.scatter.get(quantity)
+        shown = "-" if error is None else _percent(error)
+        errors.append(shown if scatter is None else f"{shown} ± {_percent(scatter)}")
+    return f"{' / '.join(errors)}, {setting.cpu_s:.2g} s"
+
+
+def _percent(error: float) -> str:
+    return f"{100 * error:.2g}" if error < 0.995 else f"{100 * error:.0f}"
