@@ -65,7 +65,7 @@ def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
 
 
 def _holds_words(cells: Sequence[Any]) -> bool:
-    """Return whether most of the texts of a column start with a letter; numbers with a sign or band do not."""
+    """Return whether most texts of a column start with a letter; numbers with a sign or band do not."""
     texts = [cell for cell in cells if isinstance(cell, str) and cell]
     return 2 * sum(text[0].isalpha() for text in texts) > len(texts)
 
