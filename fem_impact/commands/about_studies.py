@@ -73,8 +73,8 @@ STUDIES = {
         "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, "
         "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
         "26.45, means.",
-        "1055 runs, half of them finite elements, some 55 min, and up to 2.5 h more on finer meshes where "
-        "the band is wide",
+        "1055 runs, half of them finite elements, some 55 min; where the band is wide finer meshes follow, "
+        "2.5 h if all points ask for one (about half of them do)",
         "five rods on coarse elements: 61 runs, some 2 min",
         1055,
         61,

@@ -16,7 +16,8 @@ from fem_impact.commands.terminal import chosen_meter, print_markdown
 from fem_impact.errors import RunError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
-    from fem_impact.jobs.forecast import WorkForecast
+    from fem_impact.jobs.forecast import JobGroup, WorkForecast
+    from fem_impact.jobs.run import Pace
     from fem_impact.progress import ProgressMeter
     from fem_impact.study.document import Request
 
@@ -97,7 +98,8 @@ def _estimate_text(forecast: WorkForecast) -> str:
     lines = [
         f"{_jobs(forecast.jobs)}, {forecast.stored} of them stored; work left: {clock_text(forecast.work_s)}"
     ]
-    lines += [_kind_line(kind) for kind in forecast.kinds]
+    lines += [_group_line(group) for group in forecast.groups]
+    lines += ["These processor times rest on", *(_basis(name, pace) for name, pace in forecast.paces.items())]
     lines += [f"  {n:>5} workers: {clock_text(wall)}" for n, wall in forecast.wall_s.items()]
     lines += [f"The longest job takes {clock_text(forecast.longest_s)}; no number of workers beats that."]
     return "\n".join(lines) + "\n"
@@ -107,11 +109,22 @@ def _jobs(count: object) -> str:
     return f"{count} job" + ("" if count == 1 else "s")
 
 
-def _kind_line(kind: dict[str, object]) -> str:
-    size = kind["tip_size_m"]
-    name = f"{kind['fidelity']}" + (f", tip {float(str(size)) * 1e3:.2g} mm" if size else "")
-    basis = f"median of {kind['measured']} measured" if kind["measured"] else "scaled from another tip size"
-    return f"  {_jobs(kind['jobs'])} {name}: {kind['cost_s']:.3g} s each ({basis})"
+def _group_line(group: JobGroup) -> str:
+    """Return number, fidelity, tip size and expected times of a group of jobs."""
+    from fem_impact.progress import clock_text
+
+    name = group.fidelity + (f", tip {group.tip_size_m * 1e3:.2g} mm" if group.tip_size_m else "")
+    low, high = f"{group.least_s:.2g}", f"{group.most_s:.2g}"
+    each = f"{low} s each" if low == high else f"{low} to {high} s each"
+    return f"  {_jobs(group.jobs)} {name}: {each}, {clock_text(group.work_s)} in all"
+
+
+def _basis(fidelity: str, pace: Pace) -> str:
+    """Return what the times of a fidelity rest on."""
+    ran = f"{pace.measured} that ran" if pace.measured else "none that ran"
+    if fidelity != "solid":
+        return f"  {fidelity}: median of {ran}" if pace.measured else f"  {fidelity}: assumed, {ran}"
+    return f"  solid: the plan of each scene, times {pace.ratio:.2g} by {ran}"
 
 
 @contextmanager

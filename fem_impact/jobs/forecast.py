@@ -6,9 +6,10 @@ from collections.abc import Iterable
 from concurrent.futures import Executor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from statistics import median
+from typing import TYPE_CHECKING
 
-from fem_impact.jobs.run import expected_costs, makespan, run_jobs, stored_results
+from fem_impact.jobs.run import Pace, Results, expected_costs, makespan, paces, run_jobs, stored_results
 from fem_impact.jobs.store import Store
 
 if TYPE_CHECKING:
@@ -17,14 +18,30 @@ if TYPE_CHECKING:
 
 
 WORKERS = (1, 2, 10, 100, 1000)  # numbers of workers that a time is forecast for
-SAMPLE = 8  # jobs of a fidelity that are computed (and stored) when none was measured yet
+SAMPLE = 8  # jobs of a fidelity that are computed (and stored) when none has run yet
+
+
+@dataclass(frozen=True, slots=True)
+class JobGroup:
+    """Jobs of one fidelity and tip size, m (None without a mesh), that are still to do.
+
+    ``least_s``, ``most_s`` and ``work_s`` are the shortest and longest expected processor time of one, s, and
+    that of all.
+    """
+
+    fidelity: str
+    tip_size_m: float | None
+    jobs: int
+    least_s: float
+    most_s: float
+    work_s: float
 
 
 @dataclass(frozen=True, slots=True)
 class WorkForecast:
-    """Numbers of all and of stored jobs; of the others total time, longest job and wall time by workers, s.
+    """Numbers of all and of stored jobs; of the others times, s: all, the longest, by number of workers.
 
-    ``kinds`` has one row per kind of job: fidelity, tip size, jobs to do, expected cost, measured jobs.
+    ``paces`` holds measured over planned time of each fidelity.
     """
 
     jobs: int
@@ -32,7 +49,8 @@ class WorkForecast:
     work_s: float
     longest_s: float
     wall_s: dict[int, float]
-    kinds: list[dict[str, Any]]
+    groups: list[JobGroup]
+    paces: dict[str, Pace]
 
 
 def estimate(
@@ -40,47 +58,40 @@ def estimate(
 ) -> WorkForecast:
     """Return how long the jobs that are not stored will take on 1 to 1000 workers.
 
-    Where no job of a fidelity was measured yet, a few are: the cheapest ones, evenly spread. Compilation, the
-    start of workers and sharing a machine's memory among them are not in the figures.
+    A job takes the processor time that the plan of its scene says, times the median ratio of measured to
+    planned time of the jobs of its fidelity. Where none has run yet, a few of the cheaper half do.
+    Compilation, the start of workers and sharing a machine's memory among them are not in the figures.
     """
     wanted = list(jobs)
     with Store.open(store) as base:
-        measured = {fidelity for fidelity, _ in base.costs()}
-    run_jobs(_samples(wanted, measured), store, progress, executor)
-    with Store.open(store) as base:
-        costs, done = base.costs(), stored_results(base, wanted, progress)
-    remaining = [job for job in wanted if job.name not in done]
-    expected = expected_costs(remaining, costs)
-    wall = {n: makespan(expected.values(), n) for n in WORKERS}
-    longest = max(expected.values(), default=0.0)
-    kinds = _kinds(remaining, expected, costs)
-    return WorkForecast(len(wanted), len(done), sum(expected.values()), longest, wall, kinds)
+        done = stored_results(base, wanted, progress)
+    done |= run_jobs(_samples(wanted, done), store, progress, executor)
+    expected = expected_costs(wanted, done)
+    groups: dict[Kind, list[float]] = {}
+    for job in wanted:
+        if job.name in expected:
+            groups.setdefault(job.kind, []).append(expected[job.name])
+    return WorkForecast(
+        len(wanted),
+        len(done),
+        sum(expected.values()),
+        max(expected.values(), default=0.0),
+        {n: makespan(expected.values(), n) for n in WORKERS},
+        [
+            JobGroup(fidelity, size or None, len(times), min(times), max(times), sum(times))
+            for (fidelity, size), times in groups.items()
+        ],
+        paces(wanted, done),
+    )
 
 
-def _samples(jobs: list[Job], measured: set[str]) -> list[Job]:
-    """Return a few jobs of each fidelity that was never measured, those with the coarsest tip."""
+def _samples(jobs: list[Job], done: Results) -> list[Job]:
+    """Return a few jobs of each fidelity of which none has run, evenly spread over its cheaper half."""
     chosen: list[Job] = []
+    measured = {fidelity for fidelity, pace in paces(jobs, done).items() if pace.measured}
     for fidelity in dict.fromkeys(job.fidelity for job in jobs if job.fidelity not in measured):
-        same = [job for job in jobs if job.fidelity == fidelity]
-        coarsest = max(job.kind for job in same)
-        cheap = [job for job in same if job.kind == coarsest]
+        left = [job for job in jobs if job.fidelity == fidelity and job.name not in done]
+        limit = median(job.planned_s for job in left) if left else 0.0
+        cheap = [job for job in left if job.planned_s <= limit]
         chosen += cheap[:: max(1, len(cheap) // SAMPLE)][:SAMPLE]
     return chosen
-
-
-def _kinds(
-    jobs: list[Job], expected: dict[str, float], costs: dict[Kind, list[float]]
-) -> list[dict[str, Any]]:
-    by_kind: dict[Kind, list[float]] = {}
-    for job in jobs:
-        by_kind.setdefault(job.kind, []).append(expected[job.name])
-    return [
-        {
-            "fidelity": fidelity,
-            "tip_size_m": size or None,
-            "jobs": len(times),
-            "cost_s": times[0],
-            "measured": len(costs.get((fidelity, size), [])),
-        }
-        for (fidelity, size), times in by_kind.items()
-    ]

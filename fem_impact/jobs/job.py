@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import time
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 
 Kind = tuple[str, float]
+GUESS = {"rigid": 1e-3, "modal": 0.05}
+"""Assumed processor time, s, of a job without a mesh, until one of its fidelity was measured."""
+REFUSED = 0.05
+"""Time, s, of a solid job whose scene is refused."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,18 +57,23 @@ class Job:
 
     @property
     def kind(self) -> Kind:
-        """Fidelity and tip size, m (0 without a mesh): jobs of one kind cost about the same."""
-        return self.fidelity, _tip_size(self.scene) if self.fidelity == "solid" else 0.0
+        """Fidelity and tip size, m (0 without a mesh)."""
+        return self.fidelity, _planned(self.scene)[0] if self.fidelity == "solid" else 0.0
+
+    @property
+    def planned_s(self) -> float:
+        """Processor time, s, as the plan of its scene expects it; `GUESS` for a fidelity without a mesh."""
+        return _planned(self.scene)[1] if self.fidelity == "solid" else GUESS[self.fidelity]
 
 
-def _tip_size(scene: Scene) -> float:
-    """Return the tip size, m, as stated, else as planned; 0 where no mesh is possible: the run is refused."""
-    if scene.accuracy.tip_size is not None:
-        return scene.accuracy.tip_size
+@cache
+def _planned(scene: Scene) -> tuple[float, float]:
+    """Return planned tip size, m, and processor time, s; where no mesh is possible, 0 and `REFUSED`."""
     try:
-        return plan(scene).zones.tip_size
+        planned = plan(scene)
     except SceneError:
-        return 0.0
+        return 0.0, REFUSED
+    return planned.zones.tip_size, planned.size.time
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import heapq
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from concurrent.futures import Executor, Future, as_completed
 from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
@@ -16,45 +16,44 @@ from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Answer, Failure, Job, compute, read_outcome
 from fem_impact.jobs.store import Store
+from fem_impact.outcome.keys import or_none
 from fem_impact.progress import CaseProgress, Notice
 from fem_impact.run.program import source_digest
 
 if TYPE_CHECKING:
-    from fem_impact.jobs.job import Kind
     from fem_impact.outcome.record import Outcome
     from fem_impact.progress import ProgressMeter
 
 
-GUESS = {"rigid": 1e-3, "modal": 0.05, "solid": 60.0}
-"""Assumed time of a job, s, until one of its fidelity was measured."""
-
-REFUSED = 0.05
-"""Time of a solid job, s, whose scene is refused."""
-
-STEEPNESS = 3.0
-"""A solid run costs tip size to minus this power: 2.3 to 3.1 measured from 0.59 to 0.24 mm."""
+Results = dict[str, "Outcome | Failure"]
 
 
-def expected_costs(jobs: Iterable[Job], measured: Mapping[Kind, list[float]]) -> dict[str, float]:
-    """Return the expected wall time, s, of each job by name, from the times of measured kinds.
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """Processor time of the jobs of a fidelity that have run, over what was planned: median and number."""
 
-    A solid job of a tip size that was not measured is scaled from the nearest one that was; one whose scene
-    no mesh fits is refused at once.
+    ratio: float = 1.0
+    measured: int = 0
+
+
+def paces(jobs: Iterable[Job], results: Results) -> dict[str, Pace]:
+    """Return the pace of each fidelity among the jobs."""
+    ratios: dict[str, list[float]] = {}
+    for job in jobs:
+        run, known = results.get(job.name), ratios.setdefault(job.fidelity, [])
+        if run is not None and not isinstance(run, Failure):
+            known.append((run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)) / job.planned_s)
+    return {name: Pace(median(known), len(known)) if known else Pace() for name, known in ratios.items()}
+
+
+def expected_costs(jobs: Iterable[Job], results: Results) -> dict[str, float]:
+    """Return the expected processor time, s, of each job without a result, by its name.
+
+    It is what the plan of the job says, times the pace of the jobs of its fidelity that have run.
     """
-    return {job.name: _expected(job.kind, measured) for job in jobs}
-
-
-def _expected(kind: Kind, measured: Mapping[Kind, list[float]]) -> float:
-    if kind in measured:
-        return median(measured[kind])
-    fidelity, size = kind
-    if fidelity == "solid" and size == 0:
-        return REFUSED
-    sizes = [other for name, other in measured if name == fidelity and other > 0]
-    if not sizes:
-        return GUESS[fidelity]
-    near = min(sizes, key=lambda other: max(other / size, size / other))
-    return median(measured[fidelity, near]) * float((near / size) ** STEEPNESS)
+    every = list(jobs)
+    pace = paces(every, results)
+    return {job.name: job.planned_s * pace[job.fidelity].ratio for job in every if job.name not in results}
 
 
 def makespan(costs: Iterable[float], workers: int) -> float:
@@ -94,9 +93,6 @@ class Eta:
         self.meter(CaseProgress(name, count, self.total, eta))
 
 
-Results = dict[str, "Outcome | Failure"]
-
-
 def run_jobs(
     jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
 ) -> Results:
@@ -121,7 +117,7 @@ def run_jobs(
     wanted = {j.name: replace(j, out=j.out and j.out.absolute()) for j in jobs}
     with Store.open(store) as base:
         results = stored_results(base, wanted.values(), progress)
-        costs = expected_costs((wanted[name] for name in wanted if name not in results), base.costs())
+        costs = expected_costs(wanted.values(), results)
         if costs:
             # the longest first, so that no worker is left alone with one at the end
             waiting = [wanted[name] for name in sorted(costs, key=lambda name: -costs[name])]

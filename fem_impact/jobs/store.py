@@ -11,7 +11,7 @@ from pathlib import Path
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import make_directory
-from fem_impact.jobs.job import Answer, Job, Kind
+from fem_impact.jobs.job import Answer, Job
 
 STORE = "store.sqlite"
 _TABLE = """
@@ -21,10 +21,6 @@ CREATE TABLE IF NOT EXISTS answers (
 )
 """
 _INSERT = "INSERT OR REPLACE INTO answers VALUES (?, ?, ?, ?, ?, ?, ?, ?)"
-_COSTS = """
-SELECT fidelity, tip_size_m, wall_s FROM answers
-WHERE reason = '' AND typeof(tip_size_m) = 'real' AND typeof(wall_s) = 'real' AND wall_s > 0
-"""
 PATIENCE = 30.0  # s to wait while another process reads or writes
 # remedies for faults of the place by SQLite's primary result code; any other fault is a damaged file
 _PLACE = {
@@ -95,14 +91,6 @@ class Store:
         row = (job.key, job.name, *job.kind, answer.outcome, answer.reason, answer.wall_s)
         with _named(self._path), self._base:
             self._base.execute(_INSERT, (*row, _checksum(job.key, answer.outcome, answer.reason)))
-
-    def costs(self) -> dict[Kind, list[float]]:
-        """Return the wall times, s, of the finished jobs of each kind, of whatever program."""
-        costs: dict[Kind, list[float]] = {}
-        with _named(self._path):
-            for fidelity, size, wall in self._base.execute(_COSTS):
-                costs.setdefault((fidelity, size), []).append(wall)
-        return costs
 
 
 def _checksum(key: str, outcome: object, reason: object) -> str:

@@ -14,7 +14,6 @@ from fem_impact.study.criterion_measure import linear_rods, modal_restitution, r
 from fem_impact.study.criterion_report import HERTZ, YIELDING, study_report
 from fem_impact.study.criterion_solid import restitution, solid_rods, without
 from fem_impact.study.document import Request, StudyResult, publish
-from fem_impact.study.gamma_points import expected_time
 from fem_impact.study.rods import BODY, PAPER_RODS, TIP, Drop, length_of
 
 if TYPE_CHECKING:
@@ -57,7 +56,7 @@ def blind_drops(quick: bool) -> list[Drop]:
 
 def plan(request: Request, results: Results) -> list[Job]:
     """Return the jobs by finite elements, the longest first, and those by modes."""
-    solid = sorted(criterion_solid.jobs(request.quick), key=expected_time, reverse=True)
+    solid = sorted(criterion_solid.jobs(request.quick), key=lambda job: job.planned_s, reverse=True)
     return [*solid, *modal_jobs(request.quick)]
 
 

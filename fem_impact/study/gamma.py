@@ -11,7 +11,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.scene.shipped import load
 from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.gamma_findings import PLAIN, Curves
-from fem_impact.study.gamma_points import Member, Meshes, expected_time, first_jobs, more_jobs, point_of
+from fem_impact.study.gamma_points import Member, Meshes, first_jobs, more_jobs, point_of
 from fem_impact.study.gamma_report import study_report
 from fem_impact.study.pairs import COARSER, PLACES
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop, length_of
@@ -96,13 +96,14 @@ def plan(request: Request, results: Results) -> list[Job]:
         jobs += first_jobs(one, meshes)
         jobs += _more(one, meshes, results) if results else []
     unique = {job.name: job for job in jobs}.values()
-    return sorted(unique, key=expected_time, reverse=True)
+    return sorted(unique, key=lambda job: job.planned_s, reverse=True)
 
 
 def _more(one: Member, meshes: Meshes, results: Results) -> list[Job]:
     """Return the jobs that the results of a point call for; measured sets keep the meshes of their study."""
     only = replace(meshes, finer=None) if one.name in SETS else meshes
-    return [job for job in more_jobs(one, only, results) if expected_time(job) <= MOST]
+    wanted = (job for job in more_jobs(one, only, results) if job.kind[1])  # a mesh that is not refused
+    return [job for job in wanted if job.planned_s <= MOST]
 
 
 def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:

@@ -11,7 +11,6 @@ from fem_impact.jobs.run import Results
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.plan.plan import plan
 from fem_impact.scene.types import Scene
 from fem_impact.study.pairs import resized, shifted, with_limits
 from fem_impact.study.rods import Drop
@@ -170,16 +169,6 @@ def _limited(own: Sequence[Result], second: Sequence[Result], finer: Sequence[Re
 
 def _runs(jobs: Sequence[Job], results: Results) -> list[Result]:
     return [results.get(job.name, Failure(job.name, "was not computed")) for job in jobs]
-
-
-def expected_time(job: Job) -> float:
-    """Return about how long a job takes, s of processor time."""
-    return _planned_time(job.scene) if job.fidelity == "solid" else 0.0
-
-
-@cache
-def _planned_time(scene: Scene) -> float:
-    return plan(scene, "modal").size.time
 
 
 @cache

@@ -35,7 +35,7 @@ def simulate(scene, fidelity="solid", options=None):
             log.write(f"{scene.id}\n")
     word, _, rest = scene.title.removeprefix("does ").partition(" ")
     act(word, rest)
-    found = record(scene)
+    found = record(scene, fidelity)
     if options and options.out is not None:
         found.write(options.out / "outcome.json")
     return found

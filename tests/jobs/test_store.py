@@ -18,7 +18,6 @@ from fem_impact.jobs import job as job_module
 from fem_impact.jobs.job import Failure
 from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import Store
-from fem_impact.plan.plan import plan
 from fem_impact.progress import Notice, NullMeter
 from fem_impact.run.program import source_digest, stamp
 from fem_impact.scene.shipped import load, replace
@@ -168,16 +167,6 @@ def test_a_file_that_is_no_store_is_named(tmp_path):
         run(store, job("a"))
     with pytest.raises(OutputPathError, match="cannot be opened"), Store.open(tmp_path):
         pass
-
-
-def test_costs_are_kept_by_fidelity_and_tip_size(tmp_path):
-    store = tmp_path / "store.sqlite"
-    run(store, job("a", "sleep 0.02"), job("b", "fail"), job_module.Job("s", job("s").scene, "solid"))
-    with Store.open(store) as base:
-        costs = base.costs()
-    assert set(costs) == {("rigid", 0.0), ("solid", plan(job("s").scene).zones.tip_size)}
-    assert len(costs["rigid", 0.0]) == 1
-    assert 0.02 <= costs["rigid", 0.0][0] < 0.2
 
 
 def test_sources_changed_during_a_run_do_not_sign_its_result(tmp_path, monkeypatch):

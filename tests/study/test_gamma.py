@@ -23,7 +23,6 @@ from fem_impact.study.gamma_points import (
     SLACK,
     Member,
     Point,
-    expected_time,
     first_jobs,
     more_jobs,
     point_of,
@@ -114,14 +113,14 @@ def test_the_full_study_covers_what_it_promises():
 @pytest.mark.slow
 def test_the_whole_study_fits_its_time_and_begins_with_the_longest(tmp_path):
     """Even if every point but the measured sets asked for a finer mesh."""
-    times = [expected_time(job) for job in plan(Request(tmp_path), {})]
+    times = [job.planned_s for job in plan(Request(tmp_path), {})]
     assert times == sorted(times, reverse=True)
     finer = [job for one in members(False) if one.name not in SETS for job in one.jobs(FULL.finer)]
-    assert sum(times) + sum(map(expected_time, finer)) < HOURS * 3600 * CORES
+    assert sum(times) + sum(job.planned_s for job in finer) < HOURS * 3600 * CORES
 
 
 def test_the_quick_study_fits_a_minute_and_begins_with_the_longest(tmp_path):
-    times = [expected_time(job) for job in plan(Request(tmp_path, quick=True), {})]
+    times = [job.planned_s for job in plan(Request(tmp_path, quick=True), {})]
     assert times == sorted(times, reverse=True)
     assert sum(times) < 60 * CORES
 
