@@ -171,6 +171,11 @@ def _body(line: FloatArray, bore: FloatArray | None, across: int) -> _Body:
         raise MeshError(
             "the radius of the flat face at the tip shrinks at z = 0: give its points from the axis out"
         )
+    if np.any(np.diff(line[line[:, 1] >= line[-1, 1], 0]) >= 0.0):
+        raise MeshError(
+            f"the radius of the flat face at the tail grows at z = {line[-1, 1]:.6g} m: give its points from "
+            "the edge in, without a rim of no thickness"
+        )
     if bore is None:
         return _Body(line, np.zeros((0, 2)), section(across), across)
     front = np.interp(max(bore[0, 1], 1e-9 * line[-1, 1]), line[:, 1], line[:, 0])
@@ -269,8 +274,8 @@ def _finished(
     """Put the parts together, the cells that stay whole first; refine; find the slices."""
     cells, layer = (np.concatenate(part) for part in zip(*parts, strict=True))
     (low, high), nodes = exact[1], len(body.half.unit)
-    first = int(np.searchsorted(heights, high - SAME * body.length))
-    behind = layer >= first if low <= heights[0] and first < len(heights) - 1 else np.zeros(len(layer), bool)
+    first = min(int(np.searchsorted(heights, high - SAME * body.length)), len(heights) - 1)
+    behind = layer >= first if low <= heights[0] else np.zeros(len(layer), bool)
     order = np.argsort(~behind, kind="stable")
     cells, layer, rest = cells[order], layer[order], int(behind.sum())
     used, new = np.unique(cells, return_inverse=True)
@@ -279,7 +284,13 @@ def _finished(
     mesh = from_cells(points[used], new.reshape(cells.shape), half_body_tags)
     _require_fair(mesh)
     if zones:
-        mesh = refine(mesh, zones, body.snap, buffer=buffer, frozen=np.arange(len(cells)) < rest)
+        try:
+            mesh = refine(mesh, zones, body.snap, buffer=buffer, frozen=np.arange(len(cells)) < rest)
+        except MeshError:
+            if high <= heights[-1]:
+                raise
+            rest = 0  # of a stout body even the cells of the rounded tail are split
+            mesh = refine(mesh, zones, body.snap, buffer=buffer)
         require_positive(mesh)
     section_nodes = place[: nodes * len(heights)].reshape(-1, nodes)
     interface = section_nodes[first] if rest else np.zeros(0, dtype=np.int64)

@@ -79,6 +79,19 @@ def test_the_cylinder_behind_a_nose_is_made_of_equal_slices(name):
     assert not meshes.turned(SHAPES["barrel"], 8).body_cells.size
 
 
+@pytest.mark.parametrize(("size", "some"), [(3e-4, True), (6e-3, False)])
+def test_the_rear_of_a_ball_may_move_as_one_rigid_body(size, some):
+    """It is the grid of its round tail, unless the cells of the contact's zone reach into it."""
+    zone = Zone(np.zeros(3), np.eye(3), np.full(3, -size), np.full(3, size))
+    body = meshes.turned(BALL, 8, [zone, zone, zone])
+    behind = body.mesh.points[body.mesh.cells[body.rest_cells]]
+    assert bool(len(behind)) == some
+    assert len(body.interface) == len(np.unique(body.interface)) and bool(len(body.interface)) == some
+    if some:
+        assert behind[:, :, 2].min() == pytest.approx(body.mesh.points[body.interface, 2].min())
+        assert not body.mesh.level[body.rest_cells].any()
+
+
 def test_no_cell_straddles_a_plane():
     z = 0.0321
     body = meshes.turned(SHAPES["barrel"], 8, planes=[z])
@@ -92,6 +105,7 @@ def test_no_cell_straddles_a_plane():
         (np.array([[0, 0], [R, 0.05], [R, 0.1]]), "too sharp"),
         (np.array([[0, 0], [4e-3, 0], [4e-3, 0.05], [R, 0.0501], [R, 0.1]]), "steps from"),
         (np.array([[0, 0], [R, 0], [R, 2e-3]]), "leaves no body|too sharp"),
+        (np.array([[0, 0], [R, 0], [5e-3, 0.05], [R, 0.05], [0, 0.05]]), "rim of no thickness"),
     ],
 )
 def test_what_hexahedra_cannot_fill_is_refused(line, told):
