@@ -90,12 +90,14 @@ class RodState:
     def vibration(self, state: State, model: Model) -> tuple[float, float] | None:
         """Return kinetic and strain energy, J, of all vibration; forces must be those of a free rod.
 
-        These are the kinetic energy beyond the rigid motion, and the strain energy that the internal forces
-        release, of all shapes of the mesh. No modes are used, so this checks the projection on modes and
-        includes the energy above the highest mode. None if the iteration does not converge.
+        These are the kinetic energy beyond the rigid motion, as the ledger counts it, and the strain energy
+        that the internal forces release, of all shapes of the mesh. No modes are used, so this checks the
+        projection on modes and includes the energy above the highest mode. None if the iteration does not
+        converge.
         """
-        v = self.present(state, model)[self.places]
-        kinetic = float(self.mass @ (v**2).sum(axis=1)) - self.rigid(state).kinetic
+        v, force = state.v[self.places], state.force[self.places]
+        kinetic = float(self.mass @ (v**2).sum(axis=1)) + state.dt * float((v * force).sum())
+        kinetic -= self.rigid(state).kinetic
         strain = self.modes.released(self.turned_back(state.force, self.angle(state, model)))
         return None if strain is None else (kinetic, strain)
 

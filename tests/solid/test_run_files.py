@@ -54,7 +54,7 @@ def test_what_gravity_adds_closes_the_sum():
     parts += ("E_locked_barrier", "W_closing", "residual")
     total = sum(outcome.to_dict()[f"{part}_over_E_0"] for part in parts)
     assert outcome.energy.gravity > 0.01
-    assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-5)
+    assert total == pytest.approx(1 + outcome.energy.gravity, abs=1e-10)
 
 
 def test_the_outcome_reads_back(run):
