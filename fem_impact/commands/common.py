@@ -109,6 +109,9 @@ def checked_result(result: Path) -> Path:
         if (result / "history.csv").is_file():
             way = f"Go on with `fem-impact run {result / 'scene.toml'} --resume --out {result}`."
             raise ResultError(f"{result}: the run here did not come to its end. {way}")
+        if any(result.glob("*/study.json")):
+            line = f"fem-impact study report --out {result / 'report'}"
+            raise ResultError(f"{result}: holds studies. Name one, or write a page over all: {line}")
         names = " or ".join(RESULT_FILES)
         raise ResultError(f"{result}: holds no {names}. Name a directory that `fem-impact run` wrote.")
     return result

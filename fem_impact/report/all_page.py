@@ -13,15 +13,28 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.report.comparison import comparison_part
 from fem_impact.report.findings import figure_id, findings_section
-from fem_impact.report.html import Markup, bullets, details, join, section, table
+from fem_impact.report.html import Markup, bullets, details, join, place, section, table
 from fem_impact.report.page import data_link, page, sources
-from fem_impact.report.sections import card
 from fem_impact.report.study_data import Study, read_study
 from fem_impact.report.study_page import partition_part
 from fem_impact.report.verdicts import marker_section, marker_sentence, verdict_section, verdicts
 from fem_impact.study.document import LEDGER
 from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Table, read_csv
+
+QUESTIONS = {
+    "sets": "Does the model meet the measured series?",
+    "validation": "How large is the error of the model, and what causes it?",
+    "criterion": "When may a rod be called rigid?",
+    "gamma": "How much energy does vibration take?",
+    "convergence": "How far is the usual mesh from vanishing elements?",
+    "effects": "Does each scene choose the effects that it needs?",
+    "reduced": "How far is the reduced model from the finite elements?",
+    "causes": "What do rate, hardness and a hard skin change?",
+    "tip": "Which tip had the rods of Table 3?",
+    "cost": "What does accuracy cost?",
+}
+"""What each study asks; others are named by their title."""
 
 
 def write_all(results: Path, out: Path) -> Path:
@@ -41,13 +54,15 @@ def write_all(results: Path, out: Path) -> Path:
     concluded = conclusions(studies)
     write_text(out / "summary.md", _markdown(studies, conclusion_text(concluded)))
     body = [
-        _cards(studies, ledger),
-        conclusion_section(concluded),
-        *(part for study in studies for part in _parts(study, figures)),
-        section("Ledger of every run", _ledger_part(ledger)),
+        section("", bullets(map(_answer, studies))),
+        section("Study by study", *(_folded(study, figures) for study in studies)),
+        section("All conclusions", details(f"{len(concluded)} conclusions", conclusion_list(concluded))),
+        section("Energy of every run", _ledger_part(ledger)),
         sources({name for study in studies for name in study.sources}),
     ]
-    lead = f"{len(studies)} studies of where the energy of a dropped rod goes."
+    failed = sum(len(study.failures) for study in studies)
+    counts = f"{len(studies)} studies, {len(ledger)} runs, {failed} of them failed."
+    lead = f"{counts} First what each study asks, and its answer; the rest is folded below."
     text = page("Where the energy of a dropped steel rod goes", "All studies", lead, _footer(studies), body)
     return write_text(out / "report.html", text)
 
@@ -57,6 +72,18 @@ def _folders(results: Path) -> list[Path]:
     places = results.iterdir() if results.is_dir() else ()
     folders = [place for place in places if (place / "study.json").is_file()]
     return sorted(folders, key=lambda place: (place.name != "sets", place.name))
+
+
+def _answer(study: Study) -> Markup:
+    """Return the question of a study, its answer, which is its first finding, and the link to its part."""
+    question, answer = QUESTIONS.get(study.study, study.title), "".join(study.findings[:1])
+    link = f' <a href="#{escape(study.folder.name)}">more</a>'
+    return Markup(f"<strong>{markup(question)}</strong> {markup(answer)}{link}")
+
+
+def _folded(study: Study, figures: Path) -> Markup:
+    """Return all parts of a study, folded; a link to it from above unfolds it."""
+    return details(study.title, place(study.folder.name, join(_parts(study, figures))))
 
 
 def _parts(study: Study, figures: Path) -> list[Markup]:
@@ -71,12 +98,6 @@ def _parts(study: Study, figures: Path) -> list[Markup]:
         verdict_section(verdicts(study.rows), figures),
         marker_section(study.rows),
     ]
-
-
-def _cards(studies: Sequence[Study], ledger: Table) -> Markup:
-    failed = sum(len(study.failures) for study in studies)
-    cards = [card("studies", str(len(studies)), ""), card("runs", str(len(ledger)), f"{failed} failed")]
-    return Markup(f'<div class="cards">{join(cards).text}</div>')
 
 
 def _ledger(studies: Iterable[Study]) -> Table:
@@ -153,11 +174,11 @@ def _of_paper(rows: Sequence[Outcome]) -> list[Conclusion]:
     return judged + ([Conclusion(marked)] if marked else [])
 
 
-def conclusion_section(listed: Sequence[Conclusion]) -> Markup:
-    """Return the section of conclusions, each linked to its figure."""
+def conclusion_list(listed: Sequence[Conclusion]) -> Markup:
+    """Return the conclusions, each linked to its figure."""
     links = (f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else "" for one in listed)
     items = (Markup(markup(one.sentence) + link) for one, link in zip(listed, links, strict=True))
-    return section("Conclusions", bullets(items))
+    return bullets(items)
 
 
 def conclusion_text(listed: Sequence[Conclusion]) -> str:

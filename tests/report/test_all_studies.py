@@ -38,7 +38,9 @@ def results(tmp_path):
 
 def test_the_page_holds_findings_figures_data_and_ledger(results):
     page = write_all(results, results / "report").read_text()
-    assert "It rises &amp; falls." in page
+    answer = "<strong>How much energy does vibration take?</strong> It rises &amp; falls."
+    assert "1 studies, 1 runs, 0 of them failed." in page
+    assert 0 < page.index(answer) < page.index("<details>") < page.index('<div id="gamma">')
     assert page.count('<figure class="live">') == 1 and '"x":[0.0,1.0],"y":[2.0,3.0]' in page
     assert "&lt;b&gt;" in page
     assert "<code>fem-impact study gamma --quick</code>" in page
@@ -47,7 +49,7 @@ def test_the_page_holds_findings_figures_data_and_ledger(results):
     assert (
         set(re.findall(r'href="#([\w-]+)"', page))
         == set(re.findall(r'id="([\w-]+)"', page)) - {"library"}
-        == {"gamma-line"}
+        == {"gamma", "gamma-line"}
     )
     (row,) = csv.DictReader((results / "report" / "ledger.csv").read_text().splitlines())
     assert (row["study"], row["run"]) == ("gamma", "run-1")
@@ -83,6 +85,14 @@ def test_the_papers_conclusions_are_judged(results):
     assert "hardness (" in page
     assert set(re.findall(r'href="#([\w-]+)"', page)) <= set(re.findall(r'id="([\w-]+)"', page))
     assert "within 0.003 m/s along n, 0.003 m/s along t and 0.1 rad/s" in page
+
+
+def test_a_folder_of_studies_is_told_how_to_get_its_page(results, cli):
+    code, _, err = cli("report", str(results))
+    assert code != 0
+    assert (
+        f"holds studies. Name one, or write a page over all: fem-impact study report --out {results}" in err
+    )
 
 
 def test_an_empty_folder_is_refused_with_a_remedy(tmp_path):
