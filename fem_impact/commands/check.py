@@ -16,7 +16,7 @@ from fem_impact.scene.library import intervals_of
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict, to_toml
 from fem_impact.tables.table import Table
-from fem_impact.tables.text import wrapped
+from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -209,8 +209,8 @@ def _size_lines(planned: Plan) -> list[str]:
     size = planned.size
     sentences = (
         _cells_line(planned),
-        f"about {size_text(size)} of {size.step * 1e9:.2g} ns ({about(size.most_steps)} if it lasts until "
-        f"max_time), {about(size.memory / 1e6)} MB of memory",
+        f"about {size_text(size)} of {plain(size.step * 1e9, 2)} ns ({about(size.most_steps)} if it lasts "
+        f"until max_time), {about(size.memory / 1e6)} MB of memory",
         f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
         "machine of the stored costs, within a factor of two there",
     )

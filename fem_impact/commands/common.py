@@ -21,16 +21,25 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 RESULT_FILES = ("outcome.json", "study.json")
+TOLD = ("projectile", "barrier", "surface", "impact")
+"""Tables of a scene whose changed values its title tells."""
 _OWN_FILES = (*RESULT_FILES, "store.sqlite", "ledger.csv", *COMPUTED, "scene.toml", "row.json", LOCK)
 """Files that runs and studies write into their directories."""
 
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
-    """Load a scene and apply the changes of the command line; the changed scene is checked once."""
-    from fem_impact.scene.shipped import load, replace_all
+    """Load a scene and apply the changes of the command line; the changed scene is checked once.
 
-    scene = load(id_or_path)
-    return replace_all(scene, read_changes(changes)) if changes else scene
+    Its title tells the values of projectile, barrier, surface and impact that were changed.
+    """
+    from fem_impact.scene.shipped import load, replace, replace_all, titled
+
+    scene, given = load(id_or_path), read_changes(changes)
+    if not given:
+        return scene
+    made = replace_all(scene, given)
+    told = {key: value for key, value in given.items() if key.split(".")[0] in TOLD}
+    return replace(made, "title", titled(scene.title, told)) if told and made.title == scene.title else made
 
 
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:
@@ -170,6 +179,12 @@ def say_fall(scene: Scene, options: Options) -> None:
             f"--set impact.speed='{speed:.4g} m/s'"
         )
     sys.stderr.write(f"fem-impact: {told}\n")
+
+
+def shown_path(path: str) -> str:
+    """Return a path from the working directory where it lies there, else as it is."""
+    place = Path(path)
+    return str(place.relative_to(Path.cwd())) if place.is_relative_to(Path.cwd()) else path
 
 
 def size_text(size: RunSize) -> str:

@@ -13,6 +13,7 @@ from fem_impact.commands.common import (
     checked_out,
     print_json,
     say_fall,
+    shown_path,
     size_text,
 )
 from fem_impact.commands.options import Options
@@ -93,7 +94,7 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     count = max(statistic.n for statistic in tests.statistics().values())
-    told = f"beside {count} measured tests ({scene.measured}):"
+    told = f"beside {count} measured tests ({shown_path(str(scene.measured))}):"
     sys.stdout.write(f"{told}\n")
     print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
 

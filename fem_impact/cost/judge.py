@@ -13,6 +13,7 @@ from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import Setting
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
+from fem_impact.tables.text import plain
 
 Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
 
@@ -178,14 +179,15 @@ def default_sentence(settings: Sequence[Judged], names: Sequence[str]) -> str:
         if one.kind == "default":
             errors = [(name, one.error[name]) for name in names]
             told = " and ".join(
-                f"{100 * error:.2g} % in {name}" for name, error in errors if error is not None
+                f"{plain(100 * error, 2)} % in {name}" for name, error in errors if error is not None
             )
-            return f"The default run takes {one.cpu_s:.2g} s of processor time; its error is at most {told}."
+            took = f"{plain(one.cpu_s, 2)} s of processor time"
+            return f"The default run takes {took}; its error is at most {told}."
     return ""
 
 
 def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
-    return f"{setting.name}, error {100 * worst(setting, names):.2g} % in {setting.cpu_s:.3g} s"
+    return f"{setting.name}, error {plain(100 * worst(setting, names), 2)} % in {plain(setting.cpu_s)} s"
 
 
 def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
@@ -220,4 +222,4 @@ def verdict(pair: Judged, quantities: Quantities, name: str, target: float) -> s
     value, band, scale = pair.value[name] or 0.0, pair.band[name], quantities[name]["scale"]
     reached = "reached" if band <= target else "not reached"
     scatter = f"{pair.scatter[name] * scale:.4f} of it scatter"
-    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {reached}: {100 * band:.2g} %"
+    return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {reached}: {plain(100 * band, 2)} %"

@@ -24,6 +24,7 @@ from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.plan.plan import plan
 from fem_impact.scene.write import to_dict
+from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -129,7 +130,7 @@ def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
             "is too short for two meshes.",
             key="--budget",
             value=f"{budget_s:.3g} s",
-            remedy=f"Give some {need:.2g} s or more.",
+            remedy=f"Give some {plain(need, 2)} s or more.",
         )
     return taken
 

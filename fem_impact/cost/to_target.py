@@ -31,6 +31,7 @@ from fem_impact.run import simulate as run
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
+from fem_impact.tables.text import plain
 
 SUMMARY = "fem-impact/cost-summary/3"
 
@@ -74,8 +75,8 @@ class ChosenSetting:
         """Say what was chosen and why."""
         return (
             f"accuracy {100 * self.target:.3g} %: {self.setting.name}, expected error "
-            f"{100 * self.expected_error:.2g} % of {' and '.join(TARGETED)}, expected time "
-            f"{self.expected_wall_s:.2g} s (measured on {self.like})"
+            f"{plain(100 * self.expected_error, 2)} % of {' and '.join(TARGETED)}, expected time "
+            f"{plain(self.expected_wall_s, 2)} s (measured on {self.like})"
         )
 
 
@@ -195,8 +196,8 @@ def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
         problem = f"cannot be met: the {best.fidelity} fidelity does not know {quantities}."
         return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
     return NotMeasured(
-        f"cannot be met: on {name}, the best measured setting ({best.name}, {best.cpu_s:.2g} s of CPU) is "
-        f"uncertain by {100 * error:.2g} % in {quantities}.",
+        f"cannot be met: on {name}, the best measured setting ({best.name}, {plain(best.cpu_s, 2)} s of CPU) "
+        f"is uncertain by {plain(100 * error, 2)} % in {quantities}.",
         key="accuracy",
         value=_written(scene),
         remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',

@@ -12,6 +12,7 @@ from fem_impact.errors import MissingLibraryError
 from fem_impact.figures.panels import Mark
 from fem_impact.files.atomic import atomic_path, write_text
 from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -140,4 +141,4 @@ def percent(fraction: float, band: float | None = None) -> str:
         return f"{value:.{places}f} ± {100.0 * band:.{places}f} %"
     if abs(value) >= 0.95:
         return f"{value:.1f} %"
-    return f"{value:.2g} %" if value else "0 %"
+    return f"{plain(value, 2)} %" if value else "0 %"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import isclose
 from pathlib import Path
@@ -28,7 +28,7 @@ from fem_impact.scene.shapes import (
     sizes_of,
     stated_points,
 )
-from fem_impact.scene.tables import Table, check_keys, listed, needed, numbers_of, within
+from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
 from fem_impact.scene.types import (
     OWN,
     Accuracy,
@@ -136,22 +136,39 @@ def read_scene(data: Table) -> Scene:
     # only a list of effects without friction needs no surface
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
+    parts: dict[str, Callable[[], Any]] = {
+        "id": lambda: needed(data, "id"),
+        "projectile": lambda: within(data, "projectile", _projectile),
+        "barrier": lambda: within(data, "barrier", _barrier),
+        "surface": lambda: within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
+        "impact": lambda: within(data, "impact", _impact),
+        "accuracy": lambda: within(data, "accuracy", _accuracy, {}),
+        "save": lambda: within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
+        "heating": lambda: within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
+    }
     scene = Scene(
-        id=needed(data, "id"),
-        title=data.get("title", data["id"]),
-        projectile=within(data, "projectile", _projectile),
-        barrier=within(data, "barrier", _barrier),
-        surface=within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
-        impact=within(data, "impact", _impact),
+        **_all_read(parts),
+        title=data.get("title", data.get("id")),
         effects=effects,
-        accuracy=within(data, "accuracy", _accuracy, {}),
-        save=within(data, "save", lambda t: Save(**numbers_of(t, fields.SAVE)), {}),
-        heating=within(data, "heating", lambda t: Heating(**numbers_of(t, fields.HEATING)), {}),
         measured=data.get("measured"),
         restitution=restitution,
     )
     _check_measured(scene)
     return scene
+
+
+def _all_read(parts: Mapping[str, Callable[[], Any]]) -> dict[str, Any]:
+    """Return all parts read; of several complaints a misspelt key comes before what is missing for it."""
+    read: dict[str, Any] = {}
+    complaints: list[SceneError] = []
+    for name, part in parts.items():
+        try:
+            read[name] = part()
+        except SceneError as error:
+            complaints.append(error)
+    if complaints:
+        raise min(complaints, key=lambda error: error.problem != UNKNOWN_KEY)
+    return read
 
 
 def _check_measured(scene: Scene) -> None:
@@ -315,11 +332,11 @@ def _rate(table: Table) -> Rate:
 
 
 def _surface(table: Table) -> Surface:
+    skin = [f.key for f in fields.SKIN] + [f.si_key for f in fields.SKIN if f.si_key]
+    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
     state = needed(table, "state")
     if state == "custom":
         return _custom_surface(table)
-    skin = [f.key for f in fields.SKIN] + [f.si_key for f in fields.SKIN if f.si_key]
-    check_keys(table, ("state", "source", *(f.key for f in fields.SURFACE), *skin))
     known = library.surface(state)
     for key, value in table.items():
         if key in skin:

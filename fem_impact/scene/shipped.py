@@ -14,7 +14,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.impact import restated
 from fem_impact.scene.library import nearest_scene, shipped, stated
 from fem_impact.scene.read import read_dict, read_toml
-from fem_impact.scene.types import Scene
+from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.scene.write import to_dict
 
@@ -105,11 +105,16 @@ def _is_another_impact(key: str) -> bool:
 
 
 def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
-    """Return the title of a scene that repeated a measured set: the set, and what differs from it."""
+    """Return the title of a scene that repeated measured tests: the set, and what differs from it."""
+    if measured and not measured.endswith(OWN):
+        return titled(measured, changes)
+    return titled(title, changes) if measured or _CHANGED in title else title
+
+
+def titled(title: str, changes: Mapping[str, Any]) -> str:
+    """Return a title that tells changed values, after those that it tells already."""
     told = ", ".join(f"{key} = {value}" for key, value in changes.items())
-    if measured:
-        return f"{measured}{_CHANGED}{told}"[:_LONGEST]
-    return f"{title}, {told}"[:_LONGEST] if _CHANGED in title else title
+    return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
 
 
 def _refuse_bare(key: str, data: dict[str, Any]) -> None:

@@ -11,6 +11,7 @@ from fem_impact.scene.units import parse_number, parse_quantity
 
 T = TypeVar("T")
 Table = Mapping[str, Any]
+UNKNOWN_KEY = "is not a known key."
 
 
 def numbers_of(
@@ -80,7 +81,7 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
     for key in table:
         if key not in known:
             remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
-            raise SceneError("is not a known key.", key=str(key), remedy=remedy)
+            raise SceneError(UNKNOWN_KEY, key=str(key), remedy=remedy)
 
 
 def _stated(field: Parameter) -> NoReturn:

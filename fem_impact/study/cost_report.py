@@ -13,6 +13,7 @@ from fem_impact.cost.quantities import TARGETED
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
 from fem_impact.study.document import Sheet, StudyReport
 from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.text import plain
 
 STUDY, FIGURE = "cost", "error-against-time"
 WANTED = 0.02
@@ -168,7 +169,7 @@ def _reached(name: str, pairs: Sequence[Pair]) -> str:
     """Say in how many sets two meshes know a quantity as well as `WANTED`, and how long that takes."""
     met = [pair.seconds for pair in pairs if pair.met]
     least = " (or to 1e-4 of E_0)" if name == "E_vib" else ""
-    took = f", in {min(met):.3g} to {max(met):.3g} s on two cores" if met else ""
+    took = f", in {plain(min(met))} to {plain(max(met))} s on two cores" if met else ""
     return (
         f"Two meshes together give {name} to {100 * WANTED:g} %{least} in {len(met)} of {len(pairs)} "
         f"sets{took}."
@@ -185,13 +186,13 @@ def _defaults(costs: Mapping[str, CostStudy]) -> str:
         name: [100 * error for one in runs if (error := one.error[name]) is not None] for name in TARGETED
     }
     told = " and ".join(
-        f"{median(found):.2g} % in {name} ({min(found):.2g} to {max(found):.2g} %)"
+        f"{plain(median(found), 2)} % in {name} ({plain(min(found), 2)} to {plain(max(found), 2)} %)"
         for name, found in errors.items()
         if found
     )
     return (
-        f"One default run takes {min(times):.3g} to {max(times):.3g} s on one core; over the sets its error "
-        f"has a median of {told}."
+        f"One default run takes {plain(min(times))} to {plain(max(times))} s on one core; over the sets its "
+        f"error has a median of {told}."
     )
 
 

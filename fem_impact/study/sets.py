@@ -31,6 +31,7 @@ from fem_impact.study.inputs import (
 from fem_impact.study.pairs import COARSER, PLACES, resized, shifted, with_limits
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import DASH, Table
+from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
@@ -212,7 +213,7 @@ def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
             for key, scale in (("e_edge", 1), ("E_vib_over_E_0", 100)):
                 limit = known(outcome.validity.mesh_limit)[key]
                 band = known(outcome.validity.mesh_band)[key]
-                cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", f"{100 * band / abs(limit):.2g}"]
+                cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", plain(100 * band / abs(limit), 2)]
             rows.append([*cells, f"{outcome.cost.cpu:.0f}"])
     head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
     caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"

@@ -16,6 +16,7 @@ from fem_impact.errors import ResultError
 from fem_impact.files.atomic import read_text
 from fem_impact.tables.csv import Plain, csv_line, row_of
 from fem_impact.tables.symbols import CODE, STRONG, markup
+from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
     import numpy as np
@@ -254,12 +255,12 @@ def _plain(cell: Cell) -> Plain:
 
 
 def _text(cell: Cell, digits: int) -> str:
-    plain = _plain(cell)
-    if plain is None:
+    known = _plain(cell)
+    if known is None:
         return DASH
-    if isinstance(plain, bool):
-        return "yes" if plain else "no"
-    return f"{plain:.{digits}g}" if isinstance(plain, float) else str(plain)
+    if isinstance(known, bool):
+        return "yes" if known else "no"
+    return plain(known, digits) if isinstance(known, float) else str(known)
 
 
 def _html(cell: Cell, column: Column) -> str:

@@ -1,8 +1,9 @@
-"""Sentences broken to the width of a terminal."""
+"""Sentences broken to the width of a terminal, and numbers in plain digits."""
 
 from __future__ import annotations
 
 import textwrap
+from decimal import Decimal
 
 WIDTH = 79
 
@@ -20,3 +21,15 @@ def wrapped(text: str, indent: str = "", hang: str = "  ") -> list[str]:
         break_on_hyphens=False,
         break_long_words=False,
     )
+
+
+def plain(value: float, digits: int = 3) -> str:
+    """Return a number with so many significant digits, without an exponent from 1e-4 up to a million.
+
+    Examples
+    --------
+    >>> plain(123.4, 2), plain(0.00012, 2), plain(3e-7, 2), plain(12, 2)
+    ('120', '0.00012', '3e-07', '12')
+    """
+    rounded = f"{value:.{digits}g}"
+    return f"{Decimal(rounded):f}" if 1e-4 <= abs(value) < 1e6 else rounded

@@ -301,3 +301,18 @@ def test_a_material_that_is_not_shipped_is_answered_with_its_family(name, told, 
     with pytest.raises(SceneError) as refused:
         material(name)
     assert told in str(refused.value) and not_told not in str(refused.value)
+
+
+def test_a_misspelt_key_is_named_before_what_is_missing_for_it():
+    data = to_dict(load("t5b"))
+    data["projectile"]["lenght"] = data["projectile"].pop("length")
+    data["surface"] = {"stat": "machined"}
+    del data["id"]
+    with pytest.raises(SceneError, match=r"projectile\.lenght: is not a known key\. Did you mean length\?"):
+        read_dict(data)
+    data["projectile"]["length"] = data["projectile"].pop("lenght")
+    with pytest.raises(SceneError, match=r"surface\.stat: is not a known key\. Did you mean state\?"):
+        read_dict(data)
+    data["surface"] = {"state": "machined"}
+    with pytest.raises(SceneError, match=r"id: is missing"):
+        read_dict(data)

@@ -1,0 +1,30 @@
+"""Scenes changed by ``--set``: their title tells what was changed, paths are told from where one works."""
+
+from pathlib import Path
+
+from fem_impact.commands.common import changed_scene, shown_path
+from fem_impact.scene.write import to_toml
+
+
+def test_the_title_follows_every_change_of_the_impact():
+    changed = changed_scene("elastic-frictionless", ["projectile.length=0.1 m", "accuracy.across=12"])
+    assert changed.title.endswith("frictionless plane, changed: projectile.length = 0.1 m")
+    assert changed_scene("t5b", ["surface.friction=0.2"]).title.endswith(", changed: surface.friction = 0.2")
+    plain = changed_scene("t5b", [])
+    assert changed_scene("t5b", ["save.frames=10"]).title == plain.title
+    assert changed_scene("t5b", ["title=mine", "impact.angle=20 deg"]).title == "mine"
+
+
+def test_the_title_of_a_scene_with_own_tests_names_no_file(tmp_path):
+    (tmp_path / "mine.csv").write_text("quantity,mean,sd,n\ne,0.3,0.1,5\n")
+    scene = changed_scene("t5b", ["title=my rod", "id=my-rod", f"measured={tmp_path / 'mine.csv'}"])
+    (tmp_path / "mine.toml").write_text(to_toml(scene))
+    changed = changed_scene(str(tmp_path / "mine.toml"), ["impact.angle=30 deg"])
+    assert (changed.title, changed.measured) == ("my rod, changed: impact.angle = 30 deg", None)
+
+
+def test_paths_are_shown_from_the_working_directory(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert shown_path(str(tmp_path / "a" / "tests.csv")) == str(Path("a") / "tests.csv")
+    assert shown_path("/elsewhere/tests.csv") == "/elsewhere/tests.csv"
+    assert shown_path("t5b") == "t5b"
