@@ -240,6 +240,13 @@ MUTANTS = (
         "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space",
     ),
     Mutant(
+        "elements 2 % too stiff",
+        "fem_impact/fem/elements.py",
+        "lame=lame[0], G=lame[1])",
+        "lame=1.02 * lame[0], G=1.02 * lame[1])",
+        "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
+    ),
+    Mutant(
         "springs of the block's boundary a third as stiff",
         "fem_impact/fem/forms.py",
         "return w.G / r * along_and_across",

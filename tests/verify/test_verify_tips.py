@@ -14,9 +14,14 @@ def errors(found):
 
 
 def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
-    found = errors(verify("hertz", {"cells": 4, "across": 8, "block": 0, "speed": 4.0}))
-    assert abs(found["largest force"]) < 0.01
-    assert abs(found["contact time"]) < 0.01
+    """Held to the error of its mesh, a third of a per cent: elements that are 2 % too stiff are noticed."""
+    done = verify("hertz", {"cells": 8, "across": 8, "block": 0, "speed": 4.0})
+    found = errors(done)
+    assert done.passed
+    assert {c.name: c.tolerance < 0.0045 for c in done.checks[:2]} == {
+        "largest force": True,
+        "contact time": True,
+    }
     assert found["largest force, Hertz"] > 0.02  # which the closed form would call a failure of the solver
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
 
@@ -24,11 +29,13 @@ def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
 def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
     values = {"cells": 3, "across": 8, "speed": 2.0, "nu": 0.2}
     done = verify("hertz", values)
-    found, radiated = errors(done), next(c for c in done.checks if c.name.startswith("radiated"))
+    radiated = next(c for c in done.checks if c.name.startswith("radiated"))
     assert radiated.passed and radiated.tolerance < 0.09
-    assert abs(found["largest force"]) < 0.02
-    assert abs(found["contact time"]) < 0.02
-    assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
+    assert done.passed
+    force, time = (
+        next(c for c in done.checks if c.name == name) for name in ("largest force", "contact time")
+    )
+    assert time.tolerance < force.tolerance < 0.025
 
 
 def test_a_coarse_ball_has_the_mass_and_moment_of_a_ball():
