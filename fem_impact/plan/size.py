@@ -37,8 +37,8 @@ SMALLEST = {"rod": 0.52, "barrier": 0.54}
 UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
 BASE, PER_ELEMENT = 1.8e8, 4.0e3  # bytes: of the program, and of an element
 FILL = 2400.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
-ELASTIC, YIELDING = 65e-9, 430e-9  # s of a step for an element that cannot yield, and for one that may
-SETUP = 3.9e-4  # s for an element: mesh, assembly, modes
+ELASTIC, YIELDING = 30e-9, 270e-9  # s of a step for an element that cannot yield, and for one that may
+SETUP = 4.0e-4  # s for an element: mesh, assembly, modes
 
 
 @dataclass(frozen=True, slots=True)

@@ -60,7 +60,8 @@ def test_memory_and_time_of_the_stored_runs(data, setting):
     steps = setting["element_steps"] / len(places) / (size.rod + size.barrier)
     assert off(size.steps, steps) < 2.0
     assert off(size.time, setting["cpu_s"] / len(places)) < 2.0
-    assert off(size.memory, setting["peak_memory_MB"] * 1e6) < 1.33
+    if setting["peak_memory_MB"] is not None:  # where another process held more, it is not known
+        assert off(size.memory, setting["peak_memory_MB"] * 1e6) < 1.33
 
 
 @pytest.mark.parametrize(

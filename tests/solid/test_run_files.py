@@ -1,5 +1,8 @@
 """The files of one run: histories, contacts, fields and the outcome tell the same story."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -125,3 +128,12 @@ def test_mises_of_a_uniform_strain():
     assert mises(centre_gradients(x, cells), u, np.array([E / (2 * (1 + nu))])) == pytest.approx(
         [E / (1 + nu) * e]
     )
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="the other count is that of Linux")
+def test_peak_memory_is_that_of_the_process_alone():
+    """A child starts with the largest memory of its parent in what getrusage counts."""
+    held = b"x" * 400_000_000
+    code = "from fem_impact.solid.run import _peak_memory; print(_peak_memory())"
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert 20 < float(told) < 300 < len(held) / 1e6
