@@ -95,7 +95,7 @@ def _legend(picture: Picture) -> list[list[str]]:
 
 def _height(panel: Panel) -> int:
     if panel.rows:
-        return 28 * len(panel.rows) + (75 if panel.x else 50)
+        return 28 * len(panel.rows) + (90 if panel.x else 66)
     return 420 if panel.shaded else 340
 
 
@@ -251,7 +251,7 @@ def _rectangle(start: float, end: float) -> dict[str, Any]:
 
 
 def _note(text: str, **place: Any) -> dict[str, Any]:
-    look = {"font": {"size": 10.5, "color": QUIET}, "bgcolor": "rgba(255,255,255,0.6)"}
+    look = {"font": {"size": 10.5, "color": QUIET}, "bgcolor": "rgba(255,255,255,0.8)"}
     return {"text": markup(text), "showarrow": False, **look, **place}
 
 
@@ -261,7 +261,7 @@ def _beside(at: float, label: str, side: str) -> dict[str, Any]:
 
 
 def _on(at: float, label: str) -> dict[str, Any]:
-    place = {"x": 0.01, "xref": "paper", "xanchor": "left", "y": at, "yanchor": "bottom"}
+    place = {"x": 0.99, "xref": "paper", "xanchor": "right", "y": at, "yanchor": "bottom"}
     return _note(label, **place)
 
 

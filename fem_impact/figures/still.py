@@ -100,8 +100,9 @@ def _panel(axes: Axes, panel: Panel) -> None:
         below = _series(axes, series, colour_of(series.colour, at), below, panel.lies)
     for level in panel.levels:
         axes.axhline(level.at, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
-        look: dict[str, Any] = {"va": "bottom", "fontsize": 7.5, "color": INK}
-        axes.text(0.01, level.at, level.label, transform=axes.get_yaxis_transform(), **look)
+        look: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 7.5, "color": INK, "zorder": 5}
+        look |= {"bbox": {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 1.0}}
+        axes.text(0.99, level.at, formula(level.label), transform=axes.get_yaxis_transform(), **look)
     _axes(axes, panel)
     _marks(axes, panel)
     for part in panel.intervals:

@@ -190,7 +190,8 @@ def _scene_text(folder: Path) -> Markup:
 def _lead(outcome: Outcome) -> str:
     origin = outcome.provenance
     effects = ", ".join(origin.effects) or "none"
-    return f"{outcome.validity.stopped_because} Fidelity: {origin.fidelity}. Effects in the model: {effects}."
+    ended = f"Why the run ended: {outcome.validity.stopped_because}"
+    return f"{ended} Fidelity: {origin.fidelity}. Effects in the model: {effects}."
 
 
 def _footer(outcome: Outcome) -> str:

@@ -10,7 +10,7 @@ GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}
 """Letters whose English name stands for them in plain texts."""
 
 SYMBOL = re.compile(
-    r"(?<![\w`.^/\\-])(?P<base>E|W|V|T|T1|d|e|u|k|f|t|n|mu|gamma|Omega|alpha|tau)"
+    r"(?<![\w`.^/\\-])(?P<base>E|W|V|v|T|T1|d|e|u|k|f|t|n|mu|gamma|Omega|alpha|tau)"
     r"(?:_(?P<index>0|[A-Za-z]{1,4}))?(?![\w`^\\])"
     r"|(?<=/)(?P<under>E_0|tau)(?!\w)"
     r"|(?<=\bm)\^(?P<power>-?[\d.]*\d)"

@@ -24,7 +24,7 @@ def wrapped(text: str, indent: str = "", hang: str = "  ") -> list[str]:
 
 
 def plain(value: float, digits: int = 3) -> str:
-    """Return a number with so many significant digits, without an exponent from 1e-4 up to a million.
+    """Return a number with so many significant digits, without an exponent from 1e-5 up to a million.
 
     Examples
     --------
@@ -32,4 +32,4 @@ def plain(value: float, digits: int = 3) -> str:
     ('120', '0.00012', '3e-07', '12')
     """
     rounded = f"{value:.{digits}g}"
-    return f"{Decimal(rounded):f}" if 1e-4 <= abs(value) < 1e6 else rounded
+    return f"{Decimal(rounded):f}" if 1e-5 <= abs(value) < 1e6 else rounded

@@ -102,7 +102,7 @@ def chart(verdict: Verdict) -> Picture:
     e, tolerance = (np.abs(some.change), abs(here.value), here.band), verdict.tolerance
     vibration = some.E_vib, here.E_vib, here.E_vib_band
     panels = (
-        _panel("size of the change of e", some, e, own, ratio, (Mark(tolerance, "may be neglected"),)),
+        _panel("size of the change of e", some, e, own, ratio, (Mark(tolerance, f"allowed: {tolerance:g}"),)),
         _panel("energy of vibration over E_0", some, vibration, own, ratio),
     )
     return Picture("design-chart", caption(some, "yielding" if yields else "elastic"), panels)
@@ -124,10 +124,11 @@ def _panel(
     series = []
     for at, (low, high) in enumerate(pairwise((0.0, *STEPS, np.inf))):
         chosen = (np.abs(some.mu) >= low) & (np.abs(some.mu) < high)
-        words = f"mu below {high:g}" if high < np.inf else f"mu from {low:g}"
+        words = f"mu {low:g} to {high:g}" if high < np.inf else f"mu from {low:g}"
         series.append(Series(words, some.ratio[chosen], of_points[chosen], "points", at))
     point = Series(own, ratio, np.array([value]), "diamonds", "ink", np.array([band]))
-    return Panel("", "T1/tau, bending period over contact time", label, (*series, point), levels=levels)
+    here = (Mark(float(ratio[0]), "this scene"),)  # its point lies among many
+    return Panel("", "T1/tau, bending period over contact time", label, (*series, point), here, levels)
 
 
 def caption(some: Points, kind: str) -> str:
