@@ -1,7 +1,7 @@
 """Half a rod with a shaped tip: a nose that follows its meridian, and a body of identical slices."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,6 +55,18 @@ class RodMesh:
         """Return a mesh as a body without slices, every cell of which may be refined."""
         none = np.zeros(0, dtype=np.int64)
         return cls(mesh, none.reshape(0, 1), none.reshape(0, 0), 0.0, 0.0, none, none, ())
+
+    @classmethod
+    def cut(cls, mesh: HexMesh, start: float) -> "RodMesh":
+        """Return a mesh as a body without slices that has a rest.
+
+        The rest are the cells that begin at ``start``, m, or further from the tip, beyond all refined ones.
+        """
+        start = max(start, float(mesh.points[mesh.cells[mesh.level > 0], 2].max(initial=0.0)))
+        behind = mesh.points[mesh.cells, 2].min(axis=1) >= start
+        shared = np.intersect1d(mesh.cells[behind], mesh.cells[~behind])
+        whole = cls.plain(mesh)
+        return replace(whole, body_start=start, interface=shared, rest_cells=np.flatnonzero(behind))
 
 
 def rod(

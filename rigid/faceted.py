@@ -85,6 +85,11 @@ class Faceted:
         """Squared radius of gyration about an axis along y through the mass centre, m2."""
         return float(self.parts[:, 5:].sum() / self.parts[:, 2].sum()) - self.x_c**2 - self.z_c**2
 
+    def moments_behind(self, start: float) -> tuple[float, float, float, float]:
+        """Mass (kg), centre x and z (m), squared radius of gyration (m2) of parts from `start`, m, on."""
+        mass, x, z, xx, zz = 2.0 * self.parts[self.parts[:, 0] >= start, 2:].sum(axis=0)
+        return mass, x / mass, z / mass, (xx + zz - (x**2 + z**2) / mass) / mass
+
     @property
     def gamma(self) -> float:
         """Slenderness coefficient (Eq 29) with the largest width, m^-0.3815."""

@@ -94,11 +94,11 @@ class Projectile:
         """Slenderness coefficient (Eq 29), m^-0.3815."""
         return float(slenderness(self.length, self.diameter))
 
-    def moments_behind(self, start: float) -> tuple[float, float, float]:
-        """Mass (kg), centre (m from the tip), squared radius of gyration (m2) of what lies behind `start`."""
+    def moments_behind(self, start: float) -> tuple[float, float, float, float]:
+        """Mass (kg), centre x and z (m), squared radius of gyration (m2) of what lies behind `start`, m."""
         behind = self.length - start
         mass = self.density * math.pi * self.diameter**2 / 4 * behind
-        return mass, start + behind / 2, behind**2 / 12 + self.diameter**2 / 16
+        return mass, 0.0, start + behind / 2, behind**2 / 12 + self.diameter**2 / 16
 
     def meridian(self, n: int = 33) -> Floats:
         """Meridian of the tip as (rho, z) points, m, from (0, 0) to (R, z_side).

@@ -154,16 +154,17 @@ class Turned:
         density = np.array([rho for _, rho in self.density])[np.minimum(index, len(ends) - 2)]
         return place, self.radius(place), self.inner_radius(place), density, (half * w).ravel()
 
-    def moments_behind(self, start: float) -> tuple[float, float, float]:
-        """Mass (kg), centre (m from the tip), squared radius of gyration (m2) of what lies behind `start`."""
+    def moments_behind(self, start: float) -> tuple[float, float, float, float]:
+        """Mass (kg), centre x and z (m), squared radius of gyration (m2) of what lies behind `start`, m."""
         z, outer, inner, density, dz = self.discs(start)
         dm = density * np.pi * (outer**2 - inner**2) * dz
         mass = float(dm.sum())
         z_c = float(dm @ z) / mass
-        return mass, z_c, float(dm @ ((outer**2 + inner**2) / 4 + (z - z_c) ** 2)) / mass
+        return mass, 0.0, z_c, float(dm @ ((outer**2 + inner**2) / 4 + (z - z_c) ** 2)) / mass
 
     def _integrated(self) -> tuple[float, float, float]:
-        return self.moments_behind(0.0)
+        mass, _, z_c, k2 = self.moments_behind(0.0)
+        return mass, z_c, k2
 
     def contact_point(self, alpha: ArrayLike) -> tuple[Floats, Floats]:
         """Lowest point (rho, z), m, of the outline at inclination `alpha` (rad).

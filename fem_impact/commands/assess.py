@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
@@ -31,7 +32,7 @@ def assess(options: Options) -> int:
     out = checked_out(options.out) if options.out else None
     means = _budget(options), min(options.workers or cores(), 2)
     verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
-    found = document(verdict)
+    found = document(verdict, _command(options))
     if case is not None:
         from fem_impact.verdict.transfer import transfer
 
@@ -45,6 +46,17 @@ def assess(options: Options) -> int:
     else:
         sys.stdout.write(_text(found))
     return 0
+
+
+def _command(options: Options) -> str:
+    """Return the command without the options that the next step may add."""
+    if options.scene:
+        given = [options.scene, *(word for change in options.changes for word in ("--set", change))]
+    else:
+        names = [name for name in (*SHORT, *SHAPE) if getattr(options, name, None)]
+        given = [word for name in names for word in (f"--{name.replace('_', '-')}", getattr(options, name))]
+    tolerance = ["--tolerance", options.tolerance] if options.tolerance else []
+    return shlex.join(["fem-impact", "assess", *given, *tolerance])
 
 
 def _scene(options: Options) -> Scene:
@@ -105,6 +117,7 @@ def _text(found: dict[str, Any]) -> str:
     from fem_impact.verdict.sentences import lines_of
 
     lines = [line for title, sentence in found["box"] for line in wrapped(f"{title} {sentence}")]
+    lines += [f"Next step: {found['next_step']}"] if found["next_step"] else []
     lines += ["", "What this rests on", *lines_of(found["basis"], indent="  ")]
     lines += ["", "What it does not cover"]
     lines += [line for sentence in found["not_covered"] for line in wrapped(f"- {sentence}", "  ")]

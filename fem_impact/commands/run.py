@@ -100,14 +100,13 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
 
 
 def _say_screening(scene: Scene, options: Options) -> None:
-    """Print the closed-form screening of the scene and, where there is one, the command of its verdict."""
-    from fem_impact.plan.limits import has_verdict
+    """Print the closed-form screening of the scene and the command of its verdict."""
     from fem_impact.verdict.screening import screening
     from fem_impact.verdict.sentences import lines_of, screening_lines
 
     changes = [word for change in options.changes for word in ("--set", change)]
     told = screening_lines(screening(scene), shlex.join([options.scene, *changes]))
-    lines = lines_of(told if has_verdict(scene) else told[:1], indent="")
+    lines = lines_of(told, indent="")
     sys.stdout.write("\n".join(lines) + "\n")
 
 

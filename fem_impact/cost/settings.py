@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
 from fem_impact.jobs.job import Job
-from fem_impact.plan.cells import body_cell, levels_of
+from fem_impact.plan.cells import body_cell, levels_of, rod_cell
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import replace_all
@@ -40,10 +40,12 @@ class Mesh:
     def sizes(self, scene: Scene) -> tuple[float, float]:
         """Return the element sizes of rod and barrier at the contact, m."""
         stateless = replace(scene.accuracy, across=OWN, tip_size=None, barrier_size=None)
-        levels, _ = levels_of(plan(replace(scene, accuracy=stateless), "rigid").bodies)
-        base = body_cell(replace(scene, accuracy=replace(stateless, across=self.across)))
-        tip, barrier = (base / 2 ** (levels + more) for more in (self.tip, self.barrier))
-        return tip, barrier
+        levels, below = levels_of(plan(replace(scene, accuracy=stateless), "rigid").bodies)
+        crossed = replace(scene, accuracy=replace(stateless, across=self.across))
+        # the cells of a user's mesh know nothing of ``across``: they are asked to be finer by as much
+        finer = OWN / self.across if scene.projectile.own_mesh else 1.0
+        tip = finer * rod_cell(crossed) / 2 ** (levels + self.tip)
+        return tip, body_cell(crossed) / 2 ** (below + self.barrier)
 
 
 OWN = 8  # cells across of a scene that states none

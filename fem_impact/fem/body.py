@@ -29,7 +29,7 @@ from fem_impact.plan.plan import Plan
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh
-from rigid import Faceted, Turned
+from rigid import Turned
 
 HEIGHT = 2e-6  # m of the rod's lowest point over the barrier where it is meshed
 
@@ -199,9 +199,7 @@ class MeshedBodies:
         """Return the mass, kg, of half the rigid body behind the nose; 0 where the rod vibrates."""
         if self.spec.vibrating:
             return 0.0
-        body = projectile(self.scene)
-        assert not isinstance(body, Faceted), "the plan refuses a mesh of its own that cannot vibrate"
-        return body.moments_behind(self.geometry.rod.body_start)[0] / 2
+        return projectile(self.scene).moments_behind(self.geometry.rod.body_start)[0] / 2
 
     @cached_property
     def materials(self) -> dict[str, Material]:

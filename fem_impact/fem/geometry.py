@@ -14,9 +14,10 @@ from fem_impact.arrays import Array, Bools
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.layers import block_of, moved_rows
+from fem_impact.plan.size import no_rest
 from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
-from rigid import Faceted, Projectile, Turned
+from rigid import Projectile, Turned
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -78,7 +79,13 @@ def build_geometry(
     turn, lowest = to_barrier_frame(scene.impact.angle), lowest_point(scene)
     rod = _rod(scene, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
     if not vibrating:
-        _require_rest(rod)
+        if scene.projectile.own_mesh:
+            place = (rod.mesh.points - lowest) @ turn.T
+            near = rod.mesh.cells[_round(rod.mesh, place, zones.reach, zones.half)]
+            end = float(rod.mesh.points[near, 2].max())  # past all that may yield
+            rod = RodMesh.cut(rod.mesh, max(end, scene.projectile.diameter / 3))
+        if not len(rod.rest_cells):
+            raise no_rest()
         rod = meshes.without_slices(rod, rest_points(scene, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
     _require_tip_first(points, zones.base)
@@ -97,14 +104,12 @@ def build_geometry(
 
 
 def rest_points(scene: Scene, start: float) -> Array:
-    """Return the two axis points (2, 3), m, that replace what lies behind ``start``, m from the tip.
+    """Return the two points (2, 3), m, that replace what lies behind ``start``, m from the tip.
 
     They lie at its radius of gyration on either side of its centre.
     """
-    body = projectile(scene)
-    assert not isinstance(body, Faceted), "the plan refuses a mesh of its own that cannot vibrate"
-    _, centre, k2 = body.moments_behind(start)
-    return np.array([[0.0, 0.0, centre - sqrt(k2)], [0.0, 0.0, centre + sqrt(k2)]])
+    _, x, z, k2 = projectile(scene).moments_behind(start)
+    return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 
 def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
@@ -129,16 +134,6 @@ def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     except meshes.MeshError as error:
         remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
         raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy) from None
-
-
-def _require_rest(rod: RodMesh) -> None:
-    """Raise SceneError where cells are split up to the end of a body that cannot vibrate."""
-    if not len(rod.rest_cells):
-        raise SceneError(
-            "leaves nothing behind the fine zone of its contact that could move as one rigid body.",
-            key="projectile",
-            remedy='Let it vibrate: effects = ["auto", "vibration"].',
-        )
 
 
 def _require_tip_first(points: Array, base: float) -> None:

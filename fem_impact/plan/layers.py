@@ -57,23 +57,17 @@ def moved_rows(scene: Scene, zones: Zones) -> tuple[Array, Array]:
     return rows[[*chosen, -1]], np.array([0.0, *interfaces(scene), rows[-1]])
 
 
-def require_one_material(scene: Scene, asked: str) -> None:
-    """Refuse layers where the reduced model is asked for (SceneError)."""
-    if scene.barrier.layers:
-        raise SceneError(
-            f"are not known to the reduced model, on which {asked} rests: it has one material there.",
-            key="barrier.layers",
-            remedy="Use `fem-impact run` with --fidelity solid, or leave the layers out.",
-        )
-
-
 def require_layers(bodies: ContactBodies, zones: Zones, fidelity: str) -> None:
     """Refuse layers that no row of cells fits, and any in the reduced model (SceneError)."""
     scene = bodies.scene
     if not scene.barrier.layers:
         return
     if fidelity == "modal":
-        require_one_material(scene, "the modal fidelity")
+        raise SceneError(
+            "are not known to the reduced model, which has one material there.",
+            key="barrier.layers",
+            remedy="Use --fidelity solid, or leave the layers out.",
+        )
     if fidelity == "solid" and bodies.compliant:
         before, after = moved_rows(scene, zones)
         share = float((np.diff(after) / np.diff(before)).min())

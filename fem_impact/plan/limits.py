@@ -226,16 +226,17 @@ def require_turned(scene: Scene, asked: str) -> None:
     """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
     if scene.projectile.own_mesh is not None:
         raise SceneError(
-            f"is fixed, but {asked} rests on meshes of the program's own and on a rod that cannot vibrate.",
+            f"is fixed, but {asked} rests on meshes of the program's own.",
             key="projectile.mesh",
             value=scene.projectile.own_mesh.path,
             remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
         )
 
 
-def has_verdict(scene: Scene) -> bool:
-    """Return whether a scene can be assessed: bodies of the program's own on one material."""
-    return scene.projectile.own_mesh is None and not scene.barrier.layers
+def not_reduced(scene: Scene) -> str:
+    """Return what the reduced model has no answer for, empty where it has one."""
+    own = "a projectile with a mesh of its own" if scene.projectile.own_mesh else ""
+    return own or ("a barrier of layers" if scene.barrier.layers else "")
 
 
 def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:
@@ -251,12 +252,6 @@ def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> No
         )
         remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
         raise SceneError(problem, key="projectile.mesh", value=scene.projectile.own_mesh.path, remedy=remedy)
-    if fidelity == "solid" and "vibration" not in active:
-        problem = (
-            "leaves vibration out, but a mesh of its own has no rear part that could move as a rigid body."
-        )
-        remedy = 'Add it: effects = ["auto", "vibration"].'
-        raise SceneError(problem, key="effects", value=value, remedy=remedy)
     if fidelity == "solid" and "machined-skin" in active:
         problem = (
             "has the effect machined-skin, but how deep a node lies under a mesh's facets is not computed."

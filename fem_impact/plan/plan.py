@@ -23,7 +23,7 @@ from fem_impact.plan.limits import (
     validity,
 )
 from fem_impact.plan.metals import unknowns
-from fem_impact.plan.size import RunSize, require_memory, run_size
+from fem_impact.plan.size import RunSize, require_memory, require_rest, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, require_layer, zones_of
 from fem_impact.scene.types import Scene
 
@@ -114,6 +114,8 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)
+        if not slots.vibrating:
+            require_rest(scene, zones)
         if slots.skin and slots.barrier_law:
             require_layer(slots.skin, zones)
         if scene.accuracy.target is None:  # a target chooses its own mesh

@@ -26,9 +26,10 @@ from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
-from meshes import thin_skin_rise
+from meshes import cell_moments, thin_skin_rise
 from meshes.refine import reach
 from meshes.section import section
+from rigid import Faceted
 
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
@@ -114,6 +115,25 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
     )
 
 
+def require_rest(scene: Scene, zones: Zones) -> None:
+    """Refuse a user's mesh that cannot vibrate and is all nose (SceneError)."""
+    body = scene.projectile.body()
+    if (
+        isinstance(body, Faceted)
+        and not (body.parts[:, 0] >= _body_start(scene, zones, zones.rod_boxes)).any()
+    ):
+        raise no_rest()
+
+
+def no_rest() -> SceneError:
+    """Return the refusal of a body whose cells are split up to its end, without vibration."""
+    return SceneError(
+        "leaves nothing behind the fine zone of its contact that could move as one rigid body.",
+        key="projectile",
+        remedy='Let it vibrate: effects = ["auto", "vibration"].',
+    )
+
+
 def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
     for levels in range(len(zones.rod) - 1, 0, -1):
         size = float(f"{zones.rod_base / 2**levels:.2g}")
@@ -168,7 +188,7 @@ def _coarse_elements(scene: Scene, end: float) -> float:
     """Return the elements of half the coarse body from its tip up to a height, m."""
     rod, across = scene.projectile, scene.accuracy.across
     if rod.own_mesh is not None:
-        return float(len(rod.own_mesh.half().cells))
+        return float((cell_moments(rod.own_mesh.half()).low < end).sum())
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
     radius = rod.diameter / 2 if rod.is_rod else np.maximum(rod.body().radius(z), 0.05 * rod.diameter)
     return float(len(section(across).quads) * end * np.mean(across / (2 * radius)))

@@ -58,8 +58,9 @@ def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path
 def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) -> str:
     """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
     scene, free = verdict.scene, verdict.here.free
+    following = [("Next step:", document["next_step"])] if document["next_step"] else []
     body = (
-        verdict_box(document["box"], verdict.answer),
+        verdict_box([*document["box"], *following], verdict.answer),
         section("What the verdict rests on", _titled(document["basis"])),
         section("This scene among other rods", charted),
         section("Inputs and their sources", table(inputs(scene))),

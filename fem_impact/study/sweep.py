@@ -41,6 +41,10 @@ SHOWN = {
     "E_vib_over_E_0": "vibration over E_0",
 }
 """Columns that are drawn, with the labels of their axes."""
+COLUMNS = (
+    "In `sweep.csv` the varied keys come first; `e_edge` is e at the point of the tip that touches first, and "
+    "`fem-impact schema` explains every other column."
+)
 MOST_CURVES = 8
 
 
@@ -123,7 +127,8 @@ def _findings(results: Results) -> list[str]:
         if np.isfinite(values).any():
             ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
             low, high = (f"{values[at]:.4g} ({_stated(results.rows[at])})" for at in ends)
-            sentences.append(f"{label[0].upper()}{label[1:]}: from {low} to {high}.")
+            sentences.append(f"{label[0].upper()}{label[1:]} (`{name}`): from {low} to {high}.")
+    sentences.append(COLUMNS)
     return sentences
 
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.errors import RunError, SceneError
-from fem_impact.plan.layers import require_one_material
-from fem_impact.plan.limits import require_turned
+from fem_impact.plan.limits import not_reduced
 from fem_impact.verdict.change import (
     Answer,
     Change,
@@ -38,6 +37,7 @@ ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 LEAST_PAIRS = 2
 """Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
 
+LACKING = "There is no reduced model of {}: finite elements alone answer."
 COUNT = ("first", "second", "third", "fourth")
 
 Tell = Callable[[str], object]
@@ -59,6 +59,7 @@ class Verdict:
     over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
         None where f has no interval or no effect
     notes : what the reader should know about how the verdict was found
+    more : options of ``fem-impact assess`` that may decide what is undecided, empty where none are known
     """
 
     scene: Scene
@@ -70,11 +71,12 @@ class Verdict:
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
     notes: tuple[str, ...]
+    more: str
 
     def __repr__(self) -> str:
         return (
-            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, e changes by {self.here.value:+.3f} ± "
-            f"{self.here.band:.3f}, vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, e changes by {self.here.told}, "
+            f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
         )
 
     @property
@@ -123,23 +125,19 @@ def assess(
         No model gives a restitution at the scene's inclination.
     """
     _check(fidelity, tolerance, budget_s)
-    require_turned(scene, "a verdict")
-    require_one_material(scene, "a verdict")
-    tell("the reduced model, at this inclination and at others ...")
-    pair, notes = modal_pair(scene), list[str]()
-    failed = unfinished(pair)
-    quick = None if failed else modal_change(scene, pair)
-    if failed:
-        notes.append(f"The reduced model has no answer here: {failed}")
-    here, used = quick, "modal"
+    reduced = fidelity == "modal" or not not_reduced(scene)
+    quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(not_reduced(scene))])
+    here, used, more = quick, "modal", "--fidelity solid"
     open_still = quick is None or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        solid, told = _solid(scene, fidelity, tolerance, (budget_s, workers), quick, tell)
+        least = LEAST_PAIRS if fidelity == "solid" else int(not reduced)
+        solid, told, more = _solid(scene, least, tolerance, (budget_s, workers), quick, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
+        more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
     if here is None:
         raise RunError(" ".join(notes))
-    worst, not_known = _over_angles(scene)
+    worst, not_known = _over_angles(scene) if reduced else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,
@@ -150,7 +148,17 @@ def assess(
         not_known,
         None if quick is None else _over_friction(scene),
         tuple(notes),
+        more if here.answer(tolerance) == "undecided" else "",
     )
+
+
+def _quick(scene: Scene, tell: Tell) -> tuple[Change | None, list[str]]:
+    """Return what the reduced model says, None where it has no answer; and notes."""
+    tell("the reduced model, at this inclination and at others ...")
+    pair = modal_pair(scene)
+    if failed := unfinished(pair):
+        return None, [f"The reduced model has no answer here: {failed}"]
+    return modal_change(scene, pair), []
 
 
 def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
@@ -165,18 +173,21 @@ def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
 
 
 def _solid(
-    scene: Scene, fidelity: str, tolerance: float, means: tuple[float, int], quick: Change | None, tell: Tell
-) -> tuple[Change | None, list[str]]:
-    """Return what finite elements say, None where the budget allows no mesh or no run gives an e; and notes.
+    scene: Scene, least: int, tolerance: float, means: tuple[float, int], quick: Change | None, tell: Tell
+) -> tuple[Change | None, list[str], str]:
+    """Return what finite elements say, None where the budget allows no mesh or no run gives an e.
 
-    One mesh alone counts where the reduced model, ``quick``, bears it out.
+    Notes on it follow, and the options with which another mesh would run. ``least`` meshes run whatever the
+    budget. One mesh alone counts where the reduced model, ``quick``, bears it out.
     """
-    ladder, notes = Ladder.of(scene, *means), list[str]()
-    least = LEAST_PAIRS if fidelity == "solid" else 0
+    ladder, notes, more = Ladder.of(scene, *means), list[str](), ""
+    if quick is None:
+        ladder.require_mesh()
     while not _decided(ladder, tolerance, quick, least):
         mesh = ladder.following()
         if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):
-            notes.append(_stopped(ladder, mesh, means[0]))
+            told, more = _stopped(ladder, mesh, means[0])
+            notes.append(told)
             break
         tell(f"finite elements, {COUNT[len(ladder.pairs)]} mesh, about {ladder.expected_s(mesh):.0f} s ...")
         ladder.climb(mesh)
@@ -187,7 +198,7 @@ def _solid(
             )
             ladder.drop()
             break
-    return _found(ladder, quick, tolerance, notes), notes
+    return _found(ladder, quick, tolerance, notes), notes, more
 
 
 def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int) -> bool:
@@ -209,8 +220,11 @@ def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[s
     if not ladder.pairs:
         return None
     change = ladder.change()
-    if len(ladder.pairs) >= LEAST_PAIRS or quick is None or _bears_out(quick, change, tolerance):
+    if len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance):
         return change
+    if quick is None:
+        notes.append("One mesh alone does not tell its error, and no reduced model bears it out.")
+        return ladder.doubted()
     notes.append(
         f"One mesh of finite elements says {change.value:+.3f} ± {change.band:.3f}, the reduced model "
         f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
@@ -218,16 +232,18 @@ def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[s
     return change.widened(quick)
 
 
-def _stopped(ladder: Ladder, mesh: Mesh | None, budget_s: float) -> str:
+def _stopped(ladder: Ladder, mesh: Mesh | None, budget_s: float) -> tuple[str, str]:
+    """Return why no other mesh runs, and the options with which one would."""
     if mesh is None:
-        return "No finer mesh is tried: none of the family has finer cells at the contact."
+        return "No finer mesh is tried: none of the family has finer cells at the contact.", ""
     more, left = ladder.expected_s(mesh), budget_s - ladder.spent_s
     enough = _seconds(ladder.spent_s + 2 * more)
-    return (
+    told = (
         f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
         f"{_seconds(more)} more, and {_seconds(left)} are left of the budget of {budget_s:g} s. For it "
         f'give --budget "{enough}".'
     )
+    return told, f'--budget "{enough}"'
 
 
 def _seconds(time: float) -> str:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import inf
 from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
@@ -15,6 +16,7 @@ from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import SHARES
 from fem_impact.plan.cells import ERROR, contact_edge, expected_cells, kind
 from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
@@ -22,6 +24,7 @@ from fem_impact.verdict.reliability import known_error
 from fem_impact.verdict.twins import twins
 
 if TYPE_CHECKING:
+    from fem_impact.outcome.groups import Energy
     from fem_impact.physics.contact import ContactBodies
     from fem_impact.scene.types import Scene
 
@@ -30,6 +33,14 @@ FINE_TIP = Mesh(8, 0, 0)
 """Finer at the rod's tip only: enough where the rod's cells resolve the contact, and the cheapest."""
 FINER = 0.9
 """A mesh counts as finer if the cells at its contact are below this share of those before."""
+
+REDUCED, ONE_MESH, MESHES = "the reduced model", "one mesh of finite elements", "meshes of finite elements"
+"""What a change of e rests on."""
+
+OWN_CELLS = (
+    " All meshes have the cells of your file behind the contact, whose error they do not show: the {:.2g} by "
+    "which such a mesh was off on the measured sets is added. A file of smaller cells shows it."
+)
 
 Answer = Literal["yes", "no", "undecided"]
 Pair = tuple[Outcome, Outcome]
@@ -44,10 +55,14 @@ class Change:
     ----------
     angle : rad
     value : e with vibration less e of the twin that cannot vibrate
-    band : half-width that should hold the error of ``value``
+    band : half-width that should hold the error of ``value``; inf where nothing is known of that error
     E_vib, E_vib_band : energy of vibration over E_0, and its half-width
     free, stiff : the outcomes, of the finest mesh where there are several
     source : where value and band come from, as a sentence
+    models : what ``value`` and ``band`` rest on
+    model : what ``free``, ``stiff`` and the shares of the energy rest on
+    error : what the half-widths of the shares are
+    errors : half-widths of shares of E_0, by their names in an outcome's energy, as far as they are known
     """
 
     angle: float
@@ -58,12 +73,31 @@ class Change:
     free: Outcome
     stiff: Outcome
     source: str
+    models: str
+    model: str
+    error: str
+    errors: Mapping[str, float]
 
     def widened(self, other: Change) -> Change:
-        """Return the change with a band that holds that of another one, too."""
+        """Return the change with bands of e and E_vib that hold those of another one, too."""
         low = min(self.value - self.band, other.value - other.band)
         high = max(self.value + self.band, other.value + other.band)
-        return replace(self, value=0.5 * (low + high), band=0.5 * (high - low))
+        apart = abs(self.E_vib - other.E_vib) + other.E_vib_band
+        return replace(
+            self,
+            value=0.5 * (low + high),
+            band=0.5 * (high - low),
+            E_vib_band=max(self.E_vib_band, apart),
+            models=f"{self.model} and {other.model} together",
+            error=f"{self.model}, and {other.model} within",
+        )
+
+    @property
+    def told(self) -> str:
+        """Value and band as text."""
+        return (
+            f"{self.value:+.3f} ± {self.band:.3f}" if self.band < inf else f"{self.value:+.3f}, error unknown"
+        )
 
     def meets(self, other: Change) -> bool:
         """Say whether both may be right: their bands have values in common."""
@@ -98,9 +132,13 @@ def modal_change(scene: Scene, pair: Pair) -> Change:
         _difference(pair),
         error.change_of_e,
         known(pair[0].energy.vibration),
-        error.E_vib,
+        error.shares["vibration"],
         *pair,
         error.sentence,
+        REDUCED,
+        REDUCED,
+        f"known error of {REDUCED}",
+        error.shares,
     )
 
 
@@ -131,6 +169,11 @@ class Ladder:
     def of(cls, scene: Scene, budget_s: float, workers: int) -> Ladder:
         """Return a ladder on which nothing has run."""
         return cls(_meshless(scene), budget_s, workers, [], [])
+
+    def require_mesh(self) -> None:
+        """Raise the SceneError of a scene of which no mesh can be made."""
+        if self.following() is None:
+            self._expected(FAMILY[-1])
 
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""
@@ -170,17 +213,36 @@ class Ladder:
     def _of_one(self) -> Change:
         pair, (share, error) = self.pairs[0], self._error(0)
         E_vib = known(pair[0].energy.vibration)
-        told = f"Finite elements on one mesh ({_edge(pair)}), which gives e within {100 * share:.2g} %."
-        return Change(self.scene.impact.angle, _difference(pair), error, E_vib, share * E_vib, *pair, told)
+        size = f"{self._size(0)} at the contact"
+        told = f"Finite elements on one mesh ({size}), which gives e within {100 * share:.2g} %."
+        return Change(
+            self.scene.impact.angle,
+            _difference(pair),
+            error,
+            E_vib,
+            share * E_vib,
+            *pair,
+            told,
+            ONE_MESH,
+            ONE_MESH,
+            f"known error of {ONE_MESH}",
+            {},
+        )
+
+    def doubted(self) -> Change:
+        """Return what one mesh says that nothing bears out: its error is not known."""
+        told = f"Finite elements on one mesh ({self._size(0)} at the contact), whose error is not known."
+        error = f"of {ONE_MESH} unknown"
+        return replace(self._of_one(), band=inf, E_vib_band=inf, source=told, error=error)
 
     def _of_two(self) -> Change:
         coarse, fine = self.pairs[0], self.pairs[-1]
-        ratio = known(coarse[0].cost.tip_size) / known(fine[0].cost.tip_size)
+        ratio = self._edge(self.meshes[0]) / self._edge(self.meshes[-1])
         value, band = pair_limit(_difference(fine), _difference(coarse), ratio)
         E_vib, of_vibration = pair_limit(
             known(fine[0].energy.vibration), known(coarse[0].energy.vibration), ratio
         )
-        told = f"Finite elements on meshes of {_edge(coarse)} and {_edge(fine)} at the tip; "
+        told = f"Finite elements on meshes of {self._size(0)} and {self._size(-1)} at the contact; "
         apart, expected = abs(_difference(fine) - _difference(coarse)), self._error(0)[1] + self._error(-1)[1]
         if apart > expected:
             low, high = min(value - band, _difference(coarse)), max(value + band, _difference(coarse))
@@ -191,7 +253,23 @@ class Ladder:
             )
         else:
             told += "the band holds the limits of all orders of convergence from 3/4 up."
-        return Change(self.scene.impact.angle, value, band, E_vib, of_vibration, *fine, told)
+        if self.scene.projectile.own_mesh:
+            share, error = self._error(-1)
+            band, of_vibration = band + error, of_vibration + share * E_vib
+            told += OWN_CELLS.format(error)
+        return Change(
+            self.scene.impact.angle,
+            value,
+            band,
+            E_vib,
+            of_vibration,
+            *fine,
+            told,
+            MESHES,
+            MESHES,
+            f"band of the {MESHES}",
+            _bands(coarse[0].energy, fine[0].energy, ratio),
+        )
 
     def _expected(self, mesh: Mesh) -> float:
         each = [plan(on_mesh(one, mesh)).size.time for one in twins(self.scene)]
@@ -209,6 +287,9 @@ class Ladder:
         """Return the size, m, of the cells that resolve the contact."""
         return contact_edge(self._bodies(mesh))
 
+    def _size(self, which: int) -> str:
+        return f"{self._edge(self.meshes[which]) * 1e3:.3g} mm"
+
     def _error(self, which: int) -> tuple[float, float]:
         """Return the error of e on a mesh that ran, by its cells over the contact: relative, absolute."""
         bodies = self._bodies(self.meshes[which])
@@ -224,12 +305,20 @@ def largest(changes: Sequence[Change]) -> Change:
     return max(changes, key=lambda change: abs(change.value))
 
 
+def _bands(coarse: Energy, fine: Energy, ratio: float) -> dict[str, float]:
+    """Return how far the limits of two meshes may lie from the shares of the finer one."""
+    names = [share.key.path[-1] for share in SHARES]
+    pairs = {name: (or_none(getattr(fine, name)), or_none(getattr(coarse, name))) for name in names}
+    limits = {
+        name: (a, *pair_limit(a, b, ratio))
+        for name, (a, b) in pairs.items()
+        if a is not None and b is not None
+    }
+    return {name: abs(limit - share) + half for name, (share, limit, half) in limits.items()}
+
+
 def _difference(pair: Pair) -> float:
     return known(pair[0].restitution.edge.e) - known(pair[1].restitution.edge.e)
-
-
-def _edge(pair: Pair) -> str:
-    return f"{known(pair[0].cost.tip_size) * 1e3:.3g} mm"
 
 
 def _meshless(scene: Scene) -> Scene:

@@ -126,7 +126,8 @@ def _panel(
         chosen = (np.abs(some.mu) >= low) & (np.abs(some.mu) < high)
         words = f"mu {low:g} to {high:g}" if high < np.inf else f"mu from {low:g}"
         series.append(Series(words, some.ratio[chosen], of_points[chosen], "points", at))
-    point = Series(own, ratio, np.array([value]), "diamonds", "ink", np.array([band]))
+    half = np.array([band if band < np.inf else np.nan])  # none is drawn of an error that is not known
+    point = Series(own, ratio, np.array([value]), "diamonds", "ink", half)
     here = (Mark(float(ratio[0]), "this scene"),)  # its point lies among many
     return Panel("", "T1/tau, bending period over contact time", label, (*series, point), here, levels)
 

@@ -7,12 +7,13 @@ therefore known of both.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from math import log
 from typing import TYPE_CHECKING
 
-from fem_impact.outcome.keys import known
+from fem_impact.outcome.keys import known, or_none
 from fem_impact.plan.measured import summary
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
@@ -23,20 +24,27 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
+COMPARED: Mapping[str, Callable[[Mapping[str, float]], float]] = {
+    "vibration": lambda stored: stored["E_vib"],
+    "rigid": lambda stored: 1.0 - stored["E_lt"] - stored["E_ln"],
+    "friction": lambda stored: stored["friction"],
+    "plastic": lambda stored: stored["plastic"],
+}
+"""Shares of E_0, by their names in an outcome's energy, from the stored values of the finite elements."""
 LIKE = log(1.5)
 """Largest difference of the logarithms of T1/tau between a scene and a set whose error counts for it."""
 
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """One scene computed by both models: the change of e by vibration, E_vib over E_0 of each."""
+    """One scene computed by both models: the change of e by vibration, and shares of E_0 by `COMPARED`."""
 
     name: str
     scene: Scene
     modal: float
     solid: float
-    E_vib_modal: float
-    E_vib_solid: float
+    shares_modal: Mapping[str, float]
+    shares_solid: Mapping[str, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,13 +53,14 @@ class KnownError:
 
     Attributes
     ----------
-    change_of_e, E_vib : of the change of e by vibration, and of E_vib over E_0
+    change_of_e : of the change of e by vibration
+    shares : of shares of E_0, by `COMPARED`
     compared : the scenes whose errors these are
     alike : whether these scenes have a near T1/tau and the same materials; else they are all there are
     """
 
     change_of_e: float
-    E_vib: float
+    shares: Mapping[str, float]
     compared: tuple[str, ...]
     alike: bool
 
@@ -67,7 +76,7 @@ class KnownError:
         )
         return (
             f"Beside the finite elements the reduced model's change of e by vibration is off by up to "
-            f"{self.change_of_e:.2g}, its E_vib by up to {self.E_vib:.2g} of E_0, over {which}."
+            f"{self.change_of_e:.2g}, its E_vib by up to {self.shares['vibration']:.2g} of E_0, over {which}."
         )
 
 
@@ -79,7 +88,10 @@ def known_error(scene: Scene) -> KnownError:
     counted = [beside(name) for name in near or stored()]
     return KnownError(
         max(abs(one.modal - one.solid) for one in counted),
-        max(abs(one.E_vib_modal - one.E_vib_solid) for one in counted),
+        {
+            name: max(abs(one.shares_modal[name] - one.shares_solid[name]) for one in counted)
+            for name in COMPARED
+        },
         tuple(one.name for one in counted),
         bool(near),
     )
@@ -115,6 +127,6 @@ def beside(name: str) -> Beside:
         scene,
         known(whole.restitution.edge.e) - known(twin.restitution.edge.e),
         coarse["e"] - stiff["e"],
-        known(whole.energy.vibration),
-        fine["E_vib"],
+        {name: or_none(getattr(whole.energy, name)) or 0.0 for name in COMPARED},
+        {name: of(fine) for name, of in COMPARED.items()},
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from math import degrees
+from math import degrees, inf
 from typing import Any
 
 from fem_impact.outcome.groups import Energy
@@ -11,6 +11,8 @@ from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
 from fem_impact.physics.contact import projectile
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.tables.text import wrapped
@@ -36,13 +38,13 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
     return (
         ("May rigid theory be used here?", _may(v)),
         ("Vibration takes", _vibration(v)),
-        ("The rest goes to", _rest(v.here.free.energy)),
+        ("The rest goes to", _rest(v.here)),
     )
 
 
 def _may(v: Verdict) -> str:
     return (
-        f"{v.answer.upper()}: vibration changes e by {_signed(v.here)} at this inclination "
+        f"{v.answer.upper()}: vibration changes e by {v.here.told} at this inclination, by {v.here.models} "
         f"(allowed: {v.tolerance:g}). {_anywhere(v)}"
     )
 
@@ -50,8 +52,8 @@ def _may(v: Verdict) -> str:
 def _anywhere(v: Verdict) -> str:
     """Say what holds for other inclinations of the same projectile at the same speed."""
     if v.worst is None:
-        return "For other inclinations the answer is not known."
-    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {_signed(v.worst)}"
+        return "For other inclinations the answer is not known: change impact.angle and assess them, too."
+    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {v.worst.told}"
     if v.worst_answer == "yes":
         return f"Rigid theory may be used at other inclinations too: {largest}."
     if v.worst_answer == "undecided":
@@ -61,25 +63,32 @@ def _anywhere(v: Verdict) -> str:
     return f"Rigid theory may not be used at {where}: {largest}."
 
 
-def _signed(change: Change) -> str:
-    return f"{change.value:+.3f} ± {change.band:.3f}"
-
-
 def _vibration(v: Verdict) -> str:
     here = v.here
     share = f"{100 * here.E_vib:.2g} % of the energy"
     if or_none(here.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
-    kind = "known error of the reduced model" if v.fidelity == "modal" else "band of the meshes"
-    return f"{share} (± {100 * here.E_vib_band:.2g} %, {kind})"
+    half = f"± {100 * here.E_vib_band:.2g} %: " if here.E_vib_band < inf else "error "
+    return f"{share} ({half}{here.error})"
 
 
-def _rest(energy: Energy) -> str:
-    named = [
-        (share.label, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"
+def _rest(here: Change) -> str:
+    energy = here.free.energy
+    named = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
+    listed = [
+        f"{share.label} {100 * part:.0f}{_half(here, share.key.path[-1])} %"
+        for share, part in named
+        if part > LEAST_SHARE
     ]
-    listed = [f"{label} {100 * part:.0f} %" for label, part in named if part > LEAST_SHARE]
-    return f"{', '.join(listed)}; {_heating(energy)}"
+    kind = f"± {here.error}" if here.errors else f"by {here.model}"
+    return f"{', '.join(listed)} ({kind}); {_heating(energy)}"
+
+
+def _half(here: Change, name: str) -> str:
+    """Return the half-width of a share in per cent, if it is known; for one body that of all plastic work."""
+    total = here.errors.get("plastic") if name.startswith("plastic_") else None
+    error = here.errors.get(name, total)
+    return "" if error is None else f" ± {100 * error:.2g}"
 
 
 def _heating(energy: Energy) -> str:
@@ -104,7 +113,7 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         ("the same scene with a rod that cannot vibrate", _motion(stiff)),
         ("fidelity", f"{v.fidelity}. {v.here.source}"),
         *_other_angles(v),
-        *_friction(v),
+        _friction(v),
         *(("note", note) for note in v.notes),
     )
 
@@ -112,12 +121,19 @@ def basis(v: Verdict) -> tuple[Line, ...]:
 def case_sentence(scene: Scene) -> str:
     """Return the scene in one sentence: rod, material, barrier, impact."""
     rod, impact = scene.projectile, scene.impact
+    layers = "".join(f"{1e3 * one.thickness:g} mm of {one.material.name} on " for one in scene.barrier.layers)
     return (
-        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {rod.material.name}, tip "
-        f"{rod.tip}, {projectile(scene).mass:.3g} kg, on {scene.barrier.material.name}, "
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {rod.material.name}, "
+        f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {layers}{scene.barrier.material.name}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
     )
+
+
+def _form(rod: ProjectileSpec) -> str:
+    if rod.shape is None:
+        return f"tip {rod.tip}"
+    return rod.shape.name if isinstance(rod.shape, NamedShape) else "mesh" if rod.own_mesh else "profile"
 
 
 def _motion(run: Outcome) -> str:
@@ -140,16 +156,24 @@ def _other_angles(v: Verdict) -> Iterator[Line]:
         )
 
 
-def _friction(v: Verdict) -> Iterator[Line]:
+def _friction(v: Verdict) -> Line:
+    surface, title = v.scene.surface, "uncertain friction"
+    ends = f"f from {surface.friction_low:g} to {surface.friction_high:g}"
+    if "friction" not in v.here.free.provenance.effects:
+        return title, "none: the scene has no friction."
+    if surface.friction_low == surface.friction_high:
+        told = (
+            f"f = {surface.friction:g} is stated without an interval and counts as exact; give friction_low "
+            "and friction_high to see what its uncertainty does."
+        )
+        return title, told
     if v.over_friction is None:
-        return
+        told = (
+            f"what {ends} does is not known without the reduced model: assess both ends (surface.friction)."
+        )
+        return title, told
     low, high = v.over_friction
-    surface = v.scene.surface
-    yield (
-        "uncertain friction",
-        f"over f from {surface.friction_low:g} to {surface.friction_high:g} the reduced model's change of e "
-        f"runs from {low:+.3f} to {high:+.3f}.",
-    )
+    return title, f"over {ends} the reduced model's change of e runs from {low:+.3f} to {high:+.3f}."
 
 
 def not_covered(v: Verdict) -> tuple[str, ...]:
@@ -171,8 +195,8 @@ def screening_lines(screening: Screening, scene: str) -> tuple[Line, ...]:
     )
 
 
-def document(v: Verdict) -> dict[str, Any]:
-    """Return the verdict as plain JSON."""
+def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
+    """Return the verdict as plain JSON; ``command`` is that which gives it again."""
     return {
         "schema": SCHEMA,
         "scene": to_dict(v.scene),
@@ -194,6 +218,7 @@ def document(v: Verdict) -> dict[str, Any]:
             "published": v.screening.published,
         },
         "box": [list(line) for line in box(v)],
+        "next_step": f"{command} {v.more}" if v.more else None,
         "basis": [list(line) for line in basis(v)],
         "not_covered": list(not_covered(v)),
         "with_vibration": v.here.free.to_dict(),
@@ -201,12 +226,20 @@ def document(v: Verdict) -> dict[str, Any]:
     }
 
 
+def _or_null(half: float) -> float | None:
+    """Return a half-width, None where it is not known."""
+    return half if half < inf else None
+
+
 def _change_entry(change: Change) -> dict[str, Any]:
     return {
         "angle_rad": change.angle,
         "change_of_e": change.value,
-        "band": change.band,
+        "band": _or_null(change.band),
+        "rests_on": change.models,
         "E_vib_over_E_0": change.E_vib,
-        "E_vib_band": change.E_vib_band,
+        "E_vib_band": _or_null(change.E_vib_band),
+        "energy_rests_on": change.model,
+        "errors_over_E_0": dict(change.errors),
         "source": change.source,
     }

@@ -1,10 +1,13 @@
 """Runs of a user's own mesh: the program's rod from a file, a tapered bar that yields, free modes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from own_bodies import taper, write
 
 import meshes
+from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.stepped_beam import beam_modes
@@ -94,3 +97,53 @@ def test_free_modes_of_a_tapered_bar_are_those_of_its_beam(tmp_path):
     theory, found = beam_modes(made.scene.projectile), made.rod_modes().frequency
     for wanted in (*theory.bent[:2], theory.stretched[0]):
         assert np.abs(found / (wanted / (2 * np.pi)) - 1).min() < 0.01
+
+
+def test_a_rod_from_a_file_that_cannot_vibrate_gives_the_run_of_the_built_in_one(tmp_path):
+    """The noses are of the same length, the rest of both moves as one rigid body."""
+    effects = ["friction", "barrier-elastic"]
+    mesh = MeshedBodies(plan(scene(BUILT, ["vibration", "barrier-rigid"]))).geometry.rod.mesh
+    path = write(tmp_path / "rod.vtu", mesh.points, mesh.cells)
+    built, own = (
+        scene(rod, effects, tip_size="0.8 mm")
+        for rod in (BUILT, {"mesh": str(path), "material": "rod-steel"})
+    )
+    first, again = simulate(built), simulate(own)
+    assert again.restitution.impulse.e == pytest.approx(first.restitution.impulse.e, abs=5e-3)
+    assert again.restitution.mu == pytest.approx(first.restitution.mu, abs=5e-3)
+    assert again.motion.Omega == pytest.approx(first.motion.Omega, rel=0.03)
+    assert abs(again.energy.residual) < 1e-6
+    vibrating = simulate(replace(own, effects=("vibration", *effects)))
+    assert vibrating.restitution.impulse.e < again.restitution.impulse.e - 0.03  # the rest does not vibrate
+
+
+def test_the_rest_of_a_users_body_keeps_its_mass_centre_and_inertia(tmp_path):
+    """A bar whose upper half is shifted along x: the rest moves about a centre beside the axis."""
+    points, cells = taper(width=12e-3, length=80e-3, end=1.0, cells=(4, 2, 40))
+    points[:, 0] += 0.1 * points[:, 2]
+    path = write(tmp_path / "sheared.vtu", points, cells)
+    own = scene(
+        {"mesh": str(path), "material": "rod-steel"}, ["friction", "barrier-elastic"], tip_size="1 mm"
+    )
+    made, whole = MeshedBodies(plan(own)), projectile(own)
+    assert 2 * made.mass[made.free_nodes[:, 0]].sum() == pytest.approx(whole.mass, rel=1e-9)
+    start = made.geometry.rod.body_start
+    assert 12e-3 / 3 <= start < 30e-3
+    mass, x, z, k2 = whole.moments_behind(start)
+    low = np.ceil(start / 2e-3 - 1e-9) * 2e-3  # the next row of cells
+    length = 80e-3 - low
+    assert mass == pytest.approx(own.projectile.material.rho * 12e-3**2 * length, rel=1e-9)
+    assert z == pytest.approx(low + length / 2, rel=1e-9)
+    assert x == pytest.approx(0.1 * (z - 40e-3), rel=1e-6)
+    assert k2 == pytest.approx((1.01 * length**2 + 12e-3**2) / 12, rel=1e-6)
+    places = made.geometry.rod.mesh.points[-2:]
+    assert places.mean(axis=0) == pytest.approx([x, 0.0, z], abs=1e-12)
+    assert np.linalg.norm(places[1] - places[0]) / 2 == pytest.approx(np.sqrt(k2), rel=1e-12)
+
+
+def test_a_body_that_is_all_nose_is_refused_without_vibration(tmp_path):
+    points, cells = taper(width=12e-3, length=14e-3, end=1.0, cells=(4, 2, 1))
+    own = {"mesh": str(write(tmp_path / "stub.vtu", points, cells)), "material": "rod-steel"}
+    with pytest.raises(SceneError, match="leaves nothing behind the fine zone"):
+        plan(scene(own, ["friction", "barrier-elastic"], tip_size="0.5 mm"))
+    assert plan(scene(own, ["vibration", "barrier-elastic"], tip_size="0.5 mm")).slots.vibrating

@@ -73,7 +73,7 @@ def test_the_advised_cells_take_the_thin_layer():
 
 
 def test_the_reduced_model_is_refused_and_the_estimates_are_told():
-    with pytest.raises(SceneError, match="not known to the reduced model, on which the modal fidelity rests"):
+    with pytest.raises(SceneError, match=r"which has one material there\. Use --fidelity solid"):
         layered([PLATE], "modal")
     planned = plan(load("layered"))
     assert any("first layer alone" in sentence for sentence in planned.validity)

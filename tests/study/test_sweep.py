@@ -222,3 +222,10 @@ def test_the_example_of_the_page_prints_what_it_shows(capsys):
     )
     exec(compile(code, "sweep.md", "exec"), {})
     assert capsys.readouterr().out == told
+
+
+def test_the_summary_names_the_column_of_e_and_explains_it(tmp_path):
+    results = sweep(load("t5b"), {"impact.angle": ["30 deg", "45 deg"]}, fidelity="rigid")
+    text = publish_sweep(results, "t", "fem-impact sweep", tmp_path).text
+    assert "Coefficient of restitution e (`e_edge`): from" in text
+    assert "`e_edge` is e at the point of the tip that touches first" in text

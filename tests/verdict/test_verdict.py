@@ -7,17 +7,20 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from own_bodies import taper, write
 
 from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
+from fem_impact.plan.cells import ERROR, expected_cells
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.verdict import assess as assess_module
 from fem_impact.verdict import change as change_module
 from fem_impact.verdict.assess import assess
-from fem_impact.verdict.change import FINE_TIP, Change, Ladder
+from fem_impact.verdict.change import FINE_TIP, Change, Ladder, modal_change, modal_pair
 from fem_impact.verdict.dropped import dropped
 from fem_impact.verdict.reliability import beside, known_error, stored
 from fem_impact.verdict.screening import screening
@@ -78,10 +81,12 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
         (0.04, 0.02, "undecided"),
         (-0.2, 0.1, "no"),
         (0.06, 0.02, "undecided"),
+        (0.5, math.inf, "undecided"),
     ],
 )
 def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
-    assert Change(0.0, value, band, 0.0, 0.0, None, None, "").answer(0.05) == said
+    change = Change(0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
+    assert change.answer(0.05) == said
 
 
 def test_the_change_of_e_is_that_of_two_runs(short):
@@ -268,6 +273,7 @@ def test_the_three_lines_and_the_document(short):
     ]
     assert lines[0][1].startswith("YES: vibration changes e by +0.010")
     assert "Rigid theory may" in lines[0][1] or "is undecided" in lines[0][1]
+    assert "by the reduced model" in lines[0][1]
     found = document(short)
     assert found["answer"] == "yes"
     json.dumps(found, allow_nan=False)
@@ -328,3 +334,134 @@ def test_a_plain_run_names_the_command_of_the_verdict(cli):
 def test_measured_tests_are_not_carried_over_to_other_bodies_and_barriers(name, reason):
     with pytest.raises(SceneError, match=reason):
         dropped(load(name))
+
+
+STRIKER = """
+id = "striker"
+projectile = { mesh = "bar.vtu", mesh_unit = "mm", material = "rod-steel" }
+barrier = { material = "plate-steel" }
+surface = { state = "custom", friction = 0.2, source = "assumed" }
+impact = { angle = "30 deg", speed = "2 m/s" }
+effects = ["vibration", "friction", "barrier-elastic"]
+"""
+
+
+@pytest.fixture
+def striker(tmp_path):
+    points, cells = taper(width=12e-3, length=60e-3, end=0.8, cells=(6, 3, 24))
+    write(tmp_path / "bar.vtu", 1e3 * points, cells)
+    (tmp_path / "striker.toml").write_text(STRIKER)
+    return read_toml(tmp_path / "striker.toml")
+
+
+def solid_alone(monkeypatch, moved):
+    """Let simple outcomes stand for finite elements: e of the vibrating twin is moved on each mesh."""
+    asked = []
+
+    def stand_in(scenes, fidelity, options, workers):
+        assert fidelity == "solid"
+        shift = moved[len(asked)]
+        asked.append(scenes[0].accuracy)
+        plain, made = load("t5b"), []
+        for effects, by in zip((scene.effects for scene in scenes), (shift, 0.0), strict=True):
+            run = simulate(replace(plain, effects=effects), "modal")
+            edge = replace(run.restitution.edge, e=0.4 + by)
+            energy = replace(run.energy, vibration=0.02)
+            made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
+        return made, 0.0
+
+    monkeypatch.setattr(change_module, "side_by_side", stand_in)
+    return asked
+
+
+def test_layers_are_decided_by_finite_elements_alone_on_two_meshes(monkeypatch):
+    asked = solid_alone(monkeypatch, [0.2, 0.19])
+    found = assess(load("layered"), budget_s=1e5)
+    assert (found.fidelity, found.answer, len(asked)) == ("solid", "no", 2)
+    assert asked[0].tip_size > asked[1].tip_size
+    assert (found.worst, found.worst_answer, found.over_friction) == (None, "no", None)
+    assert any("no reduced model of a barrier of layers" in note for note in found.notes)
+    case = dict(document(found)["basis"])["case"]
+    assert "tip A, 0.168 kg, on 2 mm of steel-4340 on aluminium-6061-t6" in case
+
+
+def test_one_mesh_that_no_reduced_model_bears_out_decides_nothing(monkeypatch):
+    """However far its change of e lies from the tolerance."""
+    solid_alone(monkeypatch, [0.9])
+    found = assess(load("layered"), budget_s=1e-3)
+    assert (found.answer, found.here.band) == ("undecided", math.inf)
+    assert found.here.errors == {}
+    written = document(found, "fem-impact assess layered")
+    assert (written["here"]["band"], written["here"]["E_vib_band"]) == (None, None)
+    assert re.fullmatch(r'fem-impact assess layered --budget "\d+ s"', written["next_step"])
+    assert "+0.900, error unknown" in box(found)[0][1]
+    assert "error of one mesh of finite elements unknown" in box(found)[1][1]
+    assert "which gives e within" not in found.here.source
+    json.dumps(written, allow_nan=False)
+
+
+def test_a_mesh_of_the_users_own_is_decided_with_the_error_of_its_own_cells(monkeypatch, striker):
+    """Its cells behind the contact are the same on both meshes: two equal answers leave a band."""
+    asked = solid_alone(monkeypatch, [0.3, 0.3])
+    found = assess(striker, budget_s=1e5)
+    assert (found.answer, len(asked)) == ("no", 2)
+    assert asked[1].tip_size < asked[0].tip_size
+    cells = expected_cells(plan(replace(striker, accuracy=asked[1])).bodies)
+    assert found.here.band == pytest.approx(ERROR["elastic"] / cells * 0.7)
+    assert "cells of your file" in found.here.source
+
+
+def test_the_reduced_model_is_refused_for_them_with_the_remedy(striker):
+    for scene, words in ((striker, "no radii of a smooth tip"), (load("layered"), "--fidelity solid")):
+        with pytest.raises(SceneError, match=words):
+            assess(scene, "modal")
+
+
+def test_a_mesh_that_the_solid_model_cannot_hold_is_refused_before_any_run(striker, monkeypatch):
+    asked = solid_alone(monkeypatch, [])
+    with pytest.raises(SceneError, match="machined-skin"):
+        skin = {"surface.skin_depth": "0.1 mm", "surface.skin_factor": 1.5}
+        assess(replace_all(striker, skin | {"effects": ["auto", "machined-skin"]}))
+    assert asked == []
+
+
+def test_shares_of_the_reduced_model_carry_its_known_errors(short):
+    errors = known_error(load("t5b"))
+    own = beside("t5b")
+    assert (
+        errors.shares["friction"] >= abs(own.shares_modal["friction"] - own.shares_solid["friction"]) > 0.05
+    )
+    rest = box(short)[2][1]
+    friction = short.here.free.energy.friction
+    assert f"friction {100 * friction:.0f} ± {100 * errors.shares['friction']:.2g} %" in rest
+    assert f"plastic barrier 60 ± {100 * errors.shares['plastic']:.2g} %" in rest
+    assert "± known error of the reduced model" in rest
+
+
+def test_headline_and_shares_name_what_they_rest_on(monkeypatch):
+    meshed(monkeypatch, [-0.4, None])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    may, takes, rest = (sentence for _, sentence in box(found))
+    assert "by one mesh of finite elements and the reduced model together" in may
+    assert "one mesh of finite elements, and the reduced model within" in takes
+    assert "by one mesh of finite elements" in rest
+    assert not any("meshes" in line for line in (may, takes, rest))
+    quick = modal_change(load("t5b"), modal_pair(load("t5b")))
+    assert abs(found.here.E_vib - quick.E_vib) + quick.E_vib_band <= found.here.E_vib_band
+
+
+def test_friction_without_an_interval_is_said_to_count_as_exact():
+    stated = replace_all(load("t5b"), {"surface": {"state": "custom", "friction": 0.4, "source": "mine"}})
+    told = dict(document(assess(stated, "modal"))["basis"])
+    assert "f = 0.4 is stated without an interval and counts as exact" in told["uncertain friction"]
+    smooth = replace_all(load("t5b"), {"effects": ["auto", "-friction"]})
+    assert "no friction" in dict(document(assess(smooth, "modal"))["basis"])["uncertain friction"]
+
+
+def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
+    line = ("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.02", "--set", "impact.angle=44 deg")
+    _, out, _ = cli(*line)
+    command = "fem-impact assess t5b --set 'impact.angle=44 deg' --tolerance 0.02 --fidelity solid"
+    assert f"Next step: {command}\n" in out
+    _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.5")
+    assert "Next step" not in out
