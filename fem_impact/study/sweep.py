@@ -42,7 +42,7 @@ SHOWN = {
 }
 """Columns that are drawn, with the labels of their axes."""
 COLUMNS = (
-    "In `sweep.csv` the varied keys come first; `e_edge` is e at the point of the tip that touches first, and "
+    "In `sweep.csv` the varied keys come first; `e_edge` is e at the point of the tip that touches first; "
     "`fem-impact schema` explains every other column."
 )
 MOST_CURVES = 8
