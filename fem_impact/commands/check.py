@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, print_json, say_fall, size_text
+from fem_impact.commands.common import changed_scene, print_json, say_kept, size_text
 from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
@@ -35,7 +35,7 @@ def check(options: Options) -> int:
 
     drawing = _drawing_path(options)
     planned = plan(changed_scene(options.scene, options.changes))
-    say_fall(planned.scene, options)
+    say_kept(planned.scene, options)
     if drawing:
         _draw(planned.scene, drawing)
     statement = _statement(planned)
@@ -117,8 +117,8 @@ def _body_lines(body: dict[str, float]) -> Iterable[str]:
         f"touches first {mm['touch_z_m']:.3g} mm from the tip, {mm['touch_rho_m']:.3g} mm off the axis, "
         f"with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
-        f"periods: bending T1 = {1e6 * body['bending_period_s']:.3g} us, longitudinal "
-        f"{1e6 * body['stretching_period_s']:.3g} us (beam and bar)",
+        f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
+        f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)",
         f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
     )
 

@@ -164,9 +164,25 @@ def print_json(document: Any) -> None:
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
 
 
-def say_fall(scene: Scene, options: Options) -> None:
-    """Say what became of stated velocities where ``--set`` changed the angle of impact alone."""
-    changed, impact = set(read_changes(options.changes)), scene.impact
+def say_kept(scene: Scene, options: Options) -> None:
+    """Say what ``--set`` left as it was: velocities at another angle, a bore in a longer projectile."""
+    changed = set(read_changes(options.changes))
+    _say_fall(scene, changed)
+    rod = scene.projectile
+    if (
+        rod.bore
+        and {"projectile.length", "projectile.length_m"} & changed
+        and "projectile.bore" not in changed
+    ):
+        ends = f"{1e3 * rod.bore[0][0]:.4g} to {1e3 * rod.bore[-1][0]:.4g} mm"
+        sys.stderr.write(
+            f"fem-impact: warning: the bore is that of the old length, {ends} from the tip. Another one: "
+            '--set projectile.bore=\'[["0 mm", "6 mm"], ["400 mm", "6 mm"]]\'\n'
+        )
+
+
+def _say_fall(scene: Scene, changed: set[str]) -> None:
+    impact = scene.impact
     stated = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
     if stated or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
         return

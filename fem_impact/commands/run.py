@@ -12,7 +12,7 @@ from fem_impact.commands.common import (
     changed_scene,
     checked_out,
     print_json,
-    say_fall,
+    say_kept,
     shown_path,
     size_text,
 )
@@ -45,7 +45,7 @@ def run(options: Options) -> int:
     if options.resume and options.fidelity in ("rigid", "modal"):
         problem, remedy = "is for finite elements only: this run takes seconds.", "Leave it out."
         raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
-    say_fall(scene, options)
+    say_kept(scene, options)
     chosen = _setting(scene, options)
     _say_plan(scene, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or _default_out(scene, options))

@@ -9,6 +9,7 @@ from fem_impact.effects.slots import bodies_of
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate, projectile
 from fem_impact.plan.choose import resolved
+from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
 
 if TYPE_CHECKING:
@@ -45,8 +46,8 @@ class Screening:
     def sentence(self) -> str:
         """Both numbers in one sentence."""
         return (
-            f"T1/tau = {self.ratio:.2f} (first bending period {self.period * 1e6:.3g} us, contact "
-            f"{self.duration * 1e6:.3g} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
+            f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, contact "
+            f"{plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
         )
 
 

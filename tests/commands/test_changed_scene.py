@@ -28,3 +28,11 @@ def test_paths_are_shown_from_the_working_directory(tmp_path, monkeypatch):
     assert shown_path(str(tmp_path / "a" / "tests.csv")) == str(Path("a") / "tests.csv")
     assert shown_path("/elsewhere/tests.csv") == "/elsewhere/tests.csv"
     assert shown_path("t5b") == "t5b"
+
+
+def test_a_bore_that_stays_short_is_told(cli):
+    _, _, err = cli("check", "tube", "--set", "projectile.length=0.4 m")
+    assert "warning: the bore is that of the old length, 0 to 200 mm from the tip." in err
+    bore = 'projectile.bore=[["0 mm", "6 mm"], ["400 mm", "6 mm"]]'
+    assert "bore" not in cli("check", "tube", "--set", "projectile.length=0.4 m", "--set", bore)[2]
+    assert "bore" not in cli("check", "t5b", "--set", "projectile.length=0.1 m")[2]
