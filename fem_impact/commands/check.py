@@ -32,9 +32,11 @@ DRAWINGS = (".png", ".svg")
 def check(options: Options) -> int:
     """Print a scene's full statement: values, sources, effects and validity."""
     from fem_impact.plan.plan import plan
+    from fem_impact.run.tests import tests_of
 
     drawing = _drawing_path(options)
     planned = plan(changed_scene(options.scene, options.changes))
+    tests_of(planned.scene)  # refuses a file of tests that cannot be read
     say_kept(planned.scene, options)
     if drawing:
         _draw(planned.scene, drawing)

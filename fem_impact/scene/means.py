@@ -13,6 +13,11 @@ from fem_impact.scene.user_table import finite, read_user_table, unit_of
 
 KINDS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
 """Quantities that a row may state, and their dimensions; empty: a pure number."""
+LIKELY = {
+    "e": (-1.0, 2.0, "the contact point's normal velocity after the impact over that before, a number"),
+    "mu": (-10.0, 10.0, "the tangential impulse over the normal one, a number"),
+}
+"""Bounds of the means of pure numbers, and what these are; beyond them it is per cent or another quantity."""
 SCATTER = ("sd", "standard_error")
 HEADER = "quantity,mean,sd,n"
 
@@ -105,4 +110,16 @@ def _read_row(row: Mapping[str, str], scatter: str, place: str) -> tuple[str, Me
         raise ResultError(f"{place}, column {scatter}: {row[scatter]} must be above 0: tests scatter.")
     if abs(mean) > LARGEST or spread > LARGEST:
         raise ResultError(f"{place}: {row['mean']} with {row[scatter]} is too large to be one of a test.")
+    _check_likely(name, mean, place)
     return name, Mean(mean, spread * tests**0.5 if scatter == "standard_error" else spread, int(tests))
+
+
+def _check_likely(name: str, mean: float, place: str) -> None:
+    if name not in LIKELY:
+        return
+    low, high, meaning = LIKELY[name]
+    if not low <= mean <= high:
+        raise ResultError(
+            f"{place}: {name} = {mean:g} is none of an impact: {name} is {meaning} from {low:g} to {high:g}, "
+            "not in per cent. Correct it."
+        )

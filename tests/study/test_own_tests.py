@@ -13,6 +13,7 @@ from fem_impact.physics.contact import arms as contact_arms
 from fem_impact.run.simulate import simulate
 from fem_impact.run.tests import tests_of as measured_by
 from fem_impact.scene.library import stated
+from fem_impact.scene.means import read_means
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml
@@ -243,3 +244,37 @@ def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
     assert code == 2
     assert "states no measured tests" in err
     assert not Path("results").exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("quantity,mean,sd,n\ne,5,0.1,8\n", "line 2: e = 5 is none of an impact"),
+        ("quantity,mean,sd,n\ne,0.3,0.1,8\nmu,40,2,8\n", "line 3: mu = 40 is none of an impact"),
+        ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2"),
+        ("speed,time\n1,2\n", "the header lacks v_n"),
+    ],
+)
+def test_check_refuses_a_file_of_tests_that_cannot_be_used(cli, tmp_path, text, words):
+    (tmp_path / "my.csv").write_text(text)
+    (tmp_path / "own.toml").write_text(OWN_SCENE)
+    code, out, err = cli("check", str(tmp_path / "own.toml"))
+    assert (code, out) == (5, "")
+    assert words in " ".join(err.split())
+
+
+@pytest.mark.parametrize("mean", ["e,-0.2", "e,1.4", "mu,-0.6", "mu,3"])
+def test_unusual_means_are_read(tmp_path, mean):
+    (tmp_path / "my.csv").write_text(f"quantity,mean,sd,n\n{mean},0.1,8\n")
+    (read,) = read_means(tmp_path / "my.csv").means.values()
+    assert read.mean == float(mean.split(",")[1])
+
+
+OWN_SCENE = """
+id = "own"
+measured = "my.csv"
+projectile = { length = "80 mm", diameter = "19 mm", tip = "B", tip_radius = "3 mm", material = "rod-steel" }
+barrier = { material = "plate-steel" }
+surface = { state = "machined" }
+impact = { angle = "45 deg", v_n = "-1.54 m/s", v_t = "-1.56 m/s" }
+"""
