@@ -49,13 +49,16 @@ def add_run(commands: Commands) -> None:
 
 def add_check(commands: Commands) -> None:
     """Add ``check``."""
-    summary = "check a scene and print it with units, sources and effects, without computing"
+    summary = "check a scene and say what it comes to, without computing"
     examples = (
+        "fem-impact check t5b --long",
         "fem-impact check t5b --set accuracy.tip_size='0.5 mm'",
         "fem-impact check tube --drawing tube.svg",
     )
     parser = add_command(commands, "check", summary, "fem_impact.commands.check:check", examples)
     add_scene(parser)
+    told = "print every value with its source, flow stresses, and what each effect adds"
+    parser.add_argument("--long", action="store_true", help=told)
     drawing = "draw the projectile with its materials, first contact and mass centre into a .png or .svg file"
     parser.add_argument("--drawing", type=Path, default=None, metavar="FILE", help=drawing)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import changed_scene, print_json, say_kept, size_text
@@ -27,10 +27,11 @@ if TYPE_CHECKING:
 
 
 DRAWINGS = (".png", ".svg")
+LONG = "--long prints every value with its source, flow stresses, and what leaving out each effect changes."
 
 
 def check(options: Options) -> int:
-    """Print a scene's full statement: values, sources, effects and validity."""
+    """Print what a scene comes to; its full statement, with every value and source, on demand."""
     from fem_impact.plan.plan import plan
     from fem_impact.run.tests import tests_of
 
@@ -44,7 +45,8 @@ def check(options: Options) -> int:
     if options.json:
         print_json(statement)
     else:
-        sys.stdout.write(_readable(planned, statement))
+        readable = _readable if options.long else _short
+        sys.stdout.write(readable(planned, statement))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
 
@@ -196,11 +198,61 @@ def _readable(planned: Plan, statement: dict[str, Any]) -> str:
     lines += ["", "Effects"]
     lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
-    lines += _size_lines(planned)
-    lines += ["", "Validity"]
+    return "\n".join([*lines, *_size_lines(planned), *_end_lines(statement)]) + "\n"
+
+
+def _end_lines(statement: dict[str, Any]) -> list[str]:
     inside = "inside the measured range of speed, angle, rod, steels and surfaces"
-    lines += _wrapped(statement["validity"] or [inside])
-    return "\n".join([*lines, "", "The scene is valid; its digest:", statement["digest"]]) + "\n"
+    validity = _wrapped(statement["validity"] or [inside])
+    return ["", "Validity", *validity, "", "The scene is valid; its digest:", statement["digest"]]
+
+
+def _short(planned: Plan, statement: dict[str, Any]) -> str:
+    """Return projectile, barrier and contact, effects with their numbers, size, warnings and validity."""
+    scene = planned.scene
+    lines = [f"{scene.id}: {scene.title}", "", "Projectile", *_drawing(scene)]
+    lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
+    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(planned)), "", "Effects"]
+    lines += _wrapped(
+        f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one.told(one.share))}"
+        for one in planned.choices
+        if one.on
+    )
+    off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in planned.choices if not one.on]
+    lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
+    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
+    lines += [*_size_lines(planned), *_end_lines(statement), ""]
+    return "\n".join([*lines, *wrapped(LONG)]) + "\n"
+
+
+def _material_line(scene: Scene) -> str:
+    rod = scene.projectile
+    parts = [f"{part.material.name} up to {1e3 * part.to:.4g} mm" for part in rod.segments]
+    size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
+    return f"{size} of {', '.join(parts) or rod.material.name}"
+
+
+def _contact_lines(planned: Plan) -> Iterator[str]:
+    """Return barrier, motion, friction and the estimated contact, and what they say of vibration."""
+    from fem_impact.physics.contact import contact_estimate
+    from fem_impact.verdict.screening import screening
+
+    scene, size = planned.scene, contact_estimate(planned.bodies)
+    tables, layers = to_dict(scene), scene.barrier.layers
+    stated = tables["barrier"].items()
+    more = [f"{key} {value}" for key, value in stated if key not in ("material", "layers")]
+    on = "".join(f"{1e3 * one.thickness:.4g} mm of {one.material.name} on " for one in layers)
+    yield ", ".join([f"{on}{scene.barrier.material.name}", *more])
+    yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
+    surface = scene.surface
+    low, high = surface.friction_low, surface.friction_high
+    sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"
+    yield f"friction f {surface.friction:g} ({sure}), {surface.state} surfaces"
+    yield (
+        f"the contact, estimated: {1e3 * size.a_t:.2g} mm x {1e3 * size.a_b:.2g} mm in radius, "
+        f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
+    )
+    yield f"{screening(scene).sentence}. The verdict: `fem-impact assess`"
 
 
 def _size_lines(planned: Plan) -> list[str]:
@@ -237,12 +289,15 @@ def _wrapped(sentences: Iterable[str]) -> list[str]:
 
 
 def _effect_lines(effect: EffectChoice) -> list[str]:
-    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
     verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
-    decided = f"{effect.measure}: {number}, threshold {effect.threshold:g}"
-    clauses = [decided, _harm(effect), _time(effect)]
+    clauses = [_decided(effect), _harm(effect), _time(effect)]
     decision = wrapped("; ".join(clause for clause in clauses if clause), " " * 8, "")
     return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
+
+
+def _decided(effect: EffectChoice) -> str:
+    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
+    return f"{effect.measure}: {number}, threshold {effect.threshold:g}"
 
 
 def _harm(effect: EffectChoice) -> str:

@@ -24,6 +24,7 @@ class Options(argparse.Namespace):
     name: str = ""
     out: Path | None = None
     drawing: Path | None = None
+    long: bool = False
     problem: str | None = None
     only: str = ""
     parameters: bool = False

@@ -19,8 +19,44 @@ def test_scenes_lists_every_shipped_scene(cli):
     assert [row["digest"] for row in listed] == [digest(load(name)) for name in shipped()]
 
 
-def test_check_prints_values_units_sources_and_effects(cli):
-    code, out, _ = cli("check", "t5b")
+def test_check_prints_what_a_verdict_needs_on_one_screen(cli):
+    code, out, _ = cli("check", "t5b", "--set", "effects=['auto', '-gravity', 'large-rotation']")
+    said = " ".join(out.split())
+    assert code == 0 and len(out.splitlines()) < 75
+    for words in (
+        "80 mm x 19 mm of rod-steel",
+        "Barrier and contact plate-steel angle 45 deg, v_n -1.5024 m/s",
+        "friction f 0.57 (0.45 to 0.7), machined surfaces",
+        "0.1 mm deep, for 141 us",
+        "T1/tau = 0.58",
+        "on friction: f: 0.57, threshold 0.005",
+        "on large-rotation (forced): theta",
+        "gravity (forced)",
+        "MB of memory",
+        "inside the measured",
+        "--long prints every value with its source",
+    ):
+        assert words in said
+    assert "on gravity" not in said and "footnote 2" not in said
+    assert max(map(len, out.splitlines())) < 80
+
+
+def test_check_names_segments_layers_plates_and_a_friction_that_counts_as_exact(cli):
+    for scene, words in (
+        ("heavy-tail", "of rod-steel up to"),
+        ("layered", "2 mm of steel-4340 on aluminium-6061-t6"),
+        ("plate-10mm", "thickness 10 mm"),
+        ("moving-barrier", "v_n 2"),
+    ):
+        assert words in " ".join(cli("check", scene)[1].split())
+    custom = "surface={state='custom', friction=0.3, source='mine'}"
+    assert (
+        "friction f 0.3 (no interval stated: it counts as exact)" in cli("check", "t5b", "--set", custom)[1]
+    )
+
+
+def test_check_prints_values_units_sources_and_effects_on_demand(cli):
+    code, out, _ = cli("check", "t5b", "--long")
     assert code == 0
     for words in (
         'length = "80 mm"',
@@ -38,7 +74,7 @@ def test_check_prints_values_units_sources_and_effects(cli):
 
 
 def test_check_tells_number_threshold_harm_and_time_of_each_effect(cli):
-    text = cli("check", "t5b", "--set", "effects=['auto', 'barrier-elastic']")[1]
+    text = cli("check", "t5b", "--long", "--set", "effects=['auto', 'barrier-elastic']")[1]
     parts = [part.partition("\n\n")[0] for part in re.split(r"\n  (?:on  |off )", text)[1:]]
     about = {part.split()[0].rstrip(":"): " ".join(part.split()) for part in parts}
     assert "f: 0.57, threshold 0.005; leaving it out changes e by about 0.2, E_vib by " in about["friction"]
