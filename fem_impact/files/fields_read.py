@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeVar
 import numpy as np
 
 from fem_impact.errors import ResultError
+from fem_impact.files.digests import check_digest
 from fem_impact.files.fields_check import check_finite, check_mesh, check_rows, check_times
 
 if TYPE_CHECKING:
@@ -101,8 +102,9 @@ def read_fields(path: str | Path) -> FieldFile:
     Raises
     ------
     ResultError
-        The file is missing, damaged, or no field file.
+        The file is missing, damaged, no field file, or not the one that its run wrote.
     """
+    check_digest(Path(path))
     return _opened(Path(path), lambda root: _describe(Path(path), root))
 
 

@@ -6,9 +6,12 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from fem_impact.files.atomic import make_directory
+from fem_impact.files.digests import DIGESTS
 
 CHECKPOINT = "run.checkpoint"
-COMPUTED = (CHECKPOINT, "outcome.json", "contacts.csv", "history.csv", "fields.vtkhdf", "waves.h5")
+BESIDE = ("contacts.csv", "history.csv", "fields.vtkhdf", "waves.h5")
+"""Files beside an outcome, whose digests stand in `DIGESTS`."""
+COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS)
 """Files that a run computes."""
 DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""

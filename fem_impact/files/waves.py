@@ -10,6 +10,7 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import atomic_path
+from fem_impact.files.digests import check_digest
 from fem_impact.files.fields_check import check_finite, check_times
 
 if TYPE_CHECKING:
@@ -151,12 +152,13 @@ def read_waves(path: Path) -> Waves:
     Raises
     ------
     ResultError
-        It is missing or damaged.
+        It is missing, damaged, or not the one that its run wrote.
     """
     import h5py
 
     if not path.is_file():
         raise ResultError(f"{path}: there is no such file; run the scene with save.strain_samples = 1.")
+    check_digest(path)
     try:
         with h5py.File(path, "r") as file:
             ringing = Ringing(**_taken(file["ringing"])) if "ringing" in file else None

@@ -27,7 +27,8 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         finite-element model, seconds to minutes
     options : where the files go: scene.toml, outcome.json, contacts.csv where contacts have a duration, and
         history.csv except of the rigid and fields.vtkhdf of the solid one; none is written without ``out``.
-        What an older run left there is moved to a directory ``earlier-...`` within
+        Their digests stand in files.sha256. What an older run left there is moved to a directory
+        ``earlier-...`` within
 
     Raises
     ------
@@ -107,6 +108,8 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
 
 def _write(outcome: Outcome, out: Path) -> None:
     from fem_impact.files.atomic import write_text
+    from fem_impact.files.digests import write_digests
+    from fem_impact.files.run_directory import BESIDE
     from fem_impact.tables.csv import CONTACTS
     from fem_impact.tables.table import Table
 
@@ -115,3 +118,4 @@ def _write(outcome: Outcome, out: Path) -> None:
         write_text(out / "contacts.csv", Table.of(CONTACTS, contacts).csv())
     outcome.write(out / "outcome.json")
     (out / CHECKPOINT).unlink(missing_ok=True)
+    write_digests(out, BESIDE)  # last: a run that goes on from its checkpoint still changes these files

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.errors import ResultError
+from fem_impact.files.digests import check_digest
 from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.table import Table, read_csv
 
@@ -17,15 +18,16 @@ CLOSES = 1e-9
 def read_history(path: str | Path) -> Table:
     """Return the table of history.csv.
 
-    The energies of a row and its residual add up to the energy at the start, by the definition of the
-    residual.
+    Of a finished run it is the file that the run wrote, by its digest. The energies of a row and its
+    residual add up to the energy at the start, by the definition of the residual.
 
     Raises
     ------
     ResultError
-        The file is missing, a column is missing or holds what is no number, times do not rise, or the
-        energies of a row do not add up.
+        The file is missing or not the run's, a column is missing or holds what is no number, times do not
+        rise, or the energies of a row do not add up.
     """
+    check_digest(Path(path))
     table = read_csv(path)
     numbers = {name: table.numbers(name) for name in dict.fromkeys((*HISTORY, *table.names))}
     for name, values in numbers.items():

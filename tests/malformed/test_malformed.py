@@ -284,7 +284,6 @@ def test_spoiled_stores_of_studies(how):
         try:
             with Store.open(Path("store.sqlite")) as store:
                 store.get(Job("a", load("t5b")))
-                store.costs()
         except FemImpactError as error:
             assert error.exit_code in (4, 5)
             assert "store.sqlite" in str(error)
