@@ -209,6 +209,16 @@ def push(
 
 
 @inlined
+def followed(
+    now: ModalState, start: Start, modes: Modes
+) -> tuple[tuple[float, float, float, float], float, float]:
+    """Return the arm of the followed point as `push` takes it, its depth and its place along t, m."""
+    c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
+    place = now.rigid[ALONG] + arm_t - start.centre_t - start.radius * now.rigid[TURN]
+    return (c, s, arm_t, arm_n - start.radius), start.radius - now.rigid[HEIGHT] - arm_n, place
+
+
+@inlined
 def ahead(
     now: ModalState,
     start: Start,
@@ -228,9 +238,7 @@ def ahead(
     while steps * bounds.step < bounds.horizon:
         fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
         steps += 1
-        arm = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-        depth = start.radius - now.rigid[HEIGHT] - arm[3]
-        place = now.rigid[ALONG] + arm[2] - start.centre_t - start.radius * now.rigid[TURN]
+        _, depth, place = followed(now, start, modes)
         if meets(furrow, depth, place, flow) if flow.yields else depth > 0.0:
             return steps, TIP
         if steps % LOOK == 0:
@@ -341,9 +349,7 @@ def drop(
     time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
     depth, force = 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
-        c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-        arm, depth = (c, s, arm_t, arm_n - start.radius), start.radius - rigid[HEIGHT] - arm_n
-        place = rigid[ALONG] + arm_t - start.centre_t - start.radius * rigid[TURN]
+        arm, depth, place = followed(now, start, modes)
         force = meet(law, flow, springs, furrow, depth, place, place - before)
         struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
         late = force[0] > 0.0 and time > bounds.latest
