@@ -25,7 +25,7 @@ class Progress:
 
 
 def compiling(end_time_s: float, seconds: int) -> Progress:
-    """Return what a run tells before it compiles for so many seconds."""
+    """Return the report of a run that first compiles its kernels, for about so many seconds."""
     return Progress(0.0, end_time_s, 0, 0.0, f"compiling the kernels, once, about {seconds} s")
 
 

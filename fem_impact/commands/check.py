@@ -168,18 +168,18 @@ def _flow_stresses(planned: Plan) -> dict[str, dict[str, float]]:
     """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
     from fem_impact.plan.metals import RATES, flow_stresses
 
-    told = flow_stresses(planned.scene, planned.active)
+    by_body = flow_stresses(planned.scene, planned.active)
     rates = ["0", *(f"{rate:g}" for rate in RATES)]
-    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in told.items()}
+    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}
 
 
 def _flow_lines(statement: dict[str, Any]) -> list[str]:
-    told = statement["flow_stress_Pa"]
-    if not told:
+    by_body = statement["flow_stress_Pa"]
+    if not by_body:
         return []
     heading = "Flow stress at 8 % plastic strain, MPa, at rest and at strain rates, 1/s"
-    rates = list(next(iter(told.values())))
-    rows = [[body, *(f"{stress / 1e6:.0f}" for stress in told[body].values())] for body in told]
+    rates = list(next(iter(by_body.values())))
+    rows = [[body, *(f"{stress / 1e6:.0f}" for stress in by_body[body].values())] for body in by_body]
     table = Table.of(("body", "at rest", *rates[1:]), rows, left=range(1)).terminal()
     return ["", heading, *(f"  {line}" for line in table.splitlines())]
 

@@ -38,8 +38,8 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     if not given:
         return scene
     made = replace_all(scene, given)
-    told = {key: value for key, value in given.items() if key.split(".")[0] in TOLD}
-    return replace(made, "title", titled(scene.title, told)) if told and made.title == scene.title else made
+    shown = {key: value for key, value in given.items() if key.split(".")[0] in TOLD}
+    return replace(made, "title", titled(scene.title, shown)) if shown and made.title == scene.title else made
 
 
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:
@@ -188,13 +188,13 @@ def _say_fall(scene: Scene, changed: set[str]) -> None:
         return
     speed = math.hypot(impact.v_n, impact.v_t)
     if impact.speed:
-        told = f"the rod falls along its axis as fast as before, {speed:.4g} m/s"
+        sentence = f"the rod falls along its axis as fast as before, {speed:.4g} m/s"
     else:
-        told = (
+        sentence = (
             "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
             f"--set impact.speed='{speed:.4g} m/s'"
         )
-    sys.stderr.write(f"fem-impact: {told}\n")
+    sys.stderr.write(f"fem-impact: {sentence}\n")
 
 
 def shown_path(path: str) -> str:

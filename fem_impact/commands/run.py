@@ -94,8 +94,7 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         if row["measured_mean"] is not None and row["model"] is not None
     ]
     count = max(statistic.n for statistic in tests.statistics().values())
-    told = f"beside {count} measured tests ({shown_path(str(scene.measured))}):"
-    sys.stdout.write(f"{told}\n")
+    sys.stdout.write(f"beside {count} measured tests ({shown_path(str(scene.measured))}):\n")
     print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
 
 
@@ -105,8 +104,8 @@ def _say_screening(scene: Scene, options: Options) -> None:
     from fem_impact.verdict.sentences import lines_of, screening_lines
 
     changes = [word for change in options.changes for word in ("--set", change)]
-    told = screening_lines(screening(scene), shlex.join([options.scene, *changes]))
-    lines = lines_of(told, indent="")
+    titled = screening_lines(screening(scene), shlex.join([options.scene, *changes]))
+    lines = lines_of(titled, indent="")
     sys.stdout.write("\n".join(lines) + "\n")
 
 

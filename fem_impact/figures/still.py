@@ -83,11 +83,8 @@ def _height(panel: Panel) -> float:
     """Return the height of a panel, inches."""
     if panel.rows:
         return 0.95 + 0.27 * len(panel.rows)
-    return 4.8 if panel.shaded else 3.8 if panel.names or _areas(panel) else 3.2
-
-
-def _areas(panel: Panel) -> bool:
-    return any(series.drawn == "area" for series in panel.series)
+    areas = any(series.drawn == "area" for series in panel.series)
+    return 4.8 if panel.shaded else 3.8 if panel.names or areas else 3.2
 
 
 def _panel(axes: Axes, panel: Panel) -> None:

@@ -75,9 +75,9 @@ def render_side_by_side(
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
     board = PairBackground.make(Abreast(*size, len(folders)), motions, [c[:2] for c in contexts], times)
     made = encode(_frames(board, motions, times), path, FPS)
-    told = [*(left_out for _, left_out in read), *(missing for *_, missing in contexts)]
-    missing = [sentence for sentences in told for sentence in sentences]
-    return RenderResult(made, (*notes, *missing), len(times))
+    groups = [*(left_out for _, left_out in read), *(missing for *_, missing in contexts)]
+    left_out = [sentence for sentences in groups for sentence in sentences]
+    return RenderResult(made, (*notes, *left_out), len(times))
 
 
 def _alike(motions: Sequence[FilmData]) -> list[FilmData]:

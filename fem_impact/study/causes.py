@@ -72,8 +72,9 @@ ALONE = (LADDER[1], *tuple(STEPS)[len(CAUSES) + 1 :])
 
 def plan(request: Request, results: Results) -> list[Job]:
     """Return one job a set and step."""
+    coarse = {**(QUICK if request.quick else {}), "save.frames": 0}
     return [
-        Job(f"{name}: {step}", _changed(_scene(name, request), causes))
+        Job(f"{name}: {step}", _changed(replace_all(load(name), coarse), causes))
         for name in _sets(request)
         for step, causes in STEPS.items()
     ]
@@ -107,10 +108,6 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
 
 def _sets(request: Request) -> tuple[str, ...]:
     return request.ids or (SETS[:1] if request.quick else SETS)
-
-
-def _scene(name: str, request: Request) -> Scene:
-    return replace_all(load(name), {**(QUICK if request.quick else {}), "save.frames": 0})
 
 
 def _changed(scene: Scene, causes: Sequence[Cause]) -> Scene:

@@ -112,7 +112,7 @@ class Results(Sequence[Row]):
 
     def table(self) -> Table:
         """Return one row a case: values, unit in the header, how it ended, motion, shares of E_0."""
-        units = {key: _unit(values) for key, values in self.vary.items()}
+        units = {key: measure(values[0])[1] for key, values in self.vary.items()}
         heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
         rows = [
             [
@@ -139,10 +139,6 @@ class Results(Sequence[Row]):
             raise MissingLibraryError(problem) from None
         table = self.table()
         return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
-
-
-def _unit(values: Sequence[Any]) -> str:
-    return measure(values[0])[1]
 
 
 def _same(stated: Any, wanted: Any) -> bool:
