@@ -51,6 +51,45 @@ def ogive(length: float, diameter: float, calibre: float, nose_radius: float) ->
     return np.concatenate([sphere[:-1], side, [[R, length]]])
 
 
+def calibre_of(nose_length: float, diameter: float, nose_radius: float) -> float:
+    """Return the radius, in diameters, of the tangent ogive whose nose with its sphere is so long, m.
+
+    The centres of sphere and ogive are a = nose_length - nose_radius apart along the axis, and both circles
+    touch: (C - r)^2 = a^2 + (C - R)^2 for the radii C of the ogive, r of the sphere and R of the cylinder.
+
+    Examples
+    --------
+    >>> line = ogive(0.1, 0.02, calibre_of(0.03, 0.02, 0.002), 0.002)
+    >>> f"{line[-2, 1]:.9f}"
+    '0.030000000'
+    """
+    R, length = 0.5 * diameter, nose_length - nose_radius
+    if not nose_radius < R:
+        raise ShapeError(f"nose_radius must lie below {R * 1e3:.3g} mm, got {nose_radius * 1e3:.3g} mm")
+    if not length > R - nose_radius:
+        problem = f"an ogive with a nose_length of {nose_length * 1e3:.4g} mm is blunter than a hemisphere"
+        raise ShapeError(f"{problem}: give more than half the diameter, {R * 1e3:.4g} mm")
+    return 0.5 * (length**2 / (R - nose_radius) + R + nose_radius) / diameter
+
+
+def cone_angle_of(nose_length: float, diameter: float, nose_radius: float, face: float) -> float:
+    """Return the half angle, rad, of a cone whose nose with its round or flat tip is so long, m.
+
+    It is that of the tangent from the edge of the cylinder to the sphere, or of the line to the flat face.
+
+    Examples
+    --------
+    >>> line = cone(0.1, 0.02, cone_angle_of(0.03, 0.02, 0.002, 0.0), 0.002, 0.0)
+    >>> f"{line[-2, 1]:.9f}"
+    '0.030000000'
+    """
+    along, across = nose_length - nose_radius, 0.5 * (diameter - face)
+    if not 0.0 < nose_radius + 0.5 * face < 0.5 * diameter:
+        problem = f"the tip of {1e3 * max(nose_radius, 0.5 * face):.3g} mm radius leaves no cone on a radius"
+        raise ShapeError(f"{problem} of {diameter * 500:.3g} mm")
+    return math.atan2(across, along) - math.asin(nose_radius / math.hypot(across, along))
+
+
 def ball(diameter: float) -> Floats:
     """Return the outline of a ball."""
     half = _arc(0.0, 0.5 * diameter, 0.5 * diameter, 0.0, 0.5 * math.pi)

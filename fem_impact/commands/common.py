@@ -169,11 +169,13 @@ def say_kept(scene: Scene, options: Options) -> None:
     changed = set(read_changes(options.changes))
     _say_fall(scene, changed)
     rod = scene.projectile
-    if (
-        rod.bore
-        and {"projectile.length", "projectile.length_m"} & changed
-        and "projectile.bore" not in changed
-    ):
+    longer = bool({"projectile.length", "projectile.length_m"} & changed)
+    if rod.segments and longer and "projectile.segments" not in changed:
+        kept = ", ".join(f"{1e3 * part.to:.4g} mm" for part in rod.segments[:-1])
+        sys.stderr.write(
+            f"fem-impact: the segments still end at {kept or 'the tail'}; the last one ends at the new tail\n"
+        )
+    if rod.bore and longer and "projectile.bore" not in changed:
         ends = f"{1e3 * rod.bore[0][0]:.4g} to {1e3 * rod.bore[-1][0]:.4g} mm"
         sys.stderr.write(
             f"fem-impact: warning: the bore is that of the old length, {ends} from the tip. Another one: "

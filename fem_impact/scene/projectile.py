@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import inf
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
@@ -27,7 +28,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A part of a projectile along its axis: its end, m from the tip, and its material."""
+    """A part of a projectile along its axis: its end, m from the tip, and its material.
+
+    An end of inf is the tail of the projectile, which takes its place there.
+    """
 
     to: float
     material: Material
@@ -105,6 +109,10 @@ class ProjectileSpec:
         if self.bore:
             object.__setattr__(self, "bore", checked_points(self.bore, "bore"))
         if self.segments:
+            last = self.segments[-1]
+            if last.to == inf:
+                ended = (*self.segments[:-1], replace(last, to=self.length))
+                object.__setattr__(self, "segments", ended)
             _check_segments(self)
         if not self.is_rod:
             self.body()  # refuses what bounds no body
@@ -145,15 +153,22 @@ def _check_tip(rod: ProjectileSpec) -> None:
 def _check_segments(rod: ProjectileSpec) -> None:
     ends = [0.0, *(segment.to for segment in rod.segments)]
     for number, (before, end) in enumerate(pairwise(ends), 1):
+        if end == inf:
+            remedy = "Give its end; only the last segment may leave it out and ends at the tail."
+            raise SceneError("is missing.", key=f"segments[{number}].to", remedy=remedy)
         if not end > before:
             raise SceneError(
-                "must end behind the one before it.", key=f"segments[{number}].to", value=f"{end * 1e3:g} mm"
+                "must end behind the one before it.",
+                key=f"segments[{number}].to",
+                value=f"{end * 1e3:g} mm",
+                remedy=f"Give an end beyond {before * 1e3:g} mm, or a longer projectile.",
             )
     if abs(ends[-1] - rod.length) > 1e-9 * rod.length:
         raise SceneError(
             f"must end at the tail, {rod.length * 1e3:.6g} mm from the tip.",
             key=f"segments[{len(rod.segments)}].to",
             value=f"{ends[-1] * 1e3:.6g} mm",
+            remedy='Leave its "to" out: the last segment then ends at the tail.',
         )
     if rod.material != rod.segments[0].material:
         raise SceneError("is not that of the first segment.", key="material", value=rod.material.name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from math import isclose
+from math import inf, isclose
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from fem_impact.scene.shapes import (
     read_points,
     refuse_as_tip,
     sizes_of,
+    stated_by_length,
     stated_points,
 )
 from fem_impact.scene.tables import UNKNOWN_KEY, Table, check_keys, listed, needed, numbers_of, within
@@ -235,10 +236,11 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     """Read a shape by name; those that are rods with a published kind of tip become such rods."""
     name = table["shape"]
-    sizes = numbers_of(table, sizes_of(name), ("shape", "material"))
+    by_length = stated_by_length(name, table)
+    sizes = numbers_of(table, sizes_of(name, by_length), ("shape", "material"))
     material = within(table, "material", _material)
     if name not in TIPS:
-        return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values())), material, **own)
+        return ProjectileSpec.turned(NamedShape(name, tuple(sizes.values()), by_length), material, **own)
     radius = {"flat": 0.0, "hemisphere": sizes["diameter"] / 2}.get(name) or sizes.get("edge_radius", 0.0)
     return ProjectileSpec(
         sizes["length"], sizes["diameter"], "B" if radius else "plain", radius, material, **own
@@ -247,7 +249,8 @@ def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 
 def _segment(table: Table) -> Segment:
     check_keys(table, ("to", "material"))
-    return Segment(parse_quantity(needed(table, "to"), "length", "to"), within(table, "material", _material))
+    end = parse_quantity(table["to"], "length", "to") if "to" in table else inf
+    return Segment(end, within(table, "material", _material))
 
 
 def _layer(table: Table) -> Layer:

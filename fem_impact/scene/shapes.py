@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -35,7 +35,12 @@ SIZES = (
         "cone_angle", "angle between axis and cone", "angle", 0.0, pi / 2, low_open=True, high_open=True
     ),
     Parameter("calibre_radius", "radius of the ogive over the diameter", "", 0.5, 100.0, low_open=True),
+    Parameter(
+        "nose_length", "length of the nose, from the tip to the cylinder", "length", 0.0, 10.0, low_open=True
+    ),
 )
+BY_LENGTH = "nose_length"
+REPLACED = ("calibre_radius", "cone_angle")  # sizes that the length of the nose may stand for
 # sizes that a shape needs, in the order in which they are written
 NEEDS = {
     "flat": ("length", "diameter"),
@@ -48,10 +53,32 @@ NEEDS = {
 }
 
 
-def sizes_of(shape: str) -> tuple[Parameter, ...]:
-    """Return the sizes that a named shape needs."""
+def sizes_of(shape: str, by_length: bool = False) -> tuple[Parameter, ...]:
+    """Return the sizes that a named shape needs, with the length of the nose for its form or without."""
     check_choice(shape, tuple(NEEDS), "shape")
-    return tuple(next(size for size in SIZES if size.key == key) for key in NEEDS[shape])
+    keys = (BY_LENGTH if by_length and key in REPLACED else key for key in NEEDS[shape])
+    return tuple(next(size for size in SIZES if size.key == key) for key in keys)
+
+
+def stated_by_length(shape: str, stated: Collection[str]) -> bool:
+    """Return whether the form of a nose is stated by its length; refuse both ways, or none (SceneError)."""
+    check_choice(shape, tuple(NEEDS), "shape")
+    form = next((key for key in NEEDS[shape] if key in REPLACED), "")
+    keys = {key: [name for name in stated if name in (key, *_si(key))] for key in (form, BY_LENGTH) if form}
+    if form and len([key for key in keys if keys[key]]) != 1:
+        both = bool(keys[form])
+        raise SceneError(
+            f"is given beside {form}, which says the same." if both else "is missing, and so is nose_length.",
+            key=BY_LENGTH if both else form,
+            remedy=f"Give {form} or {BY_LENGTH}, one of them.",
+        )
+    return bool(form and keys[BY_LENGTH])
+
+
+def _si(key: str) -> tuple[str, ...]:
+    """Return the name of a size with its SI unit, if it has one."""
+    name = next(size.si_key for size in SIZES if size.key == key)
+    return (name,) if name else ()
 
 
 def refuse_as_tip(tip: object) -> None:
@@ -69,27 +96,32 @@ def refuse_as_tip(tip: object) -> None:
 
 @dataclass(frozen=True, slots=True)
 class NamedShape:
-    """A shape by name with its sizes, SI, in the order of `NEEDS`."""
+    """A shape by name with its sizes, SI, in the order of `sizes_of`."""
 
     name: str
     sizes: tuple[float, ...]
+    by_length: bool = False
 
     def __post_init__(self) -> None:
-        checked = (size.checked(v) for size, v in zip(sizes_of(self.name), self.sizes, strict=True))
+        wanted = sizes_of(self.name, self.by_length)
+        checked = (size.checked(v) for size, v in zip(wanted, self.sizes, strict=True))
         object.__setattr__(self, "sizes", tuple(checked))
 
     def outline(self) -> Array:
         """Return vertices (k, 2), (rho, z), m, of the outer surface from the axis at the tip to the tail."""
         from rigid import shapes
 
-        given = dict(zip(NEEDS[self.name], self.sizes, strict=True))
+        wanted = sizes_of(self.name, self.by_length)
+        given = dict(zip((size.key for size in wanted), self.sizes, strict=True))
         if self.name == "ball":
             return shapes.ball(given["diameter"])
         length, diameter = given["length"], given["diameter"]
+        tip, nose = (given.get("nose_radius", 0.0), given.get("face_diameter", 0.0)), given.get(BY_LENGTH)
         if self.name == "ogive":
-            return shapes.ogive(length, diameter, given["calibre_radius"], given["nose_radius"])
-        tip = given.get("nose_radius", 0.0), given.get("face_diameter", 0.0)
-        return shapes.cone(length, diameter, given["cone_angle"], *tip)
+            calibre = shapes.calibre_of(nose, diameter, tip[0]) if nose else given["calibre_radius"]
+            return shapes.ogive(length, diameter, calibre, tip[0])
+        angle = shapes.cone_angle_of(nose, diameter, *tip) if nose else given["cone_angle"]
+        return shapes.cone(length, diameter, angle, *tip)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ from fem_impact.scene import fields
 from fem_impact.scene.impact import restated
 from fem_impact.scene.library import nearest_scene, shipped, stated
 from fem_impact.scene.read import read_dict, read_toml
+from fem_impact.scene.shapes import BY_LENGTH, REPLACED
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.scene.write import to_dict
@@ -72,7 +73,16 @@ def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
             data["title"] = _title(data["title"], measured, other)
     if moved := {_bare(key.removeprefix("impact.")) for key in changes if key.startswith("impact.")}:
         data["impact"] = restated(scene.impact, data["impact"], moved)
+    if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:
+        _end_at_tail(data["projectile"])
     return read_dict(data, "--set")
+
+
+def _end_at_tail(rod: Any) -> None:
+    """Let the last segment follow the tail of a changed projectile."""
+    segments = rod.get("segments") if isinstance(rod, dict) else None
+    if segments:
+        segments[-1].pop("to", None)
 
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:
@@ -84,6 +94,9 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
     table.pop(_bare(last) if _bare(last) in table else last, None)
+    if path == ["projectile"] and _bare(last) in (BY_LENGTH, *REPLACED):
+        for other in {BY_LENGTH, *REPLACED} - {_bare(last)}:
+            table.pop(other, None)  # one of them states the form of a nose
     table[last] = value
     _rename(table, path, last)
     if "material" in path and last != "name":

@@ -62,7 +62,7 @@ def _projectile(rod: ProjectileSpec) -> dict[str, Any]:
 def _shape(rod: ProjectileSpec) -> dict[str, Any]:
     shape = rod.shape
     if isinstance(shape, NamedShape):
-        pairs = zip(sizes_of(shape.name), shape.sizes, strict=True)
+        pairs = zip(sizes_of(shape.name, shape.by_length), shape.sizes, strict=True)
         return {"shape": shape.name, **{size.key: size.write(value) for size, value in pairs}}
     if isinstance(shape, Profile):
         return {"profile": _points(shape.points), "profile_smooth": shape.smooth}

@@ -24,6 +24,7 @@ OGIVE = {
 }
 CONE = {"shape": "sphere-cone", "length": "100 mm", "diameter": "19 mm"}
 CONE |= {"cone_angle": "20 deg", "nose_radius": "3 mm"}
+BY_LENGTH = {key: value for key, value in OGIVE.items() if key != "calibre_radius"}
 POINTS = [["0 mm", "0 mm"], ["1 mm", "4 mm"], ["5 mm", "7 mm"], ["60 mm", "9 mm"], ["80 mm", "6 mm"]]
 TWO = [{"to": "40 mm", "material": "rod-steel"}, {"to": "100 mm", "material": "plate-steel"}]
 
@@ -45,6 +46,8 @@ def scene(projectile, angle="45 deg"):
     [
         OGIVE,
         CONE,
+        {**{k: v for k, v in OGIVE.items() if k != "calibre_radius"}, "nose_length": "30 mm"},
+        {**{k: v for k, v in CONE.items() if k != "cone_angle"}, "nose_length_m": 0.03},
         {"shape": "ball", "diameter": "19 mm"},
         {"shape": "cone", "length": "80 mm", "diameter": "19 mm", "cone_angle": "30 deg"}
         | {"face_diameter": "6 mm"},
@@ -128,6 +131,20 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ({**OGIVE, "calibre_radius": 0.5}, "calibre_radius = 0.5"),
         ({**OGIVE, "length": "15 mm"}, r"the nose is .* long, the body only 15 mm"),
         ({**CONE, "nose_radius": "11 mm"}, "leaves no cone"),
+        ({**OGIVE, "nose_length": "30 mm"}, "nose_length: is given beside calibre_radius.*one of them"),
+        ({**CONE, "nose_length_m": 0.03}, "nose_length: is given beside cone_angle.*one of them"),
+        (
+            {k: v for k, v in OGIVE.items() if k != "calibre_radius"},
+            "calibre_radius: is missing.*nose_length",
+        ),
+        ({**BY_LENGTH, "nose_length": "9 mm"}, "nose_length of 9 mm is blunter.*more than half.*9.5 mm"),
+        ({**BY_LENGTH, "nose_length": "120 mm"}, "the nose is 120 mm long, the body only 100 mm"),
+        ({**BY_LENGTH, "nose_length": "30 mm", "nose_radius": "10 mm"}, "nose_radius must lie below 9.5 mm"),
+        ({**BY_LENGTH, "nose_length": 30}, 'nose_length = 30: a bare number.*such as "'),
+        (
+            {"shape": "flat", "length": "1 m", "diameter": "9 mm", "nose_length": "3 mm"},
+            "nose_length.*not a known",
+        ),
         ({**CONE, "edge_radius": "11 mm"}, r"edge_radius.*not a known key"),
         ({"profile": "x"}, "must be a list of 2 to 2000 points"),
         ({"profile": [["0 mm", "0 mm"]]}, "must be a list of 2 to 2000 points"),
@@ -142,6 +159,10 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ({**OGIVE, "segments": [TWO[1], TWO[0]]}, r"segments\[2\]\.to.*must end behind"),
         ({**OGIVE, "segments": TWO, "material": "rod-steel"}, "stands beside segments"),
         ({**OGIVE, "segments": "steel"}, "must be a list of segments"),
+        (
+            {**OGIVE, "segments": [{"material": "lead"}, TWO[1]]},
+            r"segments\[1\]\.to: is missing.*only the last",
+        ),
         ({**OGIVE, "segments": [{"to": "100 mm"}]}, r"segments\[1\]\.material.*missing"),
     ],
 )
@@ -176,3 +197,65 @@ def test_the_radius_at_the_contact_is_that_of_the_point_that_touches():
     R1, R2 = principal_radii(read_dict(scene(CONE, "75 deg")))
     assert R1 == pytest.approx(0.019 / 200)
     assert R2 == pytest.approx(9.5e-3 / np.sin(radians(75.0)))
+
+
+def test_the_length_of_an_ogive_gives_its_circle():
+    """C = ((L - r)^2 / (R - r) + R + r) / 2 = 55 mm, its centre beside the shoulder."""
+    rod = {**BY_LENGTH, "diameter": "20 mm", "nose_radius": "2 mm", "nose_length": "30 mm"}
+    made = read_dict(scene(rod)).projectile
+    line = made.body().outline
+    assert line[-2] == pytest.approx([10e-3, 30e-3], rel=1e-12)
+    side = line[line[:, 1] > 3e-3][:-1]
+    assert np.hypot(side[:, 0] + 45e-3, side[:, 1] - 30e-3) == pytest.approx(55e-3, rel=1e-12)
+    by_radius = read_dict(
+        scene({**OGIVE, "diameter": "20 mm", "nose_radius": "2 mm", "calibre_radius": 2.75})
+    )
+    assert line == pytest.approx(by_radius.projectile.body().outline, rel=1e-9)
+
+
+def test_the_length_of_a_cone_gives_its_angle():
+    flat = {"shape": "cone", "length": "80 mm", "diameter": "20 mm", "face_diameter": "6 mm"}
+    line = read_dict(scene({**flat, "nose_length": "24 mm"})).projectile.body().outline
+    by_angle = {**flat, "cone_angle": f"{np.degrees(np.arctan(7 / 24)):.12f} deg"}
+    assert line == pytest.approx(read_dict(scene(by_angle)).projectile.body().outline, rel=1e-9)
+    sharp = {k: v for k, v in CONE.items() if k != "cone_angle"} | {
+        "diameter": "20 mm",
+        "nose_radius": "2 mm",
+    }
+    line = read_dict(scene({**sharp, "nose_length": "30 mm"})).projectile.body().outline
+    assert line[-2] == pytest.approx([10e-3, 30e-3], rel=1e-12)
+    (rho, z), (R, end) = line[-3:-1]  # where the sphere about (0, 2 mm) ends, and the cylinder begins
+    assert np.hypot(rho, z - 2e-3) == pytest.approx(2e-3, rel=1e-9)
+    assert rho * (R - rho) + (z - 2e-3) * (end - z) == pytest.approx(0.0, abs=1e-15)  # tangent
+
+
+def test_a_stated_length_of_the_nose_is_kept_and_replaced():
+    made = read_dict(scene({**BY_LENGTH, "nose_length": "30 mm"}))
+    wider = replace(made, "projectile.diameter", "24 mm")
+    assert wider.projectile.body().outline[-2, 1] == pytest.approx(30e-3)
+    assert 'nose_length = "30 mm"' in to_toml(wider)
+    again = replace(made, "projectile.calibre_radius", 2.0)
+    assert digest(replace(again, "projectile.nose_length", "30 mm")) == digest(made)
+    assert replace(again, "title", "own").projectile == read_dict(scene(OGIVE)).projectile
+
+
+def test_the_last_segment_ends_at_the_tail():
+    left_out = [TWO[0], {"material": "plate-steel"}]
+    made = read_dict(scene({**OGIVE, "segments": left_out}))
+    assert made == read_dict(scene({**OGIVE, "segments": TWO}))
+    longer = replace(made, "projectile.length", "160 mm")
+    assert [part.to for part in longer.projectile.segments] == [0.04, 0.16]
+    rho = [part.material.rho for part in longer.projectile.segments]
+    added = 0.06 * np.pi * 9.5e-3**2 * rho[1]
+    assert longer.projectile.body().mass == pytest.approx(made.projectile.body().mass + added, rel=1e-6)
+    with pytest.raises(
+        SceneError, match=r"segments\[2\]\.to.*Give an end beyond 40 mm, or a longer projectile"
+    ):
+        replace(made, "projectile.length", "40 mm")
+
+
+def test_lengths_of_a_body_of_segments_are_swept_and_the_user_is_told(cli):
+    code, out, _ = cli("sweep", "heavy-tail", "--vary", "projectile.length=0.1,0.16m", "--fidelity", "rigid")
+    assert code == 0 and "2 runs, 0 failed" in out
+    code, _, err = cli("check", "heavy-tail", "--set", "projectile.length=160 mm")
+    assert code == 0 and "the segments still end at 80 mm; the last one ends at the new tail" in err
