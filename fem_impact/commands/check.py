@@ -312,7 +312,7 @@ def _harm(effect: EffectChoice) -> str:
     if effect.name in BARRIERS and not effect.on:
         return ""
     if effect.name in UNFELT:
-        return "the motion does not feel it"
+        return "it does not change the motion"
     if effect.name == "vibration":
         return "what leaving it out changes: `fem-impact assess`"
     scenes, e, E_vib = estimate_errors().get(effect.name, (0, 0.0, 0.0))

@@ -31,7 +31,7 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
 
 EFFECT = Effect(
     "vibration",
-    "The rod is elastic: longitudinal and bending waves take energy that rigid theory cannot see.",
+    "The rod is elastic: longitudinal and bending waves take energy, which rigid theory leaves out.",
     "The rod is rigid behind its nose, which alone deforms.",
     "T1/tau, longest period of the rod over contact time",
     0.1,

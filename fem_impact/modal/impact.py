@@ -187,7 +187,7 @@ def _result(
 def _reason(rod: ModalRod, end: ModalEnd, bounds: Bounds) -> str:
     """Return why the march ended, as a sentence."""
     if end.over:
-        return f"The free flight of the next {bounds.horizon * 1e3:.3g} ms has no contact."
+        return f"The rod does not touch again within the next {bounds.horizon * 1e3:.3g} ms of free flight."
     if end.struck == NOTHING:
         return f"Reached max_time = {bounds.latest * 1e3:g} ms before the last separation."
     when = f"{end.wait * 1e6:.3g} us later" if end.wait else f"at {end.time * 1e6:.4g} us"

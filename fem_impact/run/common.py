@@ -38,7 +38,9 @@ MASSIVE = Unknown("the barrier is massive")
 UPRIGHT = Unknown("the barrier does not turn")
 TURNING = Unknown("the barrier turns: rigid theory's arms are those of one that does not")
 UNBENT = Unknown("the plate-bending effect is off")
-HARDER = Unknown("the contact law lets the softer body alone flow: what the harder one takes is in its share")
+HARDER = Unknown(
+    "in this contact law the softer body alone yields; plastic work of the harder one is in its share"
+)
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed

@@ -107,7 +107,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         radiated=Unknown("a local contact law sends no waves into the barrier"),
         plate=result.plate / E_0 if plan.slots.plate else UNBENT,
         barrier=result.barrier / E_0 if plan.scene.barrier.mass else MASSIVE,
-        closing=Unknown("no contact nodes close"),
+        closing=Unknown("the reduced model has no contact nodes"),
         damping=Unknown("the reduced model has no material damping"),
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
         gravity=result.fallen / E_0 if plan.slots.gravity else Unknown("the gravity effect is off"),
@@ -144,11 +144,13 @@ def _cost(result: ModalResult) -> RunCost:
 TILT_TOLD = 0.01  # rad, as for the rod's own rotation
 LEVEL = "A barrier that turns moves the struck point with it, but the surface there keeps its direction."
 ASSUMPTIONS = (
-    "Contact by Hertz or, with a yielding body, by cells across a furrow with Tabor's hardness of the softer "
-    "body; the elliptic contact is replaced by a round one of the same sqrt(R1 R2).",
-    "A sliding tip ploughs; a yielding contact flows in shear, by two constants from six other impacts.",
-    "No residual stress, no waves in the barrier; the harder body stays elastic.",
-    "A later contact finds the barrier indented where it touches, as a first one left it.",
+    "Contact force by Hertz' law; where a body yields, by Tabor's hardness of the softer body over the "
+    "furrow that the tip presses into it. The elliptic contact is replaced by a circular one of the radius "
+    "sqrt(R1 R2).",
+    "The forces of a sliding tip that ploughs and of a contact that yields in shear hold two constants, "
+    "found from six other impacts.",
+    "Left out: residual stress, and waves in the barrier. The harder body stays elastic.",
+    "A later contact meets the dent that the first one left in the barrier.",
 )
 
 
@@ -157,9 +159,9 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
     rows = reduced_table()
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
-        f"Error of the reduced model, against the finite elements over {len(rows)} yielding scenes (the "
-        "measured sets, and scenes drawn at random on coarser meshes). Half of them have less than the "
-        f"first number, nine of ten less than the second: {', '.join(parts)}.",
+        f"Known error of the reduced model: its difference from finite elements over {len(rows)} yielding "
+        "scenes (the measured sets, and scenes drawn at random on coarser meshes), as the values that half "
+        f"of the scenes and nine tenths of them stay below: {', '.join(parts)}.",
     ]
     own = next((row for row in rows if row["name"] == scene.measured), None)
     if own:

@@ -63,7 +63,9 @@ class Separation:
             )
             return True
         self.finished = True
-        self.reason = f"The free flight of the next {self.horizon * 1e3:.3g} ms has no contact."
+        self.reason = (
+            f"The rod does not touch again within the next {self.horizon * 1e3:.3g} ms of free flight."
+        )
         return True
 
     def _relative(self, state: State) -> RigidMotion:
