@@ -60,16 +60,16 @@ def comparison_part(rows: Sequence[Mapping[str, Any]], folder: Path, since: Path
 
 
 def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
-    """Return a table a quantity: model, measurement, interval and verdict of each set."""
-    quantities = dict.fromkeys(row["quantity"] for row in rows)
+    """Return a table a quantity that was measured: model, measurement, interval and verdict of each set."""
+    quantities = dict.fromkeys(row["quantity"] for row in rows if row["measured_mean"] is not None)
     return join(_quantity([row for row in rows if row["quantity"] == name]) for name in quantities)
 
 
 def _quantity(rows: Sequence[Mapping[str, Any]]) -> Markup:
     measured = [row for row in rows if row["measured_mean"] is not None]
     inside = sum(is_inside(row["verdict"]) for row in measured)
-    title = f"{_titled(rows[0])}: " + (f"{inside} of {len(measured)} inside" if measured else "not measured")
     shown = Table.of(("set", *HEAD), [[str(row["set"]), *_cells(row)] for row in rows], left=(0, 5))
+    title = f"{_titled(rows[0])}: {inside} of {len(measured)} inside"
     return details(title, table(shown, compact=True))
 
 

@@ -57,14 +57,12 @@ def findings(curves: Curves) -> list[str]:
 
 
 def how_much(curves: Curves, yields: bool) -> str:
-    """Return vibration of the paper's rods in every surface state."""
-    rods = []
-    for rod, length in PAPER_RODS.items():
-        names = {f: name for name, f in STATES.items()}
-        same = [p for p in among(curves.line, length=length, yields=yields) if p.value(VIBRATION) is not None]
-        rods += [f"{rod}: " + ", ".join(f"{share(p)} {names[p.drop.friction]}" for p in same)] if same else []
-    kind = "a yielding" if yields else "an elastic"
-    return f"Vibration with {kind} tip at 45 degrees and 2.1 m/s, of E_0: {'; '.join(rods)}." if rods else ""
+    """Return vibration of the paper's rods, in the surface state of `PLAIN`."""
+    kind, state = "A yielding" if yields else "An elastic", PLAIN[yields]
+    known = {p.drop.length: share(p) for p in plain_line(curves, yields) if p.value(VIBRATION) is not None}
+    rods = [f"{known[length]} ({rod} rod)" for rod, length in PAPER_RODS.items() if length in known]
+    where = f"({state}, 45 degrees, 2.1 m/s)"
+    return f"{kind} tip {where} leaves as vibration, of E_0: {', '.join(rods)}." if rods else ""
 
 
 def where_it_peaks(curves: Curves, yields: bool) -> str:

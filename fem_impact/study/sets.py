@@ -137,10 +137,15 @@ def sets_report(
 
 
 def inside_sentence(comparison: Sequence[Row]) -> str:
-    """Return the sentence on how many quantities lie inside the 95 % interval of the measurement."""
-    measured = [row for row in comparison if row["measured_mean"] is not None]
-    inside = sum(row["verdict"] == "inside" for row in measured)
-    return f"{inside} of {len(measured)} computed quantities lie inside the 95 % interval of the measurement."
+    """Return the sentence on how many quantities agree with the measurement, and how many do not."""
+    verdicts = [row["verdict"] for row in comparison if row["measured_mean"] is not None]
+    starts = ("inside", "undecided", "outside, within the scatter")
+    inside, undecided, scatter = (sum(v.startswith(start) for v in verdicts) for start in starts)
+    return (
+        f"{inside} of {len(verdicts)} computed quantities lie inside the 95 % interval of the measured mean; "
+        f"of the others {undecided} are undecided by the mesh, {scatter} lie within the scatter of single "
+        f"tests, {len(verdicts) - inside - undecided - scatter} do not agree or are not known."
+    )
 
 
 def miss_sentence(explained: Sequence[Row]) -> str:

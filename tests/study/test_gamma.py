@@ -16,7 +16,7 @@ from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Accuracy, Save
 from fem_impact.study import document
 from fem_impact.study.document import Request
-from fem_impact.study.gamma import ANGLES, FULL, SETS, conclude, line, members, others, plan, reduced
+from fem_impact.study.gamma import ANGLES, FULL, MOST, SETS, conclude, line, members, others, plan, reduced
 from fem_impact.study.gamma_findings import Curves, other_inputs, share
 from fem_impact.study.gamma_points import (
     FIRST,
@@ -112,11 +112,19 @@ def test_the_full_study_covers_what_it_promises():
 
 @pytest.mark.slow
 def test_the_whole_study_fits_its_time_and_begins_with_the_longest(tmp_path):
-    """Even if every point but the measured sets asked for a finer mesh."""
+    """Even if every point but the measured sets asked for a finer mesh, and one of six for the finest."""
     times = [job.planned_s for job in plan(Request(tmp_path), {})]
     assert times == sorted(times, reverse=True)
-    finer = [job for one in members(False) if one.name not in SETS for job in one.jobs(FULL.finer)]
-    assert sum(times) + sum(job.planned_s for job in finer) < HOURS * 3600 * CORES
+    finer, finest = (
+        sum(
+            min(job.planned_s, MOST)
+            for one in members(False)
+            if one.name not in SETS
+            for job in one.jobs(factor)
+        )
+        for factor in FULL.finer
+    )
+    assert sum(times) + finer + finest / 6 < HOURS * 3600 * CORES
 
 
 def test_the_quick_study_fits_a_minute_and_begins_with_the_longest(tmp_path):
@@ -149,7 +157,11 @@ def test_a_wide_band_asks_for_a_finer_mesh_and_a_second_contact_for_a_cut_run():
     assert cut.name == f"{FIRST}long"
     assert cut.scene.accuracy.max_time == TOUCH["end_s"] + SLACK
     apart = same | {second.name: outcome(E_vib_over_E_0=0.04, contacts=[TOUCH], tip_size_m=2e-4)}
-    assert [job.name for job in more_jobs(one, FULL, apart)] == ["long-x0.5", cut.name]
+    assert [job.name for job in more_jobs(one, FULL, apart)] == [cut.name, "long-x0.5"]
+    wide = apart | {"long-x0.5": outcome(E_vib_over_E_0=0.06, contacts=[TOUCH], tip_size_m=5e-5)}
+    assert [job.name for job in more_jobs(one, FULL, wide)] == [cut.name, "long-x0.5", "long-x0.25"]
+    near = apart | {"long-x0.5": outcome(E_vib_over_E_0=0.0501, contacts=[TOUCH], tip_size_m=5e-5)}
+    assert [job.name for job in more_jobs(one, FULL, near)] == [cut.name, "long-x0.5"]
 
 
 def test_the_band_of_a_point_is_that_of_its_two_finest_meshes():
@@ -172,6 +184,8 @@ def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
     results = computed(request)
     found = conclude(request, results, NullMeter())
+    assert "tip (machined, 45 degrees, 2.1 m/s) leaves as vibration" in found.text
+    assert "(0.24 m rod)" in found.text
     assert "largest at gamma 70" in found.text and "the longest rod" in found.text
     assert f"gamma <= {LIMIT} calls the 0.08 m rod rigid" in found.text
     assert "0 have no value or no band" in found.text
@@ -229,7 +243,7 @@ def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
 def test_a_point_by_finite_elements(tmp_path):
     """The smallest drop on two coarse meshes: a value with a band, a closed ledger, a contact time."""
     drop = Drop(length_of(10.0), friction=STATES["machined"], yields=True)
-    meshes = replace(FULL, own=2.0, second=4.0, finer=None)
+    meshes = replace(FULL, own=2.0, second=4.0, finer=())
     one = Member("short", drop.scene(), drop)
     results = {job.name: simulate(job.scene, "solid") for job in first_jobs(one, meshes)}
     point = point_of(one, meshes, results)
