@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, print_json, say_kept, size_text
+from fem_impact.commands.common import changed_scene, headed, print_json, say_kept, size_text
 from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
@@ -210,7 +210,7 @@ def _end_lines(statement: dict[str, Any]) -> list[str]:
 def _short(planned: Plan, statement: dict[str, Any]) -> str:
     """Return projectile, barrier and contact, effects with their numbers, size, warnings and validity."""
     scene = planned.scene
-    lines = [f"{scene.id}: {scene.title}", "", "Projectile", *_drawing(scene)]
+    lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(scene)]
     lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
     lines += ["", "Barrier and contact", *_wrapped(_contact_lines(planned)), "", "Effects"]
     lines += _wrapped(

@@ -42,6 +42,11 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
     return replace(made, "title", titled(scene.title, shown)) if shown and made.title == scene.title else made
 
 
+def headed(scene_id: str, title: str) -> str:
+    """Return the line that names a scene; one without a title has its id for it."""
+    return scene_id if title == scene_id else f"{scene_id}: {title}"
+
+
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:
     """Return key and value of each ``key=value``; a value is TOML where it can be, text otherwise."""
     return dict(_one(change) for change in changes)

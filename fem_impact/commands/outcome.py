@@ -6,6 +6,7 @@ import sys
 from collections.abc import Mapping
 from pathlib import Path
 
+from fem_impact.commands.common import headed
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
@@ -31,7 +32,7 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
 
     ``own_tests``: the scene names tests of the user's own, whose arms e is worked out with.
     """
-    lines = [f"{outcome.provenance.scene_id}: {outcome.provenance.scene_title}", ""]
+    lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
     known_by_tests = or_none(outcome.restitution.paper.e) is not None
     arms = ("tests'" if own_tests else "paper's", "e_paper") if known_by_tests else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")

@@ -212,6 +212,13 @@ def _swapped(points: Iterable[Point]) -> Array:
     return np.array([(r, z) for z, r in points], dtype=np.float64)
 
 
+EXAMPLES = {
+    "profile": '["0 mm", "0 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]',
+    "bore": '["0 mm", "4 mm"], ["100 mm", "4 mm"]',
+}
+"""Points in a remedy: a cone with a cylinder behind it, and its straight bore of 8 mm open at both ends."""
+
+
 def checked_points(points: Any, key: str = "profile") -> tuple[Point, ...]:
     """Return points (z, r), m, of a profile or bore, z never turning back.
 
@@ -225,7 +232,7 @@ def checked_points(points: Any, key: str = "profile") -> tuple[Point, ...]:
             f"must be a list of 2 to {MOST_POINTS} points [z, radius].",
             key=key,
             value=points if isinstance(points, str) else None,
-            remedy=f'Write {key} = [["0 mm", "0 mm"], ["20 mm", "6 mm"]].',
+            remedy=f"Write {key} = [{EXAMPLES[key]}], each row the distance from the tip and the radius there.",
         )
     rows = tuple(_pair(row, f"{key}[{number}]") for number, row in enumerate(points, 1))
     for number, (before, after) in enumerate(pairwise(rows), 2):

@@ -8,7 +8,7 @@ from fem_impact.plan.choose import active
 from fem_impact.scene.library import shipped
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
-from fem_impact.scene.write import digest
+from fem_impact.scene.write import digest, to_toml
 
 
 def test_scenes_lists_every_shipped_scene(cli):
@@ -39,6 +39,14 @@ def test_check_prints_what_a_verdict_needs_on_one_screen(cli):
         assert words in said
     assert "on gravity" not in said and "footnote 2" not in said
     assert max(map(len, out.splitlines())) < 80
+
+
+def test_a_scene_without_a_title_is_named_once(cli, tmp_path):
+    scene = tmp_path / "plain.toml"
+    stated = to_toml(load("t5b")).splitlines()
+    scene.write_text("\n".join(line for line in stated if not line.startswith("title")))
+    assert cli("check", str(scene))[1].splitlines()[0] == "t5b"
+    assert cli("check", "t5b")[1].splitlines()[0] == f"t5b: {load('t5b').title}"
 
 
 def test_check_names_segments_layers_plates_and_a_friction_that_counts_as_exact(cli):

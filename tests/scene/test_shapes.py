@@ -154,6 +154,10 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ({"profile": [["5 mm", "1 mm"], ["20 mm", "2 mm"]]}, "must start at z = 0"),
         ({"profile": POINTS, "profile_smooth": 1}, "must be true or false"),
         ({**OGIVE, "bore": [["0 mm", "9.6 mm"], ["100 mm", "9.6 mm"]]}, "leaves no wall"),
+        (
+            {**OGIVE, "bore": "8 mm"},
+            r'Write bore = \[\["0 mm", "4 mm"\], \["100 mm", "4 mm"\]\].*the radius there',
+        ),
         ({**OGIVE, "bore": [["50 mm", "5 mm"], ["120 mm", "5 mm"]]}, "beyond the tail"),
         ({**OGIVE, "segments": TWO[:1]}, "must end at the tail"),
         ({**OGIVE, "segments": [TWO[1], TWO[0]]}, r"segments\[2\]\.to.*must end behind"),
