@@ -232,7 +232,7 @@ def checked_points(points: Any, key: str = "profile") -> tuple[Point, ...]:
             f"must be a list of 2 to {MOST_POINTS} points [z, radius].",
             key=key,
             value=points if isinstance(points, str) else None,
-            remedy=f"Write {key} = [{EXAMPLES[key]}], each row the distance from the tip and the radius there.",
+            remedy=f"Write {key} = [{EXAMPLES[key]}], rows of distance from the tip and radius there.",
         )
     rows = tuple(_pair(row, f"{key}[{number}]") for number, row in enumerate(points, 1))
     for number, (before, after) in enumerate(pairwise(rows), 2):
