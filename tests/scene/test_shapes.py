@@ -156,7 +156,7 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ({**OGIVE, "bore": [["0 mm", "9.6 mm"], ["100 mm", "9.6 mm"]]}, "leaves no wall"),
         (
             {**OGIVE, "bore": "8 mm"},
-            r'Write bore = \[\["0 mm", "4 mm"\], \["100 mm", "4 mm"\]\].*the radius there',
+            r'Write bore = \[\["0 mm", "4 mm"\], \["100 mm", "4 mm"\]\].*radius there',
         ),
         ({**OGIVE, "bore": [["50 mm", "5 mm"], ["120 mm", "5 mm"]]}, "beyond the tail"),
         ({**OGIVE, "segments": TWO[:1]}, "must end at the tail"),
