@@ -15,13 +15,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
-from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.layout import DofLayout, MassPoints, number
 from fem_impact.fem.mass_scaling import crossing_times, mass_factors, reference_time, scaled_rod
+from fem_impact.fem.rest import RestOfBarrier, rest_of
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import pressure_speed, projectile
@@ -192,7 +192,8 @@ class MeshedBodies:
     def layout(self) -> DofLayout:
         """Return the numbering of the unknowns."""
         gives_way = self.scene.barrier.mass is not None or self.spec.plate is not None
-        return number(self.geometry.rod, self.geometry.barrier, gives_way)
+        turns = self.scene.barrier.inertia is not None
+        return number(self.geometry.rod, self.geometry.barrier, gives_way, turns)
 
     @cached_property
     def rest_mass(self) -> float:
@@ -300,31 +301,21 @@ class MeshedBodies:
 
     @cached_property
     def mass(self) -> Array:
-        """Return the lumped masses (size,), kg."""
+        """Return the lumped masses (size,), kg, and the inertia of a turning barrier's footing, kg m2."""
         mass = assemble_masses(self.bodies, self.layout)
         if not self.spec.vibrating:
             mass[self.layout.rod[-POINTS:]] = self.rest_mass / POINTS
         if self.scene.barrier.mass is not None:
-            mass[self.layout.footing] = self.rest_of_barrier(self.scene.barrier.mass, mass)
+            rest = self.rest_of_barrier
+            mass[self.layout.footing], mass[self.layout.turn] = rest.mass, rest.inertia
         return mass
 
-    def rest_of_barrier(self, whole: float, mass: Array) -> float:
-        """Return half of what a free barrier of mass ``whole``, kg, has beside its block's (size,) ``mass``.
-
-        Raises
-        ------
-        SceneError
-            If the block alone is heavier.
-        """
-        block = 2 * float(mass[self.layout.barrier_slice].sum()) / 3
-        if whole <= block:
-            raise SceneError(
-                f"is less than that of its meshed block, {block:.3g} kg.",
-                key="barrier.mass",
-                value=f"{whole:.3g} kg",
-                remedy="Give a smaller accuracy.block_margin, or the effect barrier-rigid.",
-            )
-        return 0.5 * (whole - block)
+    @cached_property
+    def rest_of_barrier(self) -> RestOfBarrier:
+        """Return what a free barrier has beside its block."""
+        place, block = self.layout.barrier_slice, [self.barrier] if self.barrier else []
+        mass = assemble_masses(block, self.layout)
+        return rest_of(self.scene.barrier, mass[place], self.x[place])
 
     @cached_property
     def inverse_mass(self) -> Array:

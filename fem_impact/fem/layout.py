@@ -19,7 +19,8 @@ class DofLayout:
     """Indices of all degrees of freedom in one flat vector.
 
     Order: rod slices as (component, section node, layer) so that a layer's neighbours are contiguous,
-    free nose nodes, free barrier nodes, hanging nodes, the footing, one dummy element that fills up blocks.
+    free nose nodes, free barrier nodes, hanging nodes, the footing, its angle, one dummy element that fills
+    up blocks.
 
     Attributes
     ----------
@@ -29,6 +30,7 @@ class DofLayout:
     rod_size, free_size, size : ends of the rod's free part, of all free parts, of the vector
     dummy : (8, 3) int64, indices of the dummy element's unknowns
     footing : (3,) int64, indices of the barrier's motion as a whole; (0,) where it is massive
+    turn : (1,) int64, index of the barrier's angle, rad, from n towards t; (0,) where it does not turn
     """
 
     rod: Ints
@@ -39,11 +41,16 @@ class DofLayout:
     size: int
     dummy: Ints
     footing: Ints
+    turn: Ints
 
     @property
     def barrier_slice(self) -> slice:
         """Return the barrier's free part."""
         return slice(self.rod_size, self.free_size)
+
+    def ends(self, places: Ints) -> Ints:
+        """Return the unknown of the footing in the direction of each unknown of the barrier's free nodes."""
+        return np.asarray(self.footing[(places - self.rod_size) % 3])
 
     def slices_of(self, vector: Array) -> Array:
         """Return the slices' part of a vector, a view of shape ``body_shape``."""
@@ -56,8 +63,11 @@ def _triples(start: int, count: int) -> Ints:
     return start + np.arange(3 * count, dtype=np.int64).reshape(count, 3)
 
 
-def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False) -> DofLayout:
-    """Return the numbering of a rod and, if meshed, its barrier, which a ``footing`` lets move as a whole."""
+def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False, turns: bool = False) -> DofLayout:
+    """Return the numbering of a rod and, if meshed, its barrier.
+
+    A ``footing`` lets the barrier move as a whole; it may have an angle, too, if it ``turns``.
+    """
     n_section, n_layers = rod.body_nodes.shape
     places = np.full((len(rod.mesh.points), 3), -1, dtype=np.int64)
     grid = np.arange(3 * n_section * n_layers, dtype=np.int64).reshape(3, n_section, n_layers)
@@ -74,8 +84,9 @@ def number(rod: RodMesh, barrier: HexMesh | None, footing: bool = False) -> DofL
     block[hanging_barrier] = _triples(free_size + 3 * n_hanging, int(hanging_barrier.sum()))
     end = free_size + 3 * (n_hanging + int(hanging_barrier.sum()))
     whole = end + np.arange(3 * footing, dtype=np.int64)
-    end, shape = end + len(whole), (3 * n_section, n_layers)
-    return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8), whole)
+    turn = end + len(whole) + np.arange(turns, dtype=np.int64)
+    end, shape = end + len(whole) + len(turn), (3 * n_section, n_layers)
+    return DofLayout(places, block, shape, rod_size, free_size, end + 24, _triples(end, 8), whole, turn)
 
 
 # section coordinate, x (0) or y (1), in which motions along t, b, n are linear: motions symmetric about the

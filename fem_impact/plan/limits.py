@@ -187,12 +187,12 @@ def require_plate(bodies: ContactBodies) -> None:
 
 def require_still(scene: Scene, fidelity: str) -> None:
     """Refuse a barrier that turns where a fidelity has none (SceneError)."""
-    if scene.barrier.inertia is not None and fidelity != "modal":
+    if scene.barrier.inertia is not None and fidelity == "rigid":
         raise SceneError(
-            f"lets the barrier turn, which the {fidelity} fidelity does not hold.",
+            "lets the barrier turn, which the rigid fidelity does not hold.",
             key="barrier.inertia",
             value=f"{scene.barrier.inertia:.3g} kg m2",
-            remedy="Use the modal fidelity, or leave out inertia and centre_depth: it then only translates.",
+            remedy="Use the fidelity modal or solid, or leave out inertia and centre_depth.",
         )
 
 

@@ -160,6 +160,15 @@ def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: fl
     )
 
 
+def apart(scene: Scene) -> tuple[float, float]:
+    """Return the rod's mass centre from that of a barrier that turns at first contact (n, t), m.
+
+    The mass centre of the rod lies d_d above and d_c up the slope from the struck point.
+    """
+    d_c, d_d = arms(scene)
+    return d_d + (scene.barrier.centre_depth or 0.0), d_c - scene.barrier.centre_offset
+
+
 def barrier_motion(scene: Scene, base_n: float, base_t: float, error: Num) -> BarrierMotion:
     """Return the motion of the barrier; ``base_n`` and ``base_t``, m/s, are what the impact added to it."""
     barrier = scene.barrier
@@ -189,18 +198,21 @@ def momentum_error(
 
 
 def angular_momentum_error(
-    scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b: float, away: tuple[float, float]
+    scene: Scene,
+    motion: RodMotion,
+    barrier: BarrierMotion,
+    Omega_b: float,
+    start: tuple[float, float],
+    away: tuple[float, float],
 ) -> float:
     """Return the change of the angular momentum of rod and barrier about their common mass centre.
 
     It is over the rod's momentum as seen from the barrier times the distance of the mass centres before.
-    ``away`` (n, t), m, is the rod's mass centre from the barrier's after the impact.
+    ``start`` and ``away`` (n, t), m, are the rod's mass centre from the barrier's before and after.
     """
-    before, struck, (d_c, d_d) = scene.relative, scene.barrier, arms(scene)
+    before, struck, (start_n, start_t) = scene.relative, scene.barrier, start
     inertia, M = struck.inertia or 0.0, struck.mass or 0.0
     reduced_mass = motion.mass * M / (motion.mass + M)
-    # the mass centre of the rod lies d_d above and d_c up the slope from the struck point
-    start_n, start_t = d_d + (struck.centre_depth or 0.0), d_c - struck.centre_offset
     V_n, V_t = motion.V_n - barrier.V_bn, motion.V_t - barrier.V_bt
     orbit = reduced_mass * (away[0] * V_t - away[1] * V_n - start_n * before.v_t + start_t * before.v_n)
     spun = motion.mass * motion.k_squared * (motion.Omega - before.omega) + inertia * Omega_b

@@ -19,6 +19,7 @@ from fem_impact.run.common import (
     MASSIVE,
     UNBENT,
     angular_momentum_error,
+    apart,
     barrier_motion,
     gravity_warning,
     momentum_error,
@@ -48,7 +49,7 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     base = result.V_bn, result.V_bt
     struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base, fallen))
     if scene.barrier.inertia is not None:
-        error = angular_momentum_error(scene, moved, struck, result.Omega_b, result.away)
+        error = angular_momentum_error(scene, moved, struck, result.Omega_b, apart(scene), result.away)
         struck = replace(struck, Omega_b=result.Omega_b, angular_momentum_error=error)
     coefficients, energy = restitution(scene, moved, struck, fallen), _energy(plan, result)
     origin = provenance(plan, CHOICES, WITHOUT)

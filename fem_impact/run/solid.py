@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,6 +26,7 @@ from fem_impact.physics.flash import flash, halves
 from fem_impact.run.common import (
     MASSIVE,
     UNBENT,
+    angular_momentum_error,
     barrier_motion,
     gravity_warning,
     heat,
@@ -64,6 +66,9 @@ def reduce(result: SolidResult) -> Outcome:
     fallen = (plan.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
     error = momentum_error(plan.scene, moved, *result.base, fallen)
     struck = barrier_motion(plan.scene, *result.base, error)
+    if (turn := result.turned) is not None:
+        error = angular_momentum_error(plan.scene, moved, struck, *turn)
+        struck = replace(struck, Omega_b=turn.spin, angular_momentum_error=error)
     coefficients, energy = restitution(plan.scene, moved, struck, fallen), _energy(result, moved)
     origin = provenance(plan, _choices(result))
     reason = unresolved(result)
@@ -143,6 +148,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     V_n, V_t, k2 = moved.V_n - barrier.v_n, moved.V_t - barrier.v_t, moved.k_squared
     kept = float(rigid.kinetic_energy(V_n, V_t, moved.Omega, mass=moved.mass, k2=k2))
     given = 0.5 * (barrier.mass or 0.0) * (result.base[0] ** 2 + result.base[1] ** 2)
+    given += 0.5 * (barrier.inertia or 0.0) * (result.turned.spin if result.turned else 0.0) ** 2
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
     check = result.vibration_check
     locked = a["strain_rod"] - (check[1] if check else result.flight.strain)

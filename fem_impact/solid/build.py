@@ -34,6 +34,7 @@ from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
+from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
 from meshes import SKIN
@@ -86,24 +87,6 @@ def elastic_block(
     return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
 
 
-def footing_springs(layout: DofLayout, x: Array, block: ElasticBlockParts) -> FootingSprings:
-    """Return the springs of a block on a footing; those along b hold no motion of the footing."""
-    from fem_impact.solid.footing import FootingSprings
-
-    stiffness = block.springs.diagonal()
-    places = np.flatnonzero(stiffness)
-    ends = _ends(layout, layout.barrier_slice.start + places)
-    held = ends != layout.footing[1]
-    places, ends = places[held], ends[held]
-    whole = layout.barrier_slice.start + places
-    return FootingSprings(whole, stiffness[places], x[whole].copy(), ends, block.linear.effect)
-
-
-def _ends(layout: DofLayout, places: Ints) -> Ints:
-    """Return the unknown of the footing in the direction of each unknown of a block's free nodes."""
-    return np.asarray(layout.footing[(places - layout.barrier_slice.start) % 3])
-
-
 def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
     """Return the dashpots of a block's boundary, which take the radiated energy."""
     from fem_impact.fem.boundary import radiating_share
@@ -115,7 +98,7 @@ def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: El
     damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))
     places = place.start + np.flatnonzero(damping)
     places = places[inverse_mass[places] > 0]
-    ends = _ends(layout, places) if len(layout.footing) else places[:0]
+    ends = layout.ends(places) if len(layout.footing) else places[:0]
     return Dashpots(
         places, damping[places - place.start], inverse_mass[places], ends, inverse_mass[ends].copy()
     )
@@ -223,7 +206,13 @@ class Builder:
         return elastic_block(self.meshed.barrier, self.meshed.layout, self.meshed.x, effect)
 
     @cached_property
-    def block(self) -> tuple[list[ElasticBlock], list[Dashpots], dict[str, float]]:
+    def ground(self) -> Ground:
+        """Return the motion of the barrier as a whole."""
+        turns = len(self.meshed.layout.turn) > 0
+        return Ground.of(self.meshed.layout, self.meshed.rest_of_barrier.centre if turns else np.zeros(2))
+
+    @cached_property
+    def block(self) -> tuple[list[Force], list[Impulse], dict[str, float]]:
         """Return the items of a meshed barrier and its stable step, s, under its name; empty without one."""
         if self.meshed.barrier is None:
             return [], [], {}
@@ -233,14 +222,34 @@ class Builder:
         pots = (
             [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if self.spec.radiating else []
         )
-        return [block.linear], pots, {"barrier": step}
+        if self.ground.turns:
+            return self.turning_block(pots, step)
+        return [block.linear], [*pots], {"barrier": step}
+
+    def turning_block(
+        self, pots: list[Dashpots], step: float
+    ) -> tuple[list[Force], list[Impulse], dict[str, float]]:
+        """Return the items of a block on a footing that turns, from those of one that stands still."""
+        from fem_impact.solid.turning import TurningBlock, TurningDashpots, footing_step
+
+        block, ground, layout = self.block_parts, self.ground, self.meshed.layout
+        inverse, place, x = self.meshed.inverse_mass, layout.barrier_slice, self.meshed.x
+        moves = inverse[[*layout.footing[[0, 2]], *layout.turn]]
+        springs = block.springs.diagonal()
+        step = footing_step(step, self.scene.accuracy.step, springs, ground, moves, x[place])
+        linear = TurningBlock.of(block.linear.stiffness, place, ground, block.linear.effect)
+        turning = [TurningDashpots.of(p.places, p.damping, inverse, ground, place.start) for p in pots]
+        return [linear], [*turning], {"barrier": step}
 
     @cached_property
     def footing(self) -> list[FootingSprings]:
-        """Return the springs between a block and a footing, if there are both."""
-        if self.meshed.barrier is None or self.scene.barrier.mass is None:
+        """Return the springs between a block and a footing that does not turn, if there are both."""
+        if self.meshed.barrier is None or self.scene.barrier.mass is None or self.ground.turns:
             return []
-        return [footing_springs(self.meshed.layout, self.meshed.x, self.block_parts)]
+        from fem_impact.solid.footing import FootingSprings
+
+        stiffness, effect = self.block_parts.springs.diagonal(), self.block_parts.linear.effect
+        return [FootingSprings.of(stiffness, self.meshed.layout, self.meshed.x, effect)]
 
     @cached_property
     def steps(self) -> dict[str, float]:
@@ -293,7 +302,7 @@ class Builder:
             skin = np.setdiff1d(skin, g.rod.body_nodes)
         nodes, inverse = self.meshed.rod.places[skin], self.meshed.inverse_mass
         if self.scene.barrier.mass is not None:
-            return MovingPlane.of(nodes, self.meshed.layout.footing, inverse, f)
+            return MovingPlane.of(nodes, self.ground, inverse, f)
         return PlaneContact(nodes, inverse, f)
 
     def weight(self, gravity: float) -> Weight:
@@ -359,6 +368,7 @@ class Builder:
             rod=linear,
             zones=self.zones,
             contact=self.contact,
+            ground=self.ground,
             hanging=Hanging.of([(body.mesh.tie, body.places) for body in self.meshed.bodies]),
             rod_stiffness=stiffness if self.spec.vibrating else None,
             steps=steps,

@@ -14,7 +14,6 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import when_and_where
@@ -71,14 +70,15 @@ class SkinWatch:
         skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
         touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
         self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]
-        self.rows, self.footing = self.places[:, 2], model.layout.footing
+        self.ground = model.ground
         self.lowest = np.inf
         self.deepest = -DEEP * model.geometry.tip_size
         self.reason = ""
 
     def observe(self, state: State) -> bool:
         """Record the lowest height so far; stop the run when it is too deep."""
-        heights = state.x[self.rows] - risen(self.footing, state.x)
+        x, ground = state.x, self.ground
+        heights = ground.levelled(x[self.places[:, 0]], x[self.places[:, 2]], x) - ground.risen(x)
         self.lowest = min(self.lowest, float(np.min(heights, initial=np.inf)))
         if self.lowest >= self.deepest:
             return False

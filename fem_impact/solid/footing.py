@@ -1,4 +1,4 @@
-"""The motion of the barrier as a whole: of a free mass, or of a plate that bends.
+"""What moves the barrier as a whole: springs on a free mass that does not turn, or a plate that bends.
 
 It has the unknowns of one node, the footing. On a free barrier the springs and dashpots around a meshed
 block, which stand for the rest of the barrier, act between block and footing, and a rigid plane is the
@@ -14,21 +14,12 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
+from fem_impact.fem.layout import DofLayout
 from fem_impact.solid.contact.book import IMPULSE_N, ContactBook
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.items import Impulse
 from fem_impact.solid.state import State
-
-
-def risen(footing: Ints, x: Array) -> float:
-    """Return by how much, m, a barrier as a whole has moved along n; 0 for a massive one."""
-    return float(x[footing[2]]) if len(footing) else 0.0
-
-
-def speed_of(footing: Ints, v: Array) -> tuple[float, float]:
-    """Return the velocity along n and t, m/s, of a barrier as a whole; 0 for a massive one."""
-    return (float(v[footing[2]]), float(v[footing[0]])) if len(footing) else (0.0, 0.0)
 
 
 @dataclass(slots=True)
@@ -50,6 +41,14 @@ class FootingSprings:
     ends: Ints
     effect: str = "barrier-elastic"
     energy: float = 0.0
+
+    @classmethod
+    def of(cls, springs: Array, layout: DofLayout, x: Array, effect: str) -> FootingSprings:
+        """Build from the ``springs``, N/m, of all unknowns of a block; those along b move no footing."""
+        first, held = layout.barrier_slice.start, np.flatnonzero(springs)
+        held = held[layout.ends(first + held) != layout.footing[1]]
+        places = first + held
+        return cls(places, springs[held], x[places].copy(), layout.ends(places), effect)
 
     def add(self, state: State) -> None:
         """Add the forces by the motion of the footing, and those on it."""

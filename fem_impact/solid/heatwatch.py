@@ -12,7 +12,6 @@ from fem_impact.solid.contact.book import IMPULSE_T
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from meshes import SKIN
@@ -100,8 +99,8 @@ class PlaneSurface:
         areas = tributary_areas(model.start[0], model.layout.rod, quads)
         node = np.full(model.layout.size, -1)
         node[model.layout.rod[:, 2]] = np.arange(len(areas))
-        self.rows, self.footing = contact.nodes[:, 2], model.layout.footing
-        self.area = areas[node[self.rows]]
+        self.nodes, self.ground = contact.nodes, model.ground
+        self.area = areas[node[self.nodes[:, 2]]]
         self.sum, self.steps = 0.0, 0
 
     @property
@@ -115,7 +114,9 @@ class PlaneSurface:
 
     def add(self, state: State) -> None:
         """Add the skin at the height of the plane."""
-        self.sum += float(self.area[state.x[self.rows] < risen(self.footing, state.x) + 1e-9].sum())
+        x, ground = state.x, self.ground
+        heights = ground.levelled(x[self.nodes[:, 0]], x[self.nodes[:, 2]], x)
+        self.sum += float(self.area[heights < ground.risen(x) + 1e-9].sum())
         self.steps += 1
 
     def close(self) -> float:

@@ -18,6 +18,7 @@ from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
+from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse, Item
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.state import State
@@ -43,6 +44,7 @@ class Model:
     rod : the rod's linear part, one of the forces
     zones : the yielding zones among the forces
     contact : one of the impulses, or None without contact
+    ground : the motion of the barrier as a whole
     hanging : ties of the locally refined meshes
     rod_stiffness : elastic stiffness of the half rod over its mass points, N/m; None for a rod that cannot
         vibrate
@@ -62,6 +64,7 @@ class Model:
     rod: ElasticRod | ElasticNose
     zones: Sequence[YieldingZone]
     contact: PlaneContact | MovingPlane | SurfaceContact | None
+    ground: Ground
     hanging: Hanging
     rod_stiffness: MassStiffness | None
     steps: Mapping[str, float]

@@ -16,7 +16,6 @@ from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_moti
 from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
-from fem_impact.solid.footing import risen
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
@@ -177,7 +176,7 @@ class FieldSampler:
         """Return point data and cell data of the present state."""
         u = self.model.nodes(state.x - self.model.start[0])[self.places]
         if self.model.in_plate_frame:
-            u[len(self.model.geometry.rod_points) :, 2] += risen(self.model.layout.footing, state.x)
+            u[len(self.model.geometry.rod_points) :, 2] += self.model.ground.risen(state.x)
         v = self.model.nodes(state.v)[self.places]
         return {"displacement": u, "velocity": v}, self._cells(state, self.points + u)
 
@@ -185,6 +184,7 @@ class FieldSampler:
         n = len(self.model.geometry.rod_points)
         local = x - self.points
         local[:n] = self._turned_back(state, x[:n]) - self.points[:n]
+        local[n:] = self.model.ground.as_before(x[n:], state.x) - self.points[n:]
         stress, strain = mises(self.gradient, local[self.cells], self.shear), np.zeros(len(self.cells))
         for zone in self.model.zones:
             rows = zone.cells + (0 if zone.body == "rod" else len(self.model.geometry.rod.mesh.cells))

@@ -7,8 +7,11 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
+from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
@@ -19,6 +22,7 @@ from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.doubts import doubts, skin_share
+from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import ProgressObserver
@@ -47,6 +51,18 @@ class LoopCost:
     smallest_step: float
 
 
+class BarrierTurn(NamedTuple):
+    """How a free barrier turns.
+
+    ``spin`` is its angular momentum over its inertia, rad/s; ``start`` and ``end`` are the rod's mass centre
+    from its own (n, t), m, then.
+    """
+
+    spin: float
+    start: tuple[float, float]
+    end: tuple[float, float]
+
+
 @dataclass(frozen=True, slots=True)
 class SolidResult:
     """The end of a run.
@@ -58,6 +74,7 @@ class SolidResult:
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
     base : velocity (n, t), m/s, that a free barrier gained as a whole, that of its mass centre; else 0
+    turned : how it turns, None of one that does not
     skin_share : share of the barrier's plastic work done right under its surface
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     peak_nodes : nodes of the half model that were pressed at once then
@@ -78,6 +95,7 @@ class SolidResult:
     motion: RigidMotion
     flight: FreeVibration
     base: tuple[float, float]
+    turned: BarrierTurn | None
     skin_share: float
     peak_force: float
     peak_nodes: int
@@ -181,6 +199,7 @@ def _result(
         motion=view.rigid(state),
         flight=view.flight(state, model),
         base=_base(plan, model, state),
+        turned=_turned(plan, model, state) if model.ground.turns else None,
         skin_share=skin_share(model),
         peak_force=watchers.peak.largest,
         peak_nodes=watchers.peak.nodes,
@@ -202,6 +221,30 @@ def _base(plan: Plan, model: Model, state: State) -> tuple[float, float]:
     momentum = (model.mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0)
     momentum += model.mass[model.layout.footing] * state.v[model.layout.footing]
     return 2 * float(momentum[2]) / whole, 2 * float(momentum[0]) / whole
+
+
+def _turned(plan: Plan, model: Model, state: State) -> BarrierTurn:
+    """Return how a free barrier turns at ``state``; block and footing have its angular momentum."""
+    start, whole, inertia = model.start, plan.scene.barrier.mass or 1.0, plan.scene.barrier.inertia or 1.0
+    block = np.arange(model.layout.barrier_slice.start, model.layout.barrier_slice.stop).reshape(-1, 3)
+    rod = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+
+    def centre(x: Array) -> Array:
+        own = model.mass[model.layout.footing[0]] * model.ground.place(x)
+        return np.asarray(2 * (model.mass[block[:, 0]] @ x[block][:, [0, 2]] + own) / whole)
+
+    def apart(x: Array) -> tuple[float, float]:
+        away = mass_centre(model.mass, x, rod)[[0, 2]] - centre(x)
+        return float(away[1]), float(away[0])
+
+    middle = centre(state.x)
+    nodes = [(model.mass[block[:, 0]], state.x[block] - [middle[0], 0.0, middle[1]], state.v[block])]
+    own = model.ground.place(state.x) - middle
+    at, v = np.array([[own[0], 0.0, own[1]]]), state.v[model.layout.footing][None]
+    nodes.append((model.mass[model.layout.footing[:1]], at, v))
+    spun = sum(float(m @ (r[:, 2] * v[:, 0] - r[:, 0] * v[:, 2])) for m, r, v in nodes)
+    spun += float(model.mass[model.layout.turn[0]]) * model.ground.spin(state.v)
+    return BarrierTurn(2 * spun / inertia, apart(start[0]), apart(state.x))
 
 
 def _peak_memory() -> float:

@@ -12,7 +12,6 @@ from fem_impact.arrays import Array
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.physics.beam import HORIZON
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.footing import risen, speed_of
 from fem_impact.solid.model import Model
 from fem_impact.solid.observers import QUIET
 from fem_impact.solid.rodview import RodState
@@ -70,7 +69,7 @@ class Separation:
 
     def _relative(self, state: State) -> RigidMotion:
         """Return the rod's motion as seen from the barrier as a whole."""
-        motion, (u_n, u_t) = self.view.rigid(state), speed_of(self.model.layout.footing, state.v)
+        motion, (u_n, u_t) = self.view.rigid(state), self.model.ground.speed(state.v)
         return replace(motion, V_n=motion.V_n - u_n, V_t=motion.V_t - u_t)
 
     def _tail_strikes(self, state: State, motion: RigidMotion) -> float:
@@ -79,34 +78,48 @@ class Separation:
             return np.inf
         start, t = self.model.start[0][self.view.places], np.arange(0.0, self.horizon, SAMPLE)
         arm = self.tail - self.view.mass @ start / self.view.mass.sum()
-        heights = _rigid_heights(arm, motion, t, self.view.angle(state, self.model))
-        down = heights.min(axis=0) < risen(self.model.layout.footing, state.x)
+        angle, ground = self.view.angle(state, self.model), self.model.ground
+        heights = _rigid_heights(arm, motion, t, angle)
+        if ground.turns:
+            along = _rigid_along(arm, motion, t, angle)
+            heights = ground.levelled(along, heights, state.x, ground.spin(state.v) * t)
+        down = heights.min(axis=0) < ground.risen(state.x)
         return float(t[np.argmax(down)]) if down.any() else np.inf
 
     def _stays_away(self, state: State, motion: RigidMotion, until: float) -> bool:
         """Return whether the flight of the next ``until``, s, has no contact."""
         ahead, contact = self.view.flight(state, self.model), self.model.contact
         t = np.arange(0.0, until, SAMPLE)
-        lowest = flight_heights(state.x[self.view.rim], self.view.rim[:, 2], motion, ahead, t).min(axis=0)
-        footing = self.model.layout.footing
-        ground = risen(footing, state.x)
+        ground, x = self.model.ground, state.x
+        lowest, risen = self._rim_heights(state, motion, ahead, t).min(axis=0), ground.risen(x)
         if not isinstance(contact, SurfaceContact):
-            return bool(lowest.min() > ground)
-        surface = contact.barrier.places[:, 2]
+            return bool(lowest.min() > risen)
+        surface = contact.barrier.places
         # allows the barrier to move on for the time QUIET at its present speed
-        base = ground if self.model.in_plate_frame else 0.0  # of the barrier's positions
-        carried = 0.0 if self.model.in_plate_frame else speed_of(footing, state.v)[0]
-        margin = QUIET * float(np.abs(state.v[surface] - carried).max())
-        top = max(ground - base, float(state.x[surface].max()))
+        base = risen if self.model.in_plate_frame else 0.0  # of the barrier's positions
+        carried = 0.0 if self.model.in_plate_frame else ground.rate(state.v, x, surface)
+        margin = QUIET * float(np.abs(state.v[surface[:, 2]] - carried).max())
+        top = max(risen - base, float(ground.levelled(x[surface[:, 0]], x[surface[:, 2]], x).max()))
         deep = t[lowest - base <= top + margin + contact.rod.sag]
-        places = contact.rod.places
+        places, spin = contact.rod.places, ground.spin(state.v)
 
         def clearance(s: float) -> float:
-            moved = flown(state.x, places, motion, ahead, s)
+            moved = flown(x, places, motion, ahead, s)
             moved[places[:, 2]] -= base
+            moved[surface] = ground.turned_on(moved[surface], x, spin * s)
             return contact.clearance(moved)
 
         return all(clearance(s) > margin for s in deep)
+
+    def _rim_heights(self, state: State, motion: RigidMotion, ahead: FreeVibration, t: Array) -> Array:
+        """Return heights (k, times), m, of the rim in free flight, as over a barrier that does not turn."""
+        x, rim, ground = state.x[self.view.rim], self.view.rim, self.model.ground
+        heights = flight_heights(x, rim[:, 2], motion, ahead, t)
+        if not ground.turns:
+            return heights
+        shake = ahead.displacement(rim[:, 0], t) - ahead.displacement(rim[:, 0], np.zeros(1))
+        along = _rigid_along(x - motion.centre, motion, t) + shake
+        return ground.levelled(along, heights, state.x, ground.spin(state.v) * t)
 
 
 def flown(x: Array, places: NDArray[np.int64], motion: RigidMotion, ahead: FreeVibration, t: float) -> Array:
@@ -134,3 +147,10 @@ def _rigid_heights(arm: Array, motion: RigidMotion, t: Array, angle: float = 0.0
     turned = angle + motion.Omega * t
     rise = np.outer(arm[:, 2], np.cos(turned)) - np.outer(arm[:, 0], np.sin(turned))
     return np.asarray(motion.centre[2] + motion.V_n * t + rise)
+
+
+def _rigid_along(arm: Array, motion: RigidMotion, t: Array, angle: float = 0.0) -> Array:
+    """Return places t (k, times), m, of points that stand at ``arm`` (k, 3) turned by ``angle``, rad."""
+    turned = angle + motion.Omega * t
+    moved = np.outer(arm[:, 0], np.cos(turned)) + np.outer(arm[:, 2], np.sin(turned))
+    return np.asarray(motion.centre[0] + motion.V_t * t + moved)

@@ -28,6 +28,7 @@ from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
 from fem_impact.solid.footing import on_plate
 from fem_impact.solid.frame import FixedFrame, TurningFrame
+from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
@@ -142,6 +143,7 @@ def body_model(body: FreeBody) -> Model:
         rod=linear,
         zones=zones,
         contact=contact,
+        ground=Ground.of(layout, np.zeros(2)),
         hanging=Hanging.of([(part.mesh.tie, part.places) for part in parts]),
         rod_stiffness=stiffness,
         steps=steps,

@@ -7,7 +7,15 @@ from typing import ClassVar
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.solid.contact.book import MOVING, ContactBook
-from fem_impact.solid.contact.points import Points, PointState, make_points, over_plane, settle
+from fem_impact.solid.contact.points import (
+    Points,
+    PointState,
+    make_points,
+    over_plane,
+    over_turning_plane,
+    settle,
+)
+from fem_impact.solid.ground import Ground
 from fem_impact.solid.state import State
 
 
@@ -19,7 +27,7 @@ class MovingPlane:
 
     Attributes
     ----------
-    nodes : (k, 3) unknowns of the rod's nodes; footing : (3,) unknowns of the plane
+    nodes : (k, 3) unknowns of the rod's nodes; ground : the motion of the plane
     """
 
     effect: ClassVar[str] = "contact"
@@ -27,28 +35,33 @@ class MovingPlane:
     every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("points.memory", *MOVING)
     nodes: Ints
-    footing: Ints
+    ground: Ground
     inverse_mass: Array
     f: float
     points: Points
     book: ContactBook = field(default_factory=ContactBook)
 
     @classmethod
-    def of(cls, nodes: Ints, footing: Ints, inverse_mass: Array, f: float) -> MovingPlane:
+    def of(cls, nodes: Ints, ground: Ground, inverse_mass: Array, f: float) -> MovingPlane:
         """Build with room for all nodes."""
-        return cls(nodes, footing, inverse_mass, f, make_points(len(nodes)))
+        return cls(nodes, ground, inverse_mass, f, make_points(len(nodes)))
 
     def resolve(self, state: State) -> None:
         """Apply this step's impulses and book the work."""
         motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
         self.book.step[:] = 0.0
         c = self.points
-        count = over_plane(self.nodes, self.footing, motion, c)
+        if self.ground.turns:
+            turning = self.ground.footing, self.ground.turn[0], self.ground.centre
+            count = over_turning_plane(self.nodes, *turning, motion, c)
+        else:
+            count = over_plane(self.nodes, self.ground.footing, motion, c)
         settle(count, motion, c, self.f, self.book, state.time)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
-        return float(x[self.nodes[:, 2]].min() - x[self.footing[2]])
+        heights = self.ground.levelled(x[self.nodes[:, 0]], x[self.nodes[:, 2]], x)
+        return float(heights.min() - self.ground.risen(x))
 
     def energies(self, state: State) -> tuple[float, ...]:
         """Return friction heat and closing loss."""

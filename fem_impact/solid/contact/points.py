@@ -39,7 +39,8 @@ class Points(NamedTuple):
 
     Attributes
     ----------
-    nodes : (k, 5, 3) int64, unknowns of the five nodes; weights : (k, 5), signed
+    nodes : (k, 5, 3) int64, unknowns of the five nodes; one with equal unknowns stands for a body's angle
+    weights : (k, 5), signed
     normal : (k, 3); target : (k,) lowest normal rate, m/s; before : (k, 3) rates before the kick
     p : (k, 3) impulses on the rod, N s; owner : (k,) slave node; memory : (slaves, 3) last impulses
     """
@@ -146,6 +147,28 @@ def over_plane(nodes, plane, motion, c):  # type: ignore[no-untyped-def]
     return count
 
 
+@kernel
+def over_turning_plane(nodes, plane, turn, centre, motion, c):  # type: ignore[no-untyped-def]
+    """Collect contacts of ``nodes`` (k, 3) with a plane that turns; returns the number.
+
+    ``plane`` (3,) and ``turn`` are the unknowns of its body's place and angle, ``centre`` (2,), m, is where
+    that body's mass centre was at the start, when the plane was n = 0.
+    """
+    x, count, still = motion.x, 0, plane[1]
+    s, cos = np.sin(x[turn]), np.cos(x[turn])
+    for i in range(len(nodes)):
+        t, n = x[nodes[i, 0]] - centre[0] - x[plane[0]], x[nodes[i, 2]] - centre[1] - x[plane[2]]
+        _join(c, count, 0, nodes[i], 1.0)
+        _join(c, count, 1, plane, -1.0)
+        # the plane's spin moves it by n along t and by -t along n, where the impulse acts on both bodies
+        _join(c, count, 2, (turn, still, still), -n)
+        _join(c, count, 3, (still, still, turn), t)
+        _join(c, count, 4, plane, 0.0)
+        c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = s, 0.0, cos
+        count += _enter(count, i, t * s + n * cos + centre[1], 0.0, motion, c)
+    return count
+
+
 @inlined
 def _reach(rod, x, height):  # type: ignore[no-untyped-def]
     """Return the box (t, t, b, b) around all rod quads that come down to ``height``."""
@@ -223,7 +246,9 @@ def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
         record[IMPULSE_N] += p[2]
         record[ACTIVE] += 1.0 if pressed > 0.0 else 0.0
         for a in range(5):
-            if c.weights[k, a] > 0.0:
+            i, j, l = c.nodes[k, a]
+            angle = i == j or j == l
+            if c.weights[k, a] > 0.0 and not angle:
                 at_t, at_n = x[c.nodes[k, a, 0]], x[c.nodes[k, a, 2]]
                 record[ARM] += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
         for i in range(3):
