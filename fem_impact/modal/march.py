@@ -114,7 +114,7 @@ def stored(depth: float, F: float, springs: Springs, law: ContactLaw) -> tuple[f
 @inlined
 def book(contacts: Array, count: int, time: float, p_n: float, p_t: float, largest: float, gap: float) -> int:
     """Enter an impulse into the intervals of contact, joined over a ``gap``, s; return their number."""
-    if p_n <= FAINT * largest:
+    if abs(p_n) <= FAINT * largest:
         return count
     if (count == 0 or time - contacts[count - 1, 1] > gap) and count < MOST_CONTACTS:
         contacts[count, 0] = time
@@ -258,7 +258,10 @@ def meet(
     place: float,
     moved: float,
 ) -> tuple[float, float]:
-    """Return normal and tangential force, N, at a depth and place, m, of a tip that has ``moved``, m."""
+    """Return normal and tangential force, N, at a depth and place, m, of a tip that has ``moved``, m.
+
+    The first is 0 where nothing touches, and below 0 where friction on a steep flank holds a leaving tip.
+    """
     if flow.yields:
         return plough(furrow, depth, place, flow)
     F, a = press(depth, law)
@@ -352,14 +355,15 @@ def drop(
         arm, depth, place = followed(now, start, modes)
         force = meet(law, flow, springs, furrow, depth, place, place - before)
         struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
-        late = force[0] > 0.0 and time > bounds.latest
+        touches = force[0] != 0.0
+        late = touches and time > bounds.latest
         if len(record) and steps % every == 0:
             row = record[rows]
             work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
             held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
             enter_contact(row, time, force, held, furrow.works, work[1], flow.yields)
             rows, every = thinned(record, rows + 1, every)
-        if force[0] > 0.0:
+        if touches:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
             p_n, p_t = span * force[0], span * force[1]
             push(now, start, modes, arm, p_n, p_t, tally)
@@ -373,14 +377,14 @@ def drop(
             let_go(furrow, depth, place)
         if late or struck != NOTHING:
             break
-        if pressed and force[0] == 0.0:
+        if pressed and not touches:
             flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
             flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, furrow, tally[PEAK])
             steps += flown
             if struck != TIP:
                 wait = flown * dt
                 break
-        pressed, before = force[0] > 0.0, place
+        pressed, before = touches, place
         tally[WORK_G] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
         time += dt
         steps += 1

@@ -179,9 +179,9 @@ class Builder:
 
     @cached_property
     def frame(self) -> FixedFrame | TurningFrame:
-        """Return the frame of the rod's linear part."""
+        """Return the frame of the rod's linear part; a rigid rest turns, and its nose must follow it."""
         x = self.meshed.x[: self.meshed.layout.rod_size]
-        if self.spec.turning_frame:
+        if self.spec.turning_frame or not self.spec.vibrating:
             return TurningFrame.at(x, self.meshed.mass[: len(x)], self.meshed.free_nodes)
         return FixedFrame(x.copy())
 

@@ -35,7 +35,8 @@ def run_time_shares(
             _count(seconds, item.effect, _shortest(partial(item.resolve, still)) / item.every)
     if heat is not None:
         _count(seconds, "contact-heating", _shortest(partial(heat.observe, still)))
-    if isinstance(model.rod.frame, TurningFrame):
+    # the nose of a rigid rest turns with or without the effect
+    if isinstance(model.rod.frame, TurningFrame) and model.rod_stiffness is not None:
         turning = _turning(model, still)
         _count(seconds, "large-rotation", turning)
         _count(seconds, model.rod.effect, -turning)

@@ -37,6 +37,24 @@ def test_the_ledger_closes_with_gravity(barrier):
     assert abs(result.residual) < 5e-6 * result.E_0
 
 
+STEEP = {
+    "projectile.tip_radius": "0.2 mm",
+    "impact.angle": "73 deg",
+    "impact.speed": "19 m/s",
+    "surface.friction": 0.97,
+}
+
+
+@pytest.mark.parametrize("mass", ["0.7 kg", "1e9 kg"])
+def test_a_tip_that_leaves_a_steep_furrow_is_held_down_by_its_flank(mass):
+    """Friction there points down and the normal force falls below zero: the contact is not over."""
+    result = result_of(replace_all(load("t5b"), STEEP | {"barrier.mass": mass}))
+    assert result.finished
+    assert abs(result.residual) < 2e-5 * result.E_0
+    given = result.rod.mass * (result.V_t + 19.0 * np.sin(radians(73.0)))
+    assert result.contacts[:, 3].sum() == pytest.approx(given, rel=1e-3)
+
+
 @pytest.mark.parametrize("time", [30e-6, 80e-6, 150e-6])
 def test_a_contact_that_is_cut_off_holds_energy_in_an_account_of_its_own(time):
     scene = load("t5b")
