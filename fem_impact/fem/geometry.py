@@ -13,6 +13,7 @@ import meshes
 from fem_impact.arrays import Array, Bools
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
+from fem_impact.plan.cells import posture
 from fem_impact.plan.layers import block_of, moved_rows
 from fem_impact.plan.size import no_rest
 from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
@@ -69,14 +70,14 @@ def tail_corners(scene: Scene) -> Array:
     body = projectile(scene)
     radius = float(body.radius(np.array(body.length)))
     corners = np.array([[x * radius, 0.0, body.length] for x in (-1, 1)])
-    return np.asarray((corners - lowest_point(scene)) @ to_barrier_frame(scene.impact.angle).T)
+    return np.asarray((corners - lowest_point(scene)) @ to_barrier_frame(posture(scene)).T)
 
 
 def build_geometry(
     scene: Scene, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
 ) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
-    turn, lowest = to_barrier_frame(scene.impact.angle), lowest_point(scene)
+    turn, lowest = to_barrier_frame(posture(scene)), lowest_point(scene)
     rod = _rod(scene, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
     if not vibrating:
         if scene.projectile.own_mesh:

@@ -58,6 +58,14 @@ def contact_radius(bodies: ContactBodies) -> float:
     return sqrt(size.a_t * size.a_b)
 
 
+def posture(scene: Scene) -> float:
+    """Return the angle, rad, between the axis of the projectile's mesh and the barrier's normal.
+
+    It is that of the impact, but a ball has no axis: it is meshed with its pole at the contact.
+    """
+    return 0.0 if scene.projectile.is_ball else scene.impact.angle
+
+
 def body_cell(scene: Scene) -> float:
     """Return the edge, m, of the body's cells where it touches, before they are split.
 
@@ -67,7 +75,7 @@ def body_cell(scene: Scene) -> float:
     """
     rod = scene.projectile
     plain = rod.is_rod or rod.own_mesh is not None
-    width = rod.diameter if plain else 2 * _contact_radius(rod, scene.impact.angle, scene.accuracy.across)
+    width = rod.diameter if plain else 2 * _contact_radius(rod, posture(scene), scene.accuracy.across)
     return width / scene.accuracy.across
 
 

@@ -21,6 +21,7 @@ from fem_impact.effects.slots import ModelSpec
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
+from fem_impact.plan.cells import posture
 from fem_impact.plan.layers import block_of
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.material import Material
@@ -196,7 +197,7 @@ def _coarse_elements(scene: Scene, end: float) -> float:
 
 def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
     """Return about the height, m, at which the slices begin: a cell above all that is split."""
-    alpha, foot = scene.impact.angle, float(lowest_point(scene)[2])
+    alpha, foot = posture(scene), float(lowest_point(scene)[2])
     tops = (
         high[2] * cos(alpha)
         + max(-low[0], high[0]) * sin(alpha)
@@ -216,7 +217,7 @@ def _grid(low: Array, high: Array) -> Array:
 def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
     """Return points (k, 3), m, of a box that lie in the half rod b >= 0, and the volume there, m3."""
     low = np.array([low[0], 0.0, low[2]])
-    points, alpha, body = _grid(low, high), scene.impact.angle, projectile(scene)
+    points, alpha, body = _grid(low, high), posture(scene), projectile(scene)
     t, b, n = points.T
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
     rho_0, _, z_0 = lowest_point(scene)

@@ -20,7 +20,7 @@ from fem_impact.physics.contact import (
     sliding,
 )
 from fem_impact.physics.hardening import Skin
-from fem_impact.plan.cells import body_cell, contact_radius, levels_of, rod_cell
+from fem_impact.plan.cells import body_cell, contact_radius, levels_of, posture, rod_cell
 from fem_impact.scene.types import Scene
 from meshes import thin_skin_rise
 from rigid import Faceted
@@ -162,8 +162,8 @@ def _alone(bodies: ContactBodies, number: int) -> ContactBodies:
 
 
 def lowest_point(scene: Scene) -> Array:
-    """Return the rod's lowest point (3,) in its own frame, m."""
-    rho, z = projectile(scene).contact_point(scene.impact.angle)
+    """Return the rod's lowest point (3,) in the frame of its mesh, m."""
+    rho, z = projectile(scene).contact_point(posture(scene))
     return np.array([float(rho), 0.0, float(z)])
 
 
@@ -197,7 +197,7 @@ def face_reach(bodies: ContactBodies) -> tuple[float, float]:
     depths of the estimated indentation, all of it may touch. Of a body with facets, all nodes up to that
     height may that lie further out than those of the round surface of the estimate.
     """
-    size, alpha = contact_estimate(bodies), bodies.scene.impact.angle
+    size, alpha = contact_estimate(bodies), posture(bodies.scene)
     body, rho = projectile(bodies.scene), float(lowest_point(bodies.scene)[0])
     if isinstance(body, Faceted):
         reach, _, side = body.spread(alpha, FLAT * size.depth, principal_radii(bodies.scene))

@@ -88,6 +88,12 @@ class ProjectileSpec:
         return self.shape is None and not self.bore and not self.segments
 
     @property
+    def is_ball(self) -> bool:
+        """Return whether this is a solid ball of one material, which has no axis."""
+        named = self.shape if isinstance(self.shape, NamedShape) else None
+        return named is not None and named.name == "ball" and not self.bore and not self.segments
+
+    @property
     def own_mesh(self) -> OwnMesh | None:
         """Return the user's mesh that is its shape, None where it is a body of revolution."""
         return self.shape if isinstance(self.shape, OwnMesh) else None

@@ -39,3 +39,26 @@ def test_an_own_projectile_may_be_rigid_behind_its_nose():
     outcome = simulate(replace_all(coarse("ogive"), {"effects": ["auto", "-vibration"]}), "solid")
     assert outcome.validity.finished
     assert abs(outcome.energy.residual) < 1e-4
+
+
+BALL = {
+    "projectile": {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"},
+    "impact.v_n": "-1 m/s",
+    "impact.v_t": "-1 m/s",
+    "accuracy.across": 8,
+    "accuracy.unresolved": "report",
+    "save.frames": 0,
+}
+
+
+@pytest.mark.parametrize("effects", [["friction"], ["vibration", "friction"]])
+def test_a_ball_is_round_everywhere(effects):
+    """Far from its pole, too, it is meshed finely where it touches, and has a rest that may be rigid."""
+    ball = BALL | {"effects": [*effects, "barrier-elastic"]}
+    ends = []
+    for angle in ("0 deg", "60 deg"):
+        outcome = simulate(replace_all(load("t5b"), ball | {"impact.angle": angle}), "solid")
+        assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-6
+        m, e = outcome.motion, outcome.restitution
+        ends.append((m.V_n, m.V_t, m.Omega, e.edge.e, e.mu, outcome.energy.friction))
+    assert ends[1] == pytest.approx(ends[0], rel=1e-6)
