@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterable, Iterator
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.common import changed_scene, headed, print_json, say_kept, size_text
@@ -19,8 +20,6 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from fem_impact.outcome.groups import EffectChoice
     from fem_impact.plan.plan import Plan
     from fem_impact.plan.size import RunSize
@@ -45,8 +44,8 @@ def check(options: Options) -> int:
     if options.json:
         print_json(statement)
     else:
-        readable = _readable if options.long else _short
-        sys.stdout.write(readable(planned, statement))
+        place = Path(options.scene).parent
+        sys.stdout.write(_long(planned, statement, place) if options.long else _short(planned, statement))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
 
@@ -184,8 +183,9 @@ def _flow_lines(statement: dict[str, Any]) -> list[str]:
     return ["", heading, *(f"  {line}" for line in table.splitlines())]
 
 
-def _readable(planned: Plan, statement: dict[str, Any]) -> str:
-    lines = [to_toml(planned.scene).rstrip(), "", "Sources"]
+def _long(planned: Plan, statement: dict[str, Any], place: Path) -> str:
+    """Return every value with its source, files as seen from the ``place`` of the scene's file."""
+    lines = [to_toml(planned.scene, place).rstrip(), "", "Sources"]
     rows = inputs(planned.scene).rows
     lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in rows if source != STATED)
     lines += _wrapped(

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Iterable, Mapping
 from math import inf
+from pathlib import Path
 from typing import Any
 
 from fem_impact.scene import fields
@@ -16,7 +18,7 @@ from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import HEIGHT, RADIUS, NamedShape, Point, Profile, sizes_of
-from fem_impact.scene.types import Accuracy, Scene
+from fem_impact.scene.types import OWN, Accuracy, Scene
 
 
 def to_dict(scene: Scene) -> dict[str, Any]:
@@ -38,9 +40,17 @@ def to_dict(scene: Scene) -> dict[str, Any]:
     }
 
 
-def to_toml(scene: Scene) -> str:
-    """Return the scene as TOML text that reads back as an equal scene."""
-    return "\n".join(_lines(to_dict(scene), "")) + "\n"
+def to_toml(scene: Scene, folder: Path | None = None) -> str:
+    """Return the scene as TOML text that reads back as an equal scene.
+
+    Its files, own tests and mesh, are named as seen from the ``folder``, by default from the root.
+    """
+    tables = to_dict(scene)
+    if folder:
+        for place, key, ending in ((tables, "measured", OWN), (tables["projectile"], "mesh", "")):
+            if key in place and place[key].endswith(ending):
+                place[key] = os.path.relpath(place[key], folder.resolve())
+    return "\n".join(_lines(tables, "")) + "\n"
 
 
 def digest(scene: Scene) -> str:

@@ -49,6 +49,19 @@ def test_a_scene_without_a_title_is_named_once(cli, tmp_path):
     assert cli("check", "t5b")[1].splitlines()[0] == f"t5b: {load('t5b').title}"
 
 
+def test_own_files_are_printed_as_seen_from_the_scene(cli, tmp_path):
+    """The path from the root of the machine is no statement of the scene."""
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "tests.csv").write_text("quantity,mean,sd,n\ne,0.5,0.02,5\n")
+    scene = tmp_path / "own.toml"
+    scene.write_text(to_toml(load("t5b")).replace('measured = "t5b"', 'measured = "data/tests.csv"'))
+    long = cli("check", str(scene), "--long")[1]
+    assert 'measured = "data/tests.csv"\n' in long and str(tmp_path) not in long
+    shown = tmp_path / "shown.toml"
+    shown.write_text(long[: long.index("\n\nSources")])
+    assert load(shown) == load(scene)
+
+
 def test_check_names_segments_layers_plates_and_a_friction_that_counts_as_exact(cli):
     for scene, words in (
         ("heavy-tail", "of rod-steel up to"),

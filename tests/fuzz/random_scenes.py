@@ -23,6 +23,7 @@ METALS = (
 )
 LENGTH, DIAMETER = (20e-3, 2.0), (5e-3, 60e-3)  # m
 SPEED, ANGLE, FRICTION = (0.01, 50.0), (0.0, 88.0), (0.0, 2.0)  # m/s, deg, -
+FASTEST = 1e4  # rad/s, the largest spin that a scene may state
 TIPS = ("A", "B", "plain")
 EFFECTS = (
     ("auto",),
@@ -59,7 +60,8 @@ def random_scene(
     speed = spread(random, SPEED)
     angle = radians(random.choice([0.0, random.uniform(0.0, 10.0), *random.uniform(*ANGLE, 3)]))
     fall = angle if random.random() < 0.7 else float(random.uniform(0.0, 1.2))
-    omega = 0.0 if random.random() < 0.5 else float(random.normal()) * 3 * speed / rod.length
+    spin = 0.0 if random.random() < 0.5 else float(random.normal()) * 3 * speed / rod.length
+    omega = min(max(spin, -FASTEST), FASTEST)
     return Scene(
         id=f"s{seed}-{number}",
         title="random",

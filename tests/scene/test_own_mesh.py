@@ -47,6 +47,11 @@ def stated(path, **projectile):
     )
 
 
+def test_a_mesh_is_shown_as_seen_from_the_scene(scene, tmp_path):
+    assert 'mesh = "bar.vtu"\n' in to_toml(scene, tmp_path)
+    assert str(tmp_path / "bar.vtu") in to_toml(scene)
+
+
 def test_mass_inertia_arms_and_periods_of_a_bar_are_those_of_closed_forms(scene):
     body, rod = projectile(scene), scene.projectile
     assert (rod.length, rod.diameter) == (pytest.approx(0.1), pytest.approx(0.01))
