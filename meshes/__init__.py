@@ -10,7 +10,7 @@ from meshes.own import own_half, read_own
 from meshes.quality import Quality, edge_lengths, quality, thicknesses, volume
 from meshes.refine import refine
 from meshes.rod import RodMesh, rod
-from meshes.sphere import sphere
+from meshes.sphere import pole_edge, sphere
 from meshes.turned import contact_radius, turned
 from meshes.zone import Zone
 
@@ -31,6 +31,7 @@ __all__ = [
     "drawn_depths",
     "edge_lengths",
     "own_half",
+    "pole_edge",
     "quality",
     "read",
     "read_own",

@@ -14,7 +14,7 @@ from meshes.section import core_and_rings
 from meshes.topology import FACES
 from meshes.zone import Zone
 
-__all__ = ["sphere"]
+__all__ = ["pole_edge", "sphere"]
 
 # Half edge of the cube over the radius, and the weight of the ball in the bulged cube, from a scan.
 CORE = 0.45
@@ -51,6 +51,21 @@ def sphere(radius: float, across: int = 8, zones: Sequence[Zone] = (), *, buffer
     mesh = refine(mesh, zones, snap, buffer=buffer)
     require_positive(mesh)
     return mesh
+
+
+def pole_edge(radius: float, across: int) -> float:
+    """Return the edge of the cells at the contact point before they are split, m.
+
+    The cube's cells take even angles on the ball, a quarter turn together. With 8 cells over the diameter
+    that is pi / 2 of the radius over 4.
+
+    Examples
+    --------
+    >>> round(pole_edge(1.0, 8), 4)
+    0.3927
+    """
+    core, _ = core_and_rings(across)
+    return float(0.5 * np.pi * radius / core)
 
 
 def _half_ball(core: int, shells: int) -> tuple[FloatArray, IntArray]:

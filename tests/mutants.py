@@ -240,6 +240,13 @@ MUTANTS = (
         "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space",
     ),
     Mutant(
+        "cells of a ball counted over its diameter, not where it touches",
+        "fem_impact/verify/spheres.py",
+        "levels = levels_for_radius(meshes.pole_edge(R, across), touch",
+        "levels = levels_for_radius(base, touch",
+        "tests/verify/test_verify_tips.py::test_the_fewest_cells_are_enough",
+    ),
+    Mutant(
         "elements 2 % too stiff",
         "fem_impact/fem/elements.py",
         "lame=lame[0], G=lame[1])",

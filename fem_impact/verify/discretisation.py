@@ -20,6 +20,25 @@ def contact_error(size: float, half: float) -> float:
     return (size / (2 * half)) ** 2
 
 
+def grid_force_error(size: float, half: float) -> float:
+    """Return the relative error of the largest force and the time where nodes stand on a square grid.
+
+    One stands at the middle, the others join ring by ring, so that the slope of the force rises in steps. On
+    a half-space, with each node in the middle of a square of even pressure, the largest force is off by at
+    most 0.1 (size / half)^2 with 1.1 to 6.5 cells over the half-axis, the time by less.
+    """
+    return 0.1 * (size / half) ** 2
+
+
+def grid_radiation_error(size: float, half: float) -> float:
+    """Return the relative error of what such a contact radiates, the mean square of its force's rate.
+
+    It feels the steps of the slope: off by at most 0.65 (size / half)^3 on the same half-space, with 1.8 to
+    6.5 cells.
+    """
+    return 0.65 * (size / half) ** 3
+
+
 def lean_error(size: float, half: float) -> float:
     """Return the share of the interface's lean that a mesh misses.
 

@@ -28,7 +28,7 @@ VALUES = {
     "barrier_nu": 0.25,
     "barrier_rho": 2500.0,
     "block": 1.0,
-    "cells": 4.0,
+    "cells": 2.5,
     "across": 16.0,
 }
 """Parameters of `fem_impact.verify.spheres`, SI: alumina on soda-lime glass."""

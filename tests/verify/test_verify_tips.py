@@ -1,5 +1,6 @@
 """A sphere on a plane and on a block through the solver."""
 
+import numpy as np
 import pytest
 
 from fem_impact.errors import SceneError
@@ -15,7 +16,7 @@ def errors(found):
 
 def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
     """Held to the error of its mesh, a third of a per cent: elements that are 2 % too stiff are noticed."""
-    done = verify("hertz", {"cells": 8, "across": 8, "block": 0, "speed": 4.0})
+    done = verify("hertz", {"cells": 6, "across": 8, "block": 0, "speed": 4.0})
     found = errors(done)
     assert done.passed
     assert {c.name: c.tolerance < 0.0045 for c in done.checks[:2]} == {
@@ -27,15 +28,27 @@ def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
 
 
 def test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space():
-    values = {"cells": 3, "across": 8, "speed": 2.0, "nu": 0.2}
+    values = {"cells": 5, "across": 8, "speed": 2.0, "nu": 0.2}
     done = verify("hertz", values)
     radiated = next(c for c in done.checks if c.name.startswith("radiated"))
-    assert radiated.passed and radiated.tolerance < 0.09
+    assert radiated.passed and radiated.tolerance < 0.065
     assert done.passed
     force, time = (
         next(c for c in done.checks if c.name == name) for name in ("largest force", "contact time")
     )
-    assert time.tolerance < force.tolerance < 0.025
+    assert time.tolerance < force.tolerance < 0.015
+
+
+@pytest.mark.parametrize(("block", "speed"), [(0, 0.1), (1, 0.3)])
+def test_the_fewest_cells_are_enough(block, speed):
+    """The ball's cells at its pole are pi / 2 times the share of its diameter: there were 1.3, not 2."""
+    values = {"cells": 2, "across": 8, "speed": speed, "block": block}
+    p = problem("hertz").values(values)
+    assert verify("hertz", values).passed
+    touch = plain_hertz(p, speed)
+    points = sphere_model(p, touch, speed).geometry.rod_points
+    beside = np.sort(np.hypot(points[:, 0], points[:, 1])[points[:, 2] < 0.1 * touch.radius])
+    assert touch.radius / beside[1] > 1.86  # of 2, as levels halve the edge
 
 
 def test_a_coarse_ball_has_the_mass_and_moment_of_a_ball():
