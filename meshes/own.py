@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse as sp
-from scipy.spatial import cKDTree
 
 from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.errors import MeshError
@@ -100,6 +99,8 @@ def _require_unfolded(mesh: HexMesh) -> None:
 
 def _require_joined(mesh: HexMesh) -> None:
     """Refuse nodes that lie on each other, or in the middle of an edge or face of another cell."""
+    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
+
     least = SAME * float(edge_lengths(mesh).min())
     tree = cKDTree(mesh.points)
     if pairs := tree.query_pairs(least):
@@ -186,6 +187,8 @@ def _half(mesh: HexMesh) -> HexMesh:
 
 def _require_mirrored(points: FloatArray, cells: IntArray, near: float) -> None:
     """Refuse a body whose nodes or cells on both sides of y = 0 are not mirror images of each other."""
+    from scipy.spatial import cKDTree  # here: every command imports this room, few read such a mesh
+
     for what, places in (("node", points), ("cell", points[cells].mean(axis=1))):
         away = cKDTree(places).query(places * [1.0, -1.0, 1.0])[0]
         lonely: BoolArray = away > 2.0 * near

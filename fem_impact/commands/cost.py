@@ -70,13 +70,12 @@ def cost(options: Options) -> int:
 def _write(study: CostStudy, report: StudyReport, line: str, out: Path) -> list[str]:
     """Write the tables of a scene's costs and its page; return what could not be made."""
     from fem_impact.cost.document import write_cost
-    from fem_impact.progress import NullMeter
-    from fem_impact.report.present import present
+    from fem_impact.report.present import page
     from fem_impact.study.document import Request, publish
 
     write_cost(study, out)
     publish(report, Request(out, line=line), study.runs)
-    return present((), out, NullMeter())
+    return page(out)
 
 
 def _line(options: Options, scene: str = "") -> str:
@@ -141,13 +140,12 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     from fem_impact.cost.to_target import summarise
     from fem_impact.files.atomic import write_text
     from fem_impact.files.lock import directory_lock
-    from fem_impact.progress import NullMeter
-    from fem_impact.report.present import present
+    from fem_impact.report.present import page
     from fem_impact.scene.types import MEASURED_SETS
     from fem_impact.study.cost_report import paper_report, scene_report
     from fem_impact.study.document import Request, publish
 
-    page = asked_page(options)
+    stated_page = asked_page(options)
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
     families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
@@ -160,9 +158,9 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
         write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
         runs = {name: run for cost in costs.values() for name, run in cost.runs.items()}
         made = publish(paper_report(costs), Request(out, line=_line(options)), runs)
-        notes = present((), out, NullMeter())
-    if page:
-        write_study_page(page, _line(options), made.text, out)
+        notes = page(out)
+    if stated_page:
+        write_study_page(stated_page, _line(options), made.text, out)
     if options.json:
         print_json({**document, "notes": notes})
     else:

@@ -63,9 +63,12 @@ def _study(
 
     result, notes = run_study(options.name, request, meter, executor), []
     if result.runs:
+        from fem_impact.render.timeline import QUICK_FRAMES, STUDY_FRAMES
         from fem_impact.report.present import present
 
-        notes = present(result.runs, request.out, meter)
+        frames = QUICK_FRAMES if request.quick else STUDY_FRAMES
+        here = None if options.scheduler else executor  # workers of a cluster may not see the files
+        notes = present(result.runs, request.out, meter, frames, here)
     meter.close()
     if page:
         write_study_page(page, request.command(options.name), result.text, request.out)

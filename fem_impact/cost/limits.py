@@ -17,7 +17,6 @@ from statistics import fmean, stdev
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.optimize import minimize_scalar
 
 from fem_impact.arrays import Array
 from fem_impact.cost.quantities import QUANTITIES, TargetQuantity
@@ -210,6 +209,8 @@ def limit(sizes: ArrayLike, values: ArrayLike) -> Limit:
     >>> round(fitted.value, 6), round(fitted.order, 3), round(fitted.band, 6)
     (1.0, 2.0, 0.0125)
     """
+    from scipy.optimize import minimize_scalar  # .4 s, for which no page of a run should wait
+
     h, q = np.asarray(sizes, float), np.asarray(values, float)
     if len(np.unique(h)) < 3:
         raise RunError(f"A limit needs three meshes or more; there are {len(np.unique(h))}.")

@@ -3,26 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from concurrent.futures import BrokenExecutor, Future
+from concurrent.futures import BrokenExecutor, Executor, Future
+from contextlib import nullcontext
 from pathlib import Path
 
 from fem_impact.errors import FemImpactError
 from fem_impact.jobs.executors import LocalProcesses, cores
 from fem_impact.progress import CaseProgress, ProgressMeter
 
-FILM_FRAMES = 60
 
+def present(
+    runs: Iterable[Path],
+    study: Path,
+    progress: ProgressMeter,
+    frames: int,
+    executor: Executor | None = None,
+) -> list[str]:
+    """Write film and page of each run and the page of the study; return what could not be made.
 
-def present(runs: Iterable[Path], study: Path, progress: ProgressMeter) -> list[str]:
-    """Write film and page of each run and the page of the study; return what could not be made."""
-    folders, notes = list(runs), []
-    with LocalProcesses(max(1, min(cores(), len(folders)))) as executor:
-        drawn = [executor.submit(pictures, run) for run in folders]
-        _attempt(study, _draw)  # in parallel; its notes are repeated when the page is written
-        for done, (run, future) in enumerate(zip(folders, drawn, strict=True), 1):
+    Parameters
+    ----------
+    runs, study : folders
+    progress : called after the page of each run
+    frames : number of pictures of a film
+    executor : processes on this machine, which have the libraries of the runs loaded; new ones when None
+    """
+    folders, notes = list(runs), list[str]()
+    own = LocalProcesses(max(1, min(cores(), len(folders))))
+    with own if executor is None else nullcontext(executor) as pool:
+        films = [pool.submit(film, run, frames) for run in folders]  # the longest work first
+        figures = pool.submit(_attempt, study, _draw)  # its notes are repeated when the page is written
+        pages = []
+        for run, future in zip(folders, films, strict=True):
+            notes += _notes(run, future)
+            pages.append(pool.submit(page, run))
+        for done, (run, future) in enumerate(zip(folders, pages, strict=True), 1):
             notes += _notes(run, future)
             progress(CaseProgress(f"pictures of {run.name}", done, len(folders), 0.0))
-    return list(dict.fromkeys([*notes, *_attempt(study, _write)]))
+        figures.exception()
+        notes += _notes(study, pool.submit(_attempt, study, _write))
+    return list(dict.fromkeys(notes))
+
+
+def page(folder: Path) -> list[str]:
+    """Write the page of a run or of a study; return why it could not be made."""
+    from fem_impact.report.write import write_report
+
+    return _attempt(folder, write_report)
+
+
+def film(run: Path, frames: int) -> list[str]:
+    """Write the film of a run that stored its motion; return notes on it, or why it could not be made."""
+    from fem_impact.render.film import render
+    from fem_impact.render.timeline import Span
+
+    if not (run / "fields.vtkhdf").is_file():
+        return []
+    return _attempt(run, lambda place: render(place, span=Span(frames=frames)).notes)
 
 
 def _draw(study: Path) -> None:
@@ -42,17 +79,6 @@ def _notes(run: Path, drawn: Future[list[str]]) -> list[str]:
         return drawn.result()
     except BrokenExecutor as error:
         return [f"{run.name}: {error}"]
-
-
-def pictures(run: Path) -> list[str]:
-    """Write film and page of a run; return what could not be made."""
-    from fem_impact.render.film import render
-    from fem_impact.render.timeline import Span
-    from fem_impact.report.write import write_report
-
-    filmed = (run / "fields.vtkhdf").is_file()
-    notes = _attempt(run, lambda place: render(place, span=Span(frames=FILM_FRAMES)).notes) if filmed else []
-    return notes + _attempt(run, write_report)
 
 
 def _attempt(place: Path, make: Callable[[Path], object]) -> list[str]:

@@ -16,6 +16,7 @@ from fem_impact.files.waves import read_waves
 from fem_impact.outcome.groups import ContactInterval, EffectChoice
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.render.timeline import FRAMES, QUICK_FRAMES, STUDY_FRAMES
 from fem_impact.report.html import (
     Markup,
     bullets,
@@ -32,6 +33,11 @@ from fem_impact.scene.write import digest
 from fem_impact.tables.history import read_history
 from fem_impact.tables.symbols import markup
 from fem_impact.tables.table import Cell, Missing, Table, number
+
+LENGTHS = (
+    f"The film of a run of a study has {STUDY_FRAMES} pictures, of a quick study {QUICK_FRAMES}; "
+    f"`fem-impact render` with the folder of the run makes one of {FRAMES}."
+)
 
 
 def strangers(outcome: Outcome, folder: Path) -> list[str]:
@@ -105,7 +111,8 @@ def waves_section(folder: Path) -> Markup:
 
 def film_section(folder: Path) -> Markup:
     """Return the film of the run, nothing when there is none."""
-    return section("Film of the waves", film(folder, "Waves in the rod; scales are written on the picture."))
+    shown = film(folder, "Waves in the rod; scales are written on the picture.")
+    return section("Film of the waves", *([shown, paragraph(LENGTHS)] if shown.text else []))
 
 
 def has_film(folder: Path) -> bool:
