@@ -67,6 +67,7 @@ def scene_choices() -> str:
         "barrier.boundary": fields.Boundary,
         "accuracy.element": fields.Element,
         "accuracy.yielding_element": fields.YieldingElement,
+        "accuracy.fine_zone": fields.FineZone,
         "accuracy.unresolved": fields.Unresolved,
     }
     rows = [(f"`{key}`", ", ".join(f"`{word}`" for word in get_args(kind))) for key, kind in choices.items()]

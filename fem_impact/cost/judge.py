@@ -10,7 +10,7 @@ from typing import Any
 
 from fem_impact.cost.limits import Placed, Truth, mean, standard_error, truths, values_of
 from fem_impact.cost.quantities import QUANTITIES
-from fem_impact.cost.settings import Setting
+from fem_impact.cost.settings import ONE_PLACE, Setting
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.text import plain
@@ -126,12 +126,13 @@ def worst(judged: Judged, names: Iterable[str]) -> float:
 def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
     """Return the settings that no other beats in both time and worst error, in order of time.
 
-    Settings that leave an effect out are not compared: their error is not one against the limit. Nor is the
-    default run: it has one place of the barrier's grid, so that its error may be small by chance.
+    Settings that run at one place of the barrier's grid are not compared (`ONE_PLACE`): their error may be
+    small by chance, and it is none against the limit where an effect is left out. Those that are compared
+    cost what they were measured to cost: a choice runs their meshes at the same places.
     """
     optimal: list[Judged] = []
     best = inf
-    whole = [one for one in judged if one.kind not in ("effect", "default")]
+    whole = [one for one in judged if one.kind not in ONE_PLACE]
     for one in sorted(whole, key=lambda j: (j.cpu_s, worst(j, names))):
         if worst(one, names) < best:
             best = worst(one, names)

@@ -19,7 +19,9 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-Kind = Literal["rigid", "modal", "mesh", "pair", "default", "numerics", "effect"]
+Kind = Literal["rigid", "modal", "mesh", "pair", "default", "full", "numerics", "effect"]
+ONE_PLACE = ("default", "full", "numerics", "effect")
+"""Kinds of settings that run at one place of the barrier's grid: their error may be small by chance."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -58,6 +60,8 @@ FINEST = FAMILY[-1]
 # finest mesh, which scatters least and costs most, at fewer
 PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
 DEFAULT = "default run"  # one run as the scene states it
+FULL = "default run without savings"
+SAVINGS_OFF = {"accuracy.mass_scaling": 1, "accuracy.fine_zone": "even"}
 NUMERICS = {
     "fully integrated": replace(PLAIN, element="full"),
     "mean dilatation": replace(PLAIN, element="bbar"),
@@ -92,6 +96,8 @@ def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
     settings += [_solid(scene, mesh) for mesh in family]
     settings += _pairs(scene, family)
     settings.append(Setting(DEFAULT, "default", "solid", ((_job(scene, DEFAULT, "solid"),),)))
+    full = _job(replace_all(scene, SAVINGS_OFF), FULL, "solid")
+    settings.append(Setting(FULL, "full", "solid", ((full,),)))
     settings += [_solid(scene, mesh, "numerics", label) for label, mesh in NUMERICS.items()]
     return settings + _without(scene)
 
@@ -132,7 +138,7 @@ def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Se
     """Return the setting of one mesh; elements, steps and effects are changed at the first place alone."""
     name = _name(scene, mesh, label)
     jobs = _jobs(scene, mesh, name)
-    return Setting(name, kind, "solid", (jobs if kind == "mesh" else jobs[:1],), (mesh,))
+    return Setting(name, kind, "solid", (jobs[:1] if kind in ONE_PLACE else jobs,), (mesh,))
 
 
 def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[Setting]:

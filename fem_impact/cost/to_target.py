@@ -48,6 +48,8 @@ NEARNESS = {
     "friction f": 0.05,
     **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
 }
+# keys of accuracy that change errors or times and must be the same
+SAME = ("element", "yielding_element", "step", "mass_scaling", "fine_zone", "block_margin")
 BUDGET = 120.0  # s of wall time for a scene whose like was not measured
 
 
@@ -122,9 +124,7 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", active(scene), active(other)),
-        ("element", scene.accuracy.element, other.accuracy.element),
-        ("step", scene.accuracy.step, other.accuracy.step),
-        ("block_margin", scene.accuracy.block_margin, other.accuracy.block_margin),
+        *((name, getattr(scene.accuracy, name), getattr(other.accuracy, name)) for name in SAME),
         ("max_time", min(latest, its_latest), its_latest),
     ):
         if mine != others:
@@ -179,8 +179,8 @@ def _too_far(scene: Scene, name: str, distance: float, differs: str) -> NotMeasu
     allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
     return NotMeasured(
         f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
-        "element, step and block_margin must be the same and max_time no shorter; allowed are differences "
-        "(of logarithms where it is a ratio) of: "
+        f"{', '.join(SAME)} must be the same and max_time no shorter; allowed are differences (of logarithms "
+        "where it is a ratio) of: "
         f"{allowed}.",
         key="accuracy",
         value=_written(scene),

@@ -126,9 +126,10 @@ def zones_of(bodies: ContactBodies) -> Zones:
     reach, wide = face_reach(bodies)
     conforming = barrier_conforms(bodies)
     rows = skin_rows(bodies, base / 2**below) if conforming and bodies.f > 0 else 0
+    graded = scene.accuracy.fine_zone == "graded"
 
     def extents(h: float, shares: Shares) -> Extents:
-        t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares))
+        t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares if graded else ()))
         return t, max(b, wide), n
 
     return Zones(

@@ -216,6 +216,7 @@ ACCURACY = (
 )
 Element = Literal["incompatible", "full", "bbar"]  # linear operator of cells that cannot yield
 YieldingElement = Literal["bbar", "full"]  # element of cells that may yield
+FineZone = Literal["graded", "even"]  # finest cells right under the contact alone, or all over the fine zone
 Support = Literal["backed", "infinite"]  # of a plate: bonded to a base, or free underneath and wide
 Boundary = Literal["half-space", "fixed"]  # of a meshed barrier's outer faces
 Unresolved = Literal["withhold", "report"]  # what becomes of numbers that the mesh does not resolve

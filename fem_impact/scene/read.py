@@ -295,7 +295,7 @@ def _accuracy(table: Table | str) -> Accuracy:
     """Read a mesh, or a wanted error written alone or as the key ``target``."""
     if isinstance(table, str):
         return Accuracy(target=parse_share(table, ""))
-    choices = ("element", "yielding_element", "unresolved")
+    choices = ("element", "yielding_element", "fine_zone", "unresolved")
     numbers = numbers_of(table, fields.ACCURACY, (*choices, "target"))
     numbers |= {key: table[key] for key in choices if key in table}
     if "target" not in table:

@@ -65,6 +65,8 @@ class Accuracy:
     cannot yield: with incompatible modes, fully integrated, or with mean dilatation (B-bar).
     ``yielding_element`` names that of cells that may yield; plain full integration locks there, it is meant
     for comparisons with codes that have it.
+    ``fine_zone`` says where the finest cells lie: right under the contact, with larger ones around them, or
+    all over the zone in which cells may yield, which shows what the grading saves.
     ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
@@ -82,6 +84,7 @@ class Accuracy:
     step: float = 0.9
     element: fields.Element = "incompatible"
     yielding_element: fields.YieldingElement = "bbar"
+    fine_zone: fields.FineZone = "graded"
     unresolved: fields.Unresolved = "withhold"
     target: float | None = None
 
@@ -89,6 +92,7 @@ class Accuracy:
         check_numbers(self, fields.ACCURACY)
         check_choice(self.element, get_args(fields.Element), "element")
         check_choice(self.yielding_element, get_args(fields.YieldingElement), "yielding_element")
+        check_choice(self.fine_zone, get_args(fields.FineZone), "fine_zone")
         check_choice(self.unresolved, get_args(fields.Unresolved), "unresolved")
         if self.target is not None and not (isinstance(self.target, float) and 0.0 < self.target <= 1.0):
             raise SceneError("must be a share above 0 and at most 1.", key="target", value=self.target)

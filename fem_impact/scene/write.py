@@ -105,7 +105,7 @@ def _impact(impact: Impact) -> dict[str, Any]:
 
 def _accuracy(accuracy: Accuracy) -> dict[str, Any]:
     written = _written(accuracy, fields.ACCURACY) | {"element": accuracy.element}
-    for key in ("yielding_element", "unresolved"):
+    for key in ("yielding_element", "fine_zone", "unresolved"):
         if getattr(accuracy, key) != getattr(Accuracy(), key):
             written[key] = getattr(accuracy, key)
     if accuracy.target is None:

@@ -5,7 +5,7 @@ from cost_fakes import Here, run
 
 import fem_impact.run.simulate
 from fem_impact.cost import to_target
-from fem_impact.cost.judge import Judged
+from fem_impact.cost.judge import Judged, cpu_seconds
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.measure import measure
 from fem_impact.cost.settings import placed
@@ -112,6 +112,8 @@ def test_a_fidelity_that_does_not_know_what_is_asked_for_is_refused(costs):
         ({"barrier__material__yield_stress": "400 MPa"}, "yield"),
         ({"accuracy__element": "full"}, "element"),
         ({"accuracy__step": 0.5}, "step"),
+        ({"accuracy__mass_scaling": 1.0}, "mass_scaling"),
+        ({"accuracy__fine_zone": "even"}, "fine_zone"),
     ],
 )
 def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
@@ -208,6 +210,22 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
     means = [sum(values) / len(values) for values in every]
     ratio = coarse[0].accuracy.tip_size / fine[0].accuracy.tip_size
     assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(pair_limit(*means, ratio)[0])
+
+
+@pytest.mark.parametrize("fidelity", [None, "solid"])
+@pytest.mark.parametrize("target", [0.4, 0.2, 0.1, 0.06])
+def test_the_expected_time_is_that_of_the_runs_that_are_done(costs, monkeypatch, fidelity, target):
+    done = []
+
+    def kept(*scene):
+        done.append(cpu_seconds(run(*scene)))
+        return run(*scene)
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
+    scene = asking(target)
+    chosen = choose_setting(scene, fidelity)
+    outcome = to_target.simulate(scene, fidelity)
+    assert outcome.validity.expected_wall == chosen.expected_wall_s == pytest.approx(0.5 * sum(done))
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):

@@ -26,7 +26,7 @@ from fem_impact.cost.judge import (
 from fem_impact.cost.limits import EVEN, LOWEST, pair_limit, truths
 from fem_impact.cost.measure import judge_stored, measure
 from fem_impact.cost.quantities import TARGETED, chosen
-from fem_impact.cost.settings import FAMILY, Mesh, ladder, on_mesh, placed
+from fem_impact.cost.settings import FAMILY, ONE_PLACE, Mesh, ladder, on_mesh, placed
 from fem_impact.errors import RunError, UsageError
 from fem_impact.plan.measured import yardsticks
 from fem_impact.progress import NullMeter
@@ -73,7 +73,7 @@ def test_the_ladder_has_every_kind_of_setting():
                 0.019 / mesh.across / 2 ** (3 + mesh.barrier),
             )
             places = [job.scene.accuracy.grid_shift for job in jobs]
-            few = [0.0] if setting.kind in ("numerics", "effect") else [0.0, 0.25, 0.5, 0.75]
+            few = [0.0] if setting.kind in ONE_PLACE else [0.0, 0.25, 0.5, 0.75]
             assert places == ([0.0, 0.5] if mesh == FAMILY[-1] else few)
             assert [job.scene.accuracy.tip_size for job in jobs] == pytest.approx(
                 [size] * len(jobs), rel=1e-8
@@ -92,6 +92,8 @@ def test_a_rigid_barrier_has_no_grid_to_place():
 
 def test_elements_and_steps_are_rungs_of_their_own():
     numerics = [setting for setting in ladder(SCENE) if setting.kind == "numerics"]
+    (full,) = (setting.runs[0][0].scene for setting in ladder(SCENE) if setting.kind == "full")
+    assert replace(SCENE.accuracy, mass_scaling=1.0, fine_zone="even") == full.accuracy
     rungs = {setting.name: setting.runs[0][0].scene.accuracy for setting in numerics}
     plain = on_mesh(SCENE, Mesh(8, -1, 0)).accuracy
     assert rungs == {
@@ -204,7 +206,7 @@ def test_front_and_choice(cost):
     assert errors == sorted(errors, reverse=True)
     for one in cost.settings:
         beaten = [b for b in best if b.cpu_s <= one.cpu_s and worst(b, TARGETED) <= worst(one, TARGETED)]
-        assert beaten or one.kind == "effect" or one.error["E_vib"] is None
+        assert beaten or one.kind in ONE_PLACE or one.error["E_vib"] is None
     assert cheapest(cost.settings, ["e"], 0.2).name == "rigid"
     assert cheapest(cost.settings, TARGETED, 0.2).name == "modal"
     assert cheapest(cost.settings, TARGETED, 1e-6) is None

@@ -7,6 +7,7 @@ from fem_impact.plan.cells import ADVISED, contact_radius, levels_of
 from fem_impact.plan.plan import plan
 from fem_impact.plan.zones import FEWEST, share_of
 from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.write import digest
 
 
 def zones(name="t5b", **changes):
@@ -49,3 +50,13 @@ def test_shares_follow_the_cells_over_the_radius():
     assert share_of(3.0, shares) == (0.7, 0.9, 0.45)
     assert share_of(2.9, shares) == (1.0, 1.0, 1.0)
     assert np.prod(share_of(100.0, ())) == 1.0
+
+
+def test_even_zones_fill_what_may_yield_on_every_level():
+    graded, even = zones(tip_size="0.15 mm"), zones(tip_size="0.15 mm", fine_zone="even")
+    assert even.half == graded.half
+    for extents, before in ((even.rod, graded.rod), (even.barrier, graded.barrier)):
+        assert extents[-1] == pytest.approx(even.half)
+        assert np.prod(extents[-1]) > 3 * np.prod(before[-1])
+    scenes = [replace_all(load("t5b"), {"accuracy.fine_zone": word}) for word in ("graded", "even")]
+    assert [digest(scene) == digest(load("t5b")) for scene in scenes] == [True, False]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from fem_impact.effects.registry import BARRIERS
 from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
-from fem_impact.scene.fields import Boundary, Element, YieldingElement
+from fem_impact.scene.fields import Boundary, Element, FineZone, YieldingElement
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials, shipped, surfaces
 from fem_impact.scene.material import Material
@@ -56,7 +56,7 @@ def scenes(draw):
             *(draw(st.one_of(st.none(), st.floats(1e-4, 1e-3))) for _ in range(2)),
             *(draw(st.floats(1.0, 25.0)), 2 * draw(st.integers(3, 32)), draw(st.sampled_from([0.0, 0.5]))),
             *(6e-3, draw(st.floats(1e-5, 1e-1)), draw(st.floats(0.01, 0.99))),
-            *(draw(st.sampled_from(get_args(kinds))) for kinds in (Element, YieldingElement)),
+            *(draw(st.sampled_from(get_args(kinds))) for kinds in (Element, YieldingElement, FineZone)),
         ),
         save=Save(draw(st.integers(0, 1000)), draw(st.integers(1, 1000))),
         measured=None,
