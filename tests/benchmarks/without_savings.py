@@ -96,7 +96,7 @@ def with_fronts(cost):
     return replace(cost, settings=marked)
 
 
-def write_page(costs, rows, out):
+def write_page(costs, rows, out, commit):
     """Write the page of the costs: its own first lines, the report, and the table of this session."""
     head = PAGE.read_text("utf-8").split("\n\n")[:3]
     text = publish(paper_report(costs), Request(out / "page"), {}).text.split("\n\n", 2)[2]
@@ -104,7 +104,7 @@ def write_page(costs, rows, out):
     body = text.strip().replace(f"](figures/{FIGURE}.png)", f"]({PAGE.stem}/{FIGURE}.svg)")
     made = (
         f"Made by `python tests/benchmarks/without_savings.py` on {utc_now()[:10]}, {machine()}, "
-        f"{version()}. "
+        f"{commit}. "
         f"Medians of the processor time of {TIMES} runs in turn in one session, on cores that others "
         "kept busy. Above, the time of this setting is that of the default run there times the ratio."
     )
@@ -114,7 +114,7 @@ def write_page(costs, rows, out):
 
 def main(out, *names):
     """Run, put the setting into the stored costs, and write their page."""
-    out = Path(out)
+    out, commit = Path(out), version()
     out.mkdir(parents=True, exist_ok=True)
     summary = json.loads(SUMMARY.read_text("utf-8"))
     costs, rows = {name: stored_cost(one) for name, one in summary["scenes"].items()}, []
@@ -125,7 +125,7 @@ def main(out, *names):
         costs[name] = with_fronts(cost)
         summary["scenes"][name]["settings"] = [asdict(one) for one in costs[name].settings]
     SUMMARY.write_text(json.dumps(summary, indent=1, allow_nan=False) + "\n", "utf-8")
-    write_page(costs, rows, out)
+    write_page(costs, rows, out, commit)
 
 
 if __name__ == "__main__":
