@@ -14,7 +14,7 @@ from .centre import impulse_centre
 from .closure import closure_defect
 from .coefficients import Coefficients, coefficients, impulse_ratio, restitution
 from .drop import GRAVITY, drop_velocities
-from .errors import DataError, ImpactError, RigidError, ShapeError
+from .errors import DataError, ImpactError, RigidError, ShapeError, TooLongError
 from .faceted import Faceted
 from .finite import FreeMotion, solve_free
 from .general import General
@@ -56,6 +56,7 @@ __all__ = [
     "RigidError",
     "ShapeError",
     "SlidingPath",
+    "TooLongError",
     "Turned",
     "WorstCase",
     "behaves_rigidly",

@@ -15,6 +15,10 @@ class ShapeError(RigidError):
     """A projectile that cannot be turned on a lathe."""
 
 
+class TooLongError(ShapeError):
+    """A part of a projectile that is longer than the whole."""
+
+
 class ImpactError(RigidError):
     """An impact that cannot happen, or whose equations have no solution."""
 

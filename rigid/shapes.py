@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from .arrays import Floats
-from .errors import ShapeError
+from .errors import ShapeError, TooLongError
 from .nose import Nose
 
 STEP = math.radians(0.5)
@@ -18,7 +18,9 @@ STEP = math.radians(0.5)
 def of_nose(nose: Nose, length: float) -> Floats:
     """Return the outline of a rod with a turned tip and a flat tail, (k, 2), m."""
     if not nose.z_side < length:
-        raise ShapeError(f"the nose is {nose.z_side * 1e3:.3g} mm long, the body only {length * 1e3:.3g} mm")
+        raise TooLongError(
+            f"the nose is {nose.z_side * 1e3:.3g} mm long, the body only {length * 1e3:.3g} mm"
+        )
     line = nose.polyline(_count(nose.sweep))
     return np.concatenate([line, [[nose.radius, length]]])
 
@@ -45,7 +47,7 @@ def ogive(length: float, diameter: float, calibre: float, nose_radius: float) ->
     end = math.asin((arc - R) / (arc - nose_radius))
     start = nose_radius + math.sqrt((arc - nose_radius) ** 2 - (arc - R) ** 2)  # of the cylinder
     if not start < length:
-        raise ShapeError(f"the nose is {start * 1e3:.3g} mm long, the body only {length * 1e3:.3g} mm")
+        raise TooLongError(f"the nose is {start * 1e3:.3g} mm long, the body only {length * 1e3:.3g} mm")
     sphere = _arc(0.0, nose_radius, nose_radius, 0.0, end)
     side = _arc(R - arc, start, arc, end, 0.5 * math.pi)
     return np.concatenate([sphere[:-1], side, [[R, length]]])

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
-from .errors import ShapeError, refuse
+from .errors import ShapeError, TooLongError, refuse
 from .slenderness import slenderness
 
 CORNER = math.radians(12.0)
@@ -68,7 +68,7 @@ class Turned:
         bore = np.asarray(self.bore)
         if bore[-1, 1] > self.length:
             end, length = bore[-1, 1] * 1e3, self.length * 1e3
-            raise ShapeError(f"the bore ends at {end:.3g} mm, beyond the tail at {length:.3g} mm")
+            raise TooLongError(f"the bore ends at {end:.3g} mm, beyond the tail at {length:.3g} mm")
         z = np.unique(np.concatenate([bore[:, 1], self.outline[:, 1]]))
         z = (z[:-1, None] + np.diff(z)[:, None] * _WITHIN).ravel()  # both are straight between these heights
         inner, outer = self.inner_radius(z), self.radius(z)

@@ -180,7 +180,9 @@ def say_kept(scene: Scene, options: Options) -> None:
         sys.stderr.write(
             f"fem-impact: the segments still end at {kept or 'the tail'}; the last one ends at the new tail\n"
         )
-    if rod.bore and longer and "projectile.bore" not in changed:
+    if rod.open_at_tail and longer and "projectile.bore" not in changed:
+        sys.stderr.write("fem-impact: the bore ends at the new tail\n")
+    elif rod.bore and longer and "projectile.bore" not in changed:
         ends = f"{1e3 * rod.bore[0][0]:.4g} to {1e3 * rod.bore[-1][0]:.4g} mm"
         sys.stderr.write(
             f"fem-impact: warning: the bore is that of the old length, {ends} from the tip. Another one: "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from math import inf
+from math import inf, isclose
 from typing import TYPE_CHECKING
 
 from fem_impact.errors import SceneError
@@ -92,6 +92,11 @@ class ProjectileSpec:
         """Return whether this is a solid ball of one material, which has no axis."""
         named = self.shape if isinstance(self.shape, NamedShape) else None
         return named is not None and named.name == "ball" and not self.bore and not self.segments
+
+    @property
+    def open_at_tail(self) -> bool:
+        """Return whether it has a bore that ends at the tail."""
+        return bool(self.bore) and isclose(self.bore[-1][0], self.length, rel_tol=1e-9)
 
     @property
     def own_mesh(self) -> OwnMesh | None:

@@ -206,6 +206,7 @@ def _projectile(table: Table) -> ProjectileSpec:
         "segments": listed(table["segments"], "segments", _segment, SEGMENT) if "segments" in table else (),
     }
     known = {key: value for key, value in table.items() if key not in own}
+    _refuse_length(known)
     if own["segments"]:
         if "material" in known:
             raise SceneError("stands beside segments, which have their own.", key="material")
@@ -215,6 +216,25 @@ def _projectile(table: Table) -> ProjectileSpec:
     if "profile" in known:
         return _of_profile(known, own)
     return _named_shape(known, own) if "shape" in known else _rod(known, own)
+
+
+LENGTH_OF = {
+    "profile": ("that of its last point", "profile"),
+    "mesh": ("that of the cells in its file", "mesh"),
+    "ball": ("its diameter", "diameter"),
+}
+"""What gives a projectile its length where that is not stated, and the key of it."""
+
+
+def _refuse_length(table: Table) -> None:
+    """Refuse the length of a projectile that has its own."""
+    kind = next((key for key in ("mesh", "profile") if key in table), table.get("shape"))
+    key = next((key for key in ("length", "length_m") if key in table), None)
+    if key and isinstance(kind, str) and kind in LENGTH_OF:
+        own, instead = LENGTH_OF[kind]
+        remedy = f"Leave it out, or change projectile.{instead} instead."
+        problem = f"is not stated for a {kind}: its length is {own}."
+        raise SceneError(problem, key=key, value=table[key], remedy=remedy)
 
 
 def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:

@@ -183,8 +183,18 @@ def outline_of(shape: Shape) -> Array:
 
     try:
         return shape.outline()
+    except rigid.TooLongError as error:
+        raise SceneError(f"is not a shape: {error}.", key="shape", remedy=_shorter_nose(shape)) from None
     except rigid.ShapeError as error:
         raise SceneError(f"is not a shape: {error}.", key="shape") from None
+
+
+def _shorter_nose(shape: Shape) -> str:
+    """Return the remedy for a nose that is longer than the body."""
+    sizes = NEEDS.get(shape.name, ()) if isinstance(shape, NamedShape) else ("tip_radius",)
+    keys = " or ".join(key for key in sizes if key in (*REPLACED, "tip_radius"))
+    length = f" (projectile.{BY_LENGTH}, {keys})" if keys in REPLACED else f" (projectile.{keys})"
+    return f"Give a projectile.length beyond the nose, or with it a shorter nose{length}."
 
 
 @lru_cache(maxsize=64)
@@ -200,6 +210,12 @@ def turned_body(shape: Shape, bore: tuple[Point, ...], density: tuple[Point, ...
 
     try:
         return rigid.Turned(outline_of(shape), density, _swapped(bore) if bore else None)
+    except rigid.TooLongError as error:
+        remedy = (
+            "Give with the length a projectile.bore that ends at the tail or before it, or a longer "
+            "projectile. A bore whose last point lies at the tail follows a changed length."
+        )
+        raise SceneError(f"bounds no body: {error}.", key="bore", remedy=remedy) from None
     except rigid.ShapeError as error:
         raise SceneError(
             f"bounds no body: {error}.", key="bore" if "bore" in str(error) else "profile"

@@ -13,10 +13,11 @@ from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import restated
 from fem_impact.scene.library import nearest_scene, shipped, stated
+from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, REPLACED
 from fem_impact.scene.types import OWN, Scene
-from fem_impact.scene.units import DIMENSIONS
+from fem_impact.scene.units import DIMENSIONS, parse_quantity
 from fem_impact.scene.write import to_dict
 
 
@@ -45,6 +46,7 @@ def _shipped(name: str) -> Scene:
     return read_dict(stated(name), f"shipped scene {name}")
 
 
+LENGTH = {"projectile.length", "projectile.length_m"}
 _CHANGED = ", changed: "
 _LONGEST = 300  # characters of a title
 # longest first: "_rad_per_s" before "_s"
@@ -75,6 +77,8 @@ def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
         data["impact"] = restated(scene.impact, data["impact"], moved)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:
         _end_at_tail(data["projectile"])
+    if LENGTH & changes.keys() and "projectile.bore" not in changes:
+        _open_at_tail(data["projectile"], scene.projectile)
     return read_dict(data, "--set")
 
 
@@ -83,6 +87,16 @@ def _end_at_tail(rod: Any) -> None:
     segments = rod.get("segments") if isinstance(rod, dict) else None
     if segments:
         segments[-1].pop("to", None)
+
+
+def _open_at_tail(rod: Any, was: ProjectileSpec) -> None:
+    """Let a bore that is open at the tail follow it; one with another point behind the new tail stays."""
+    bore = rod.get("bore")
+    if not bore or not was.open_at_tail:
+        return
+    stated = rod.get("length", f"{rod.get('length_m')} m")
+    if parse_quantity(stated, "length", "projectile.length") > was.bore[-2][0]:
+        rod["bore"] = [*bore[:-1], [stated, bore[-1][1]]]
 
 
 def _change(data: dict[str, Any], key: str, value: Any) -> None:

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from fem_impact.commands.common import changed_scene, shown_path
+from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml
 
 
@@ -30,9 +31,13 @@ def test_paths_are_shown_from_the_working_directory(tmp_path, monkeypatch):
     assert shown_path("t5b") == "t5b"
 
 
-def test_a_bore_that_stays_short_is_told(cli):
+def test_a_bore_that_stays_short_is_told(cli, tmp_path):
     _, _, err = cli("check", "tube", "--set", "projectile.length=0.4 m")
-    assert "warning: the bore is that of the old length, 0 to 200 mm from the tip." in err
+    assert "the bore ends at the new tail" in err and "warning" not in err
+    closed = replace(load("tube"), "projectile.bore", [["0 mm", "6 mm"], ["150 mm", "6 mm"]])
+    (tmp_path / "closed.toml").write_text(to_toml(closed))
+    _, _, err = cli("check", str(tmp_path / "closed.toml"), "--set", "projectile.length=0.4 m")
+    assert "warning: the bore is that of the old length, 0 to 150 mm from the tip." in err
     bore = 'projectile.bore=[["0 mm", "6 mm"], ["400 mm", "6 mm"]]'
     assert "bore" not in cli("check", "tube", "--set", "projectile.length=0.4 m", "--set", bore)[2]
     assert "bore" not in cli("check", "t5b", "--set", "projectile.length=0.1 m")[2]

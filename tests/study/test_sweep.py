@@ -11,7 +11,7 @@ import pytest
 import fem_impact
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
 from fem_impact.jobs import run as jobs_run
-from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.study.sweep import publish_sweep, sweep
 from fem_impact.study.vary import cases, in_unit, read_vary
 from fem_impact.tables.table import read_csv
@@ -94,6 +94,49 @@ def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
     assert len(failed) == 2 and len(results) == 6
     assert all("shorter than the diameter" in row.reason for row in failed)
     assert "2 failed" in repr(results) and "<code>E_vib_over_E_0</code>" in results._repr_html_()
+
+
+CLOSED = [["40 mm", "6 mm"], ["150 mm", "6 mm"]]
+STEPPED = [["0 mm", "6 mm"], ["150 mm", "6 mm"], ["200 mm", "4 mm"]]
+
+
+@pytest.mark.parametrize(
+    ("name", "changes", "short", "words"),
+    [
+        ("tube", {"projectile.bore": CLOSED}, "0.1 m", "projectile.bore that ends at the tail or before"),
+        ("tube", {"projectile.bore": STEPPED}, "0.1 m", "projectile.bore that ends at the tail or before"),
+        ("ogive", {}, "20 mm", "projectile.nose_length, calibre_radius"),
+        ("ogive", {"projectile.nose_length": "30 mm"}, "20 mm", "projectile.nose_length, calibre_radius"),
+        ("sphere-cone", {}, "20 mm", "projectile.nose_length, cone_angle"),
+        ("heavy-tail", {}, "60 mm", "end beyond 80 mm, or a longer projectile"),
+    ],
+)
+def test_a_length_that_the_rest_does_not_fit_names_the_remedy(name, changes, short, words):
+    scene = replace_all(load(name), changes)
+    rows = sweep(scene, {"projectile.length": [short, "180 mm"]}, "rigid").rows
+    assert rows[0].outcome is None and words in rows[0].reason
+    assert rows[1].outcome is not None
+
+
+def test_a_bore_that_is_open_at_the_tail_follows_it():
+    swept = sweep(load("tube"), {"projectile.length": ["0.1 m", "0.2 m", "0.4 m"]}, "rigid")
+    mass = [row.outcome.motion.mass for row in swept]
+    assert mass[2] - mass[1] == pytest.approx(2 * (mass[1] - mass[0]), rel=1e-9)
+    closed = replace_all(load("tube"), {"projectile.length": "0.4 m", "projectile.bore": CLOSED})
+    assert closed.projectile.bore == ((0.04, 0.006), (0.15, 0.006))
+
+
+@pytest.mark.parametrize(
+    ("shape", "words"),
+    [
+        ({"profile": [["0 mm", "4 mm"], ["90 mm", "4 mm"]]}, "for a profile.*projectile.profile instead"),
+        ({"shape": "ball", "diameter": "20 mm"}, "for a ball.*projectile.diameter instead"),
+    ],
+)
+def test_a_length_that_is_not_stated_says_what_to_vary_instead(shape, words):
+    scene = replace(load("tube"), "projectile", {"material": "rod-steel", **shape})
+    with pytest.raises(SceneError, match=words):
+        cases(scene, {"projectile.length": ["60 mm", "80 mm"]})
 
 
 def test_a_second_call_takes_what_is_stored(swept, monkeypatch):
