@@ -29,8 +29,8 @@ def present(
     executor : processes on this machine, which have the libraries of the runs loaded; new ones when None
     """
     folders, notes = list(runs), list[str]()
-    own = LocalProcesses(max(1, min(cores(), len(folders))))
-    with own if executor is None else nullcontext(executor) as pool:
+    few = max(1, min(cores(), len(folders)))
+    with LocalProcesses(few) if executor is None else nullcontext(executor) as pool:
         films = [pool.submit(film, run, frames) for run in folders]  # the longest work first
         figures = pool.submit(_attempt, study, _draw)  # its notes are repeated when the page is written
         pages = []

@@ -1,6 +1,7 @@
 """The study's Markdown, its changed inputs, and pictures that may be missing."""
 
 import json
+from concurrent.futures import Executor, Future
 
 import pytest
 from outcome_maker import altered
@@ -146,6 +147,24 @@ def test_several_runs_are_drawn_in_processes_and_what_lacks_is_told_once(tmp_pat
     notes = present(runs, tmp_path, NullMeter(), 3)
     assert [note.partition(": ")[0] for note in notes] == ["t4", "t5b", tmp_path.name]
     assert all("outcome.json" in note for note in notes[:2])
+
+
+def test_the_processes_of_the_runs_draw_films_first_and_a_page_after_its_film(tmp_path):
+    calls = []
+
+    class Here(Executor):
+        def submit(self, work, *args):
+            calls.append((work.__name__, args[0].name, *args[1:2]))
+            future = Future()
+            future.set_result(work(*args))
+            return future
+
+    runs = [tmp_path / name for name in ("t4", "t5b")]
+    present(runs, tmp_path, NullMeter(), 7, Here())
+    pages = [(name, run) for name, run, *_ in calls if name in ("film", "page")]
+    assert calls[:2] == [("film", "t4", 7), ("film", "t5b", 7)]
+    assert pages[2:] == [("page", "t4"), ("page", "t5b")]
+    assert [name for name, *_ in calls].count("_attempt") == 2
 
 
 def test_a_panel_with_one_place_along_x_is_not_shown(tmp_path):
