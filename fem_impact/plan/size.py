@@ -25,6 +25,7 @@ from fem_impact.plan.cells import posture
 from fem_impact.plan.layers import block_of
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from meshes import cell_moments, thin_skin_rise
@@ -39,6 +40,10 @@ SMALLEST = {"rod": 0.52, "barrier": 0.54}
 UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
 BASE, PER_ELEMENT = 1.8e8, 4.0e3  # bytes: of the program, and of an element
 FILL = 2400.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
+# the same of a user's mesh, which has no slices; its factor takes OWN_FILL sqrt(min(n, PIECE w^3)) bytes an
+# element, w cells across: the largest resident memory (VmHWM) of processes that did nothing else, for half
+# boxes of 7 000 to 32 000 cells, as long as wide and five times longer (tests/benchmarks/own_mesh_memory.py)
+OWN_BASE, OWN_ELEMENT, OWN_FILL, PIECE = 2.4e8, 9.5e3, 330.0, 1.15
 ELASTIC, YIELDING = 30e-9, 270e-9  # s of a step for an element that cannot yield, and for one that may
 SETUP = 4.0e-4  # s for an element: mesh, assembly, modes
 
@@ -82,7 +87,7 @@ def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
     steps, most = min(apart, latest) / step, latest / step
     return RunSize(
         *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
-        memory=BASE + PER_ELEMENT * elements + FILL * rod ** (4 / 3),
+        memory=_memory(scene, slots.vibrating, rod, barrier),
         time=SETUP * elements + each * steps,
         most_time=SETUP * elements + each * most,
     )
@@ -107,13 +112,33 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
     size, there = run_size(slots, bodies, zones), machine_memory()
     if size.memory <= there:
         return
-    raise SceneError(
+    problem = (
         f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
-        f"GB of memory; this machine has {about(there / 1e9)} GB.",
-        key="accuracy.tip_size",
-        value=format_quantity(zones.tip_size, "length"),
-        remedy=_finest_that_fits(slots, bodies, zones, there),
+        f"GB of memory; this machine has {about(there / 1e9)} GB."
     )
+    finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.scene.projectile.own_mesh
+    if mesh is not None and not finest:
+        remedy = 'Give a mesh of larger cells, or let it not vibrate: effects = ["auto", "-vibration"].'
+        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=remedy)
+    none = "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
+    value = format_quantity(zones.tip_size, "length")
+    raise SceneError(problem, key="accuracy.tip_size", value=value, remedy=finest or none)
+
+
+def _memory(scene: Scene, vibrates: bool, rod: float, barrier: float) -> float:
+    """Return the bytes that elements of ``rod`` and ``barrier`` take, and the modes of one that vibrates."""
+    if scene.projectile.own_mesh is None:
+        return float(BASE + PER_ELEMENT * (rod + barrier) + FILL * rod ** (4 / 3))
+    elements = OWN_ELEMENT * rod + PER_ELEMENT * barrier
+    return OWN_BASE + elements + (_own_factor(scene.projectile.own_mesh, rod) if vibrates else 0.0)
+
+
+def _own_factor(mesh: OwnMesh, rod: float) -> float:
+    """Return the bytes of the factor for the modes of a user's mesh; split cells lie close together."""
+    cells = cell_moments(mesh.half())
+    section = (cells.high - cells.low).sum() / (cells.high.max() - cells.low.min())  # of the half, in cells
+    stated, piece = len(cells.low), PIECE * (2 * section) ** 1.5
+    return float(OWN_FILL * (stated * sqrt(min(stated, piece)) + max(rod - stated, 0.0) ** 1.5))
 
 
 def require_rest(scene: Scene, zones: Zones) -> None:
@@ -136,13 +161,14 @@ def no_rest() -> SceneError:
 
 
 def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
+    """Return the remedy by a larger tip size, nothing where none fits."""
     for levels in range(len(zones.rod) - 1, 0, -1):
         size = float(f"{zones.rod_base / 2**levels:.2g}")
         accuracy = replace(bodies.scene.accuracy, tip_size=size)
         coarser = replace(bodies, scene=replace(bodies.scene, accuracy=accuracy))
         if run_size(slots, coarser, zones_of(coarser)).memory <= there:
             return f"Give at least {format_quantity(size, 'length')}."
-    return "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
+    return ""
 
 
 def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:

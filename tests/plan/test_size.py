@@ -3,6 +3,7 @@
 from math import exp, log
 
 import pytest
+from benchmarks.own_mesh_memory import half_box
 
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.errors import SceneError
@@ -87,6 +88,33 @@ def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(c
     with pytest.raises(SceneError, match="GB of memory"):
         plan(replace_all(scene, {"accuracy.tip_size": finer}))
     plan(scene, "modal")  # needs no block
+
+
+# largest resident memory, MB, of a process that computed the modes of a half box of cells of 1 mm
+OWN = [
+    ((24, 12, 24), 427),
+    ((32, 16, 32), 1001),
+    ((40, 20, 40), 2223),
+    ((16, 8, 64), 441),
+    ((20, 10, 100), 986),
+]
+
+
+@pytest.mark.parametrize(("cells", "measured"), OWN)
+def test_memory_of_the_modes_of_a_users_mesh(cells, measured, tmp_path):
+    planned = plan(half_box(tmp_path, *cells))
+    assert off(planned.size.memory, measured * 1e6) < 1.2
+
+
+def test_a_users_mesh_that_does_not_fit_is_refused_before_any_work(tmp_path, monkeypatch):
+    monkeypatch.setattr(sizes, "machine_memory", lambda: 8e8)
+    scene = half_box(tmp_path, 32, 16, 32)
+    words = r"projectile\.mesh = .*GB of memory.*a mesh of larger cells, or let it not vibrate"
+    with pytest.raises(SceneError, match=words):
+        plan(scene)
+    stiff = replace_all(scene, {"effects": ["auto", "-vibration"], "accuracy.tip_size": "0.6 mm"})
+    assert plan(stiff).size.memory < 8e8
+    assert plan(half_box(tmp_path, 24, 12, 24)).size.memory < 8e8
 
 
 def test_a_rod_that_never_fits_is_told_so(monkeypatch):
