@@ -6,6 +6,7 @@ import math
 from collections.abc import Collection
 from dataclasses import replace
 
+from fem_impact.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import (
     ContactBodies,
@@ -24,6 +25,7 @@ from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Projectile
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
+THIN = 0.02  # of e, by the thickness of a plate: told above it
 FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
@@ -34,8 +36,9 @@ TIPS = {("A", 0.007), ("B", 0.003)}
 SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 
-def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
+def validity(bodies: ContactBodies, active: Collection[str]) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range."""
+    scene = bodies.scene
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     sentences = (
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
@@ -43,6 +46,7 @@ def validity(scene: Scene, active: Collection[str]) -> tuple[str, ...]:
         _segments(scene),
         _own_mesh(scene),
         _layers(scene),
+        _thin_plate(bodies),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -98,6 +102,30 @@ def _layers(scene: Scene) -> str:
     return (
         "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
         "of the rigid fidelity) know the first layer alone"
+    )
+
+
+def _thin_plate(bodies: ContactBodies) -> str:
+    """Tell where a plate that bends is too thin for a half-space under the contact.
+
+    Under a force P a half-space has u = (1 + nu)(3 - 2 nu) P / (2 pi E h) of its give deeper than h on the
+    axis (Boussinesq), and Hertz' contact of the radius a gives 3 (1 - nu^2) P / (4 E a) in all (Johnson 1985,
+    Contact Mechanics, sections 3.2 and 4.2, doi:10.1017/CBO9781139171731). e changes by half of the share of
+    the compliance that is wrong (Thornton 1997, doi:10.1115/1.2787319).
+    """
+    barrier, size = bodies.scene.barrier, contact_estimate(bodies)
+    if not barrier.bends or barrier.thickness is None:
+        return ""
+    a, nu = math.sqrt(size.a_t * size.a_b), barrier.material.nu
+    deeper = 2 * (3 - 2 * nu) / (3 * math.pi * (1 - nu)) * a / barrier.thickness
+    changed = 0.5 * deeper * compliance_share(bodies.scene) if bodies.compliant else 0.0
+    if changed <= THIN:
+        return ""
+    width = 2 * a
+    return (
+        f"idealised: the contact is {width * 1e3:.2g} mm wide, {width / barrier.thickness:.2g} of the "
+        f"plate's thickness, and taken as that of a half-space, which gives {100 * deeper:.2g} % of its way "
+        f"deeper than the plate is thick: e may be off by some {100 * changed:.2g} %"
     )
 
 

@@ -61,7 +61,7 @@ class Plan:
     @property
     def validity(self) -> tuple[str, ...]:
         """Return a sentence for each way in which the scene leaves the measured range."""
-        return validity(self.scene, self.active)
+        return validity(self.bodies, self.active)
 
     @property
     def unknown(self) -> tuple[str, ...]:

@@ -1,15 +1,18 @@
 """Bending of a plate: its impedance, Zener's number and equation, and the widths that are refused."""
 
+import re
 from math import pi, sqrt
 
 import numpy as np
 import pytest
 
+from fem_impact.effects.barrier import compliance_share
 from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import drop
 from fem_impact.modal.motion import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start
+from fem_impact.physics.contact import contact_estimate
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
@@ -55,6 +58,27 @@ def test_the_reduced_model_obeys_zeners_equation(number):
     assert end.tally[HARDEST] == pytest.approx(exact.peak * law.stiffness * (v * T) ** 1.5, rel=2e-3)
     kept = 0.5 * m * end.motion.rigid[0] ** 2 + end.tally[WORK_P]
     assert kept == pytest.approx(0.5 * m * v**2, rel=1e-5)
+
+
+def test_a_plate_that_is_not_thick_beside_the_contact_is_told():
+    """What a half-space gives deeper than h: its strain under a point force, integrated from there."""
+
+    def told(thickness):
+        planned = plan(replace_all(load("plate-10mm"), {"barrier.thickness": thickness}), "modal")
+        found = [sentence for sentence in planned.validity if "half-space" in sentence]
+        return planned, found[0] if found else ""
+
+    assert told("20 mm")[1] == ""
+    planned, sentence = told("5 mm")
+    size, steel, h = contact_estimate(planned.bodies), planned.scene.barrier.material, 5e-3
+    a, nu = sqrt(size.a_t * size.a_b), steel.nu
+    z = np.geomspace(h, 1e4 * h, 20_001)
+    strain = (3 - 2 * nu * (2 * nu - 1) / 2) / (2 * pi * steel.E * z**2)  # of 1 N, on the axis
+    whole = 3 * (1 - nu**2) / (4 * steel.E * a)
+    share = 100 * np.trapezoid(strain, z) / whole
+    words = f"{2e3 * a:.2g} mm wide, {2 * a / h:.2g} of the plate's thickness.* gives {share:.2g} % of its"
+    assert re.search(words, sentence)
+    assert f"e may be off by some {0.5 * share * compliance_share(planned.scene):.2g} %" in sentence
 
 
 def test_zeners_number_falls_as_the_square_of_the_thickness():
