@@ -205,6 +205,13 @@ MUTANTS = (
         "tests/verify/test_verify_oblique_rod.py::test_a_coarse_tip_on_a_block_leans_and_bends",
     ),
     Mutant(
+        "friction 0.5 % too strong between a sliding ball and a block",
+        "fem_impact/solid/contact/impulses.py",
+        "share = min(1.0, f * pressed / size)",
+        "share = min(1.0, 1.005 * f * pressed / size)",
+        f"{SPHERE}::test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction",
+    ),
+    Mutant(
         "nodes leave a rigid plane at a thousandth of the speed with which they came",
         "fem_impact/solid/contact/plane.py",
         "v[n] += inverse_mass[n] * p\n",

@@ -12,7 +12,7 @@ import meshes
 from fem_impact.fem.elements import lumped_mass
 from fem_impact.reference.finite_sphere import ball_impact
 from fem_impact.reference.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
-from fem_impact.reference.sphere import oblique_ball, oblique_sphere
+from fem_impact.reference.sphere import INERTIA, oblique_ball, oblique_sphere
 from fem_impact.reference.waves import radiated_energy
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
@@ -23,6 +23,7 @@ from fem_impact.verify.discretisation import (
     end_error,
     grid_force_error,
     grid_radiation_error,
+    lean_error,
 )
 from fem_impact.verify.problem import Check, Problem, Solved, Values, within
 from fem_impact.verify.setups import (
@@ -126,19 +127,21 @@ def sphere_model(
 
 
 def _denser(points: NDArray[np.float64], cells: NDArray[np.int64], p: Values) -> NDArray[np.float64]:
-    """Return densities (cells,) over rho with which half the ball has a ball's mass and moment of inertia.
+    """Return densities (cells,) over rho with which half the ball has a ball's mass, moment and centre.
 
     Flat cells inside the round skin lack volume, and masses at their corners lie too far out: the moment is
-    1.8 % too high with 8 cells across, which takes 0.01 of a sticking ball's tangential restitution. Both are
-    mended by a density that is linear in the square of the distance from the centre.
+    1.8 % too high with 8 cells across, which takes 0.01 of a sticking ball's tangential restitution. Small
+    cells where it touches lack less: its mass centre is 1.3 % of the radius too low, which friction's arm
+    misses. A density that is linear in the height and the square of the distance from the centre mends all.
     """
     R, mass = p["radius"], lumped_mass(points, cells, p["rho"])
     arm = (points[cells] - np.array([0.0, 0.0, R])) / R
-    out = (arm.mean(axis=1) ** 2).sum(axis=1)
-    masses, moments = mass.sum(axis=1), (mass * (arm[:, :, 0] ** 2 + arm[:, :, 2] ** 2)).sum(axis=1)
-    sums = [[masses.sum(), masses @ out], [moments.sum(), moments @ out]]
-    inner, slope = np.linalg.solve(sums, 0.5 * ball_mass(p) * np.array([1.0, 0.4]))
-    return np.asarray(inner + slope * out)
+    middle = arm.mean(axis=1)
+    shapes = np.stack([np.ones(len(cells)), (middle**2).sum(axis=1), middle[:, 2]])
+    of_each = [np.ones_like(mass), arm[:, :, 0] ** 2 + arm[:, :, 2] ** 2, arm[:, :, 2]]
+    sums = [[float((mass * moment).sum(axis=1) @ shape) for shape in shapes] for moment in of_each]
+    weights = np.linalg.solve(sums, 0.5 * ball_mass(p) * np.array([1.0, INERTIA, 0.0]))
+    return np.asarray(weights @ shapes)
 
 
 RADIATED, ENERGY = 0.15, 1e-3
@@ -253,9 +256,34 @@ HERTZ = Problem(
     solve_hertz,
 )
 
-RESTITUTION, RATIO, SLIPPED = 0.02, 0.01, 0.05
+RESTITUTION, SLIPPED = 0.02, 0.05  # of a blow that sticks
+SLIDING = 0.999  # of Coulomb's ratio, from which a blow counts as sliding throughout
 UNCOUPLED = 0.45  # Poisson's ratio from which pressing hardly shifts the skin on a rigid plane
 COUPLED = "on a rigid plane pressing shifts the skin sideways unless nu is near 0.5"
+
+
+def _sliding_errors(
+    p: Values, normal: HertzImpact, leaning: float, inertia: float
+) -> tuple[float, float, float]:
+    """Return the errors of restitution, spin and ratio over f of a ball that slides throughout.
+
+    Of the ratio ``leaning`` the mesh misses a share of the interface's lean (`lean_error`), on a rigid plane
+    of the arm by which the pressure moves on instead. Restitution and spin follow the ratio with the impulse,
+    v_n (1 + e), of which the reference takes e = 1: the block radiates, closing nodes take energy. The arm
+    of friction is shorter than the radius by what the ball is pressed in, and the mesh
+    has another ``inertia`` over m R^2.
+    """
+    v_n, v_t = p["speed"] * cos(p["angle"]), p["speed"] * sin(p["angle"])
+    edge = meshes.pole_edge(p["radius"], int(p["across"]))
+    cell = edge / 2 ** levels_for_radius(edge, normal.radius, p["cells"])
+    lost = radiated_energy(normal, p["E"], p["nu"], p["rho"]) / (0.5 * ball_mass(p) * v_n**2)
+    bounce = 0.5 * (lost * p["block"] + ENERGY)
+    missed = (1 - leaning / p["f"]) * lean_error(cell, normal.radius)
+    of_ratio, given = 1 - SLIDING + missed * p["block"], p["f"] * v_n / v_t
+    back = given * (2 * of_ratio + bounce)
+    of_arm = normal.approach / p["radius"] + missed * (1 - p["block"])
+    turned = 2 * given * (of_arm + abs(inertia / INERTIA - 1))
+    return back, (back + turned) / INERTIA, of_ratio
 
 
 def solve_oblique(p: Values) -> Solved:
@@ -276,18 +304,22 @@ def solve_oblique(p: Values) -> Solved:
     found = run_strike(model, AFTER * normal.duration, normal.duration)
     m = found.motion
     mu = (m.V_t + v_t) / (m.V_n + v_n)
-    slides = exact.ratio > 0.999 * p["f"]
-    ratio = exact.ratio
-    if slides and p["block"]:
-        pressure = 2 * modulus(p) * normal.radius / (pi * R)
-        ratio = sliding_ratio(p["f"], p["nu"], p["E"] / (2 + 2 * p["nu"]), pressure)
+    slides = exact.ratio > SLIDING * p["f"]
+    pressure = 2 * modulus(p) * normal.radius / (pi * R)
+    leaning = sliding_ratio(p["f"], p["nu"], p["E"] / (2 + 2 * p["nu"]), pressure) if slides else p["f"]
+    ratio = leaning if slides and p["block"] else exact.ratio
     back, note = -m.V_t / v_t, f"for a / R far below 1, here {normal.radius / R:.3f}"
     # away from sliding the ratio tells the same as the restitution: v_t (1 - e_t) / (2 v_n)
-    near = RATIO * p["f"] if slides else RESTITUTION * v_t / (2 * v_n)
+    sticking = RESTITUTION, SLIPPED, RESTITUTION * v_t / (2 * v_n) / p["f"]
+    near = _sliding_errors(p, normal, leaning, m.inertia / m.mass / R**2) if slides else sticking
+    # the ball's theory knows of no lean; on a rigid plane, which cannot lean, the pressure moves on instead
+    less = ratio / exact.ratio
+    arm = 1.0 if p["block"] else leaning / p["f"]
+    centre, spin = 1 - less * (1 - exact.centre_t / v_t), arm * less * exact.spin / v_t
     compared = [
-        Check("tangential restitution", "1", back, exact.centre_t / v_t, RESTITUTION, "absolute"),
-        Check("spin R Omega / v_t", "1", -R * m.Omega / v_t, exact.spin / v_t, SLIPPED, "absolute"),
-        Check("impulse ratio mu / f", "1", mu / p["f"], ratio / p["f"], near / p["f"], "absolute"),
+        Check("tangential restitution", "1", back, centre, near[0], "absolute"),
+        Check("spin R Omega / v_t", "1", -R * m.Omega / v_t, spin, near[1], "absolute"),
+        Check("impulse ratio mu / f", "1", mu / p["f"], ratio / p["f"], near[2], "absolute"),
     ]
     if not (slides or p["block"] or p["nu"] >= UNCOUPLED):
         compared = [replace(check, tolerance=inf, kind="shown", note=COUPLED) for check in compared]

@@ -9,17 +9,22 @@ from fem_impact.verify.catalogue import verify
 COARSE = {"cells": 2.3, "across": 8}
 
 
-def test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction():
-    found = verify("oblique-sphere", {**COARSE, "angle": "50 deg"})
+@pytest.mark.parametrize("change", [{}, {"block": 0, "f": 0.05}])
+def test_a_sphere_that_slides_throughout_has_the_ratio_of_its_friction(change):
+    """Held to half a per cent: facets' own normals are 0.0034 off, half a per cent of friction is noticed."""
+    found = verify("oblique-sphere", {**COARSE, "angle": "50 deg", **change})
     values = {c.name: c for c in found.checks}
-    assert values["impulse ratio mu / f"].computed == pytest.approx(1.0, rel=0.01)
-    assert abs(values["impulse ratio mu / f"].error) < 0.002  # facets' own normals are 0.0034 off
-    assert abs(values["tangential restitution"].error) < 0.02
+    assert found.passed
+    assert abs(values["impulse ratio mu / f"].error) < 0.002
+    assert values["impulse ratio mu / f"].tolerance < 0.005
+    assert values["tangential restitution"].tolerance < 0.0011
+    assert values["spin R Omega / v_t"].tolerance < 0.005
 
 
 def test_the_interface_of_a_hard_blow_leans_under_friction():
     """The most where nu = 0; the bodies' skins are lower ahead of the contact and higher behind it."""
     found = verify("oblique-sphere", {**COARSE, "angle": "50 deg", "nu": 0.0, "speed": 20.0})
+    assert found.passed
     ratio = {c.name: c for c in found.checks}["impulse ratio mu / f"]
     assert ratio.computed < 0.993
     assert abs(ratio.error) < 0.004

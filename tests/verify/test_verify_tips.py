@@ -51,11 +51,12 @@ def test_the_fewest_cells_are_enough(block, speed):
     assert touch.radius / beside[1] > 1.86  # of 2, as levels halve the edge
 
 
-def test_a_coarse_ball_has_the_mass_and_moment_of_a_ball():
+def test_a_coarse_ball_has_the_mass_moment_and_centre_of_a_ball():
     p = problem("oblique-sphere").values({"across": 8, "cells": 2, "block": 0})
     model = sphere_model(p, plain_hertz(p, p["speed"]), 1.0)
     found, mass = rigid_of(model, model.initial_state()), ball_mass(p)
     assert found.mass == pytest.approx(mass, rel=1e-9)
+    assert found.centre[2] == pytest.approx(p["radius"], rel=1e-9)  # uneven cells drew it down by 1.3 %
     assert found.inertia == pytest.approx(0.4 * mass * p["radius"] ** 2, rel=4e-3)
 
 
