@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.commands.options import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
-from fem_impact.files.lock import LOCK
-from fem_impact.files.run_directory import COMPUTED
+from fem_impact.files.ownership import stranger
 
 if TYPE_CHECKING:
     from fem_impact.plan.size import RunSize
@@ -23,8 +22,6 @@ if TYPE_CHECKING:
 RESULT_FILES = ("outcome.json", "study.json")
 TOLD = ("projectile", "barrier", "surface", "impact")
 """Tables of a scene whose changed values its title tells."""
-_OWN_FILES = (*RESULT_FILES, "store.sqlite", "ledger.csv", *COMPUTED, "scene.toml", "row.json", LOCK)
-"""Files that runs and studies write into their directories."""
 
 
 def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
@@ -79,7 +76,7 @@ def checked_out(out: Path) -> Path:
     Raises
     ------
     OutputPathError
-        It is a file, lies below a file, holds files that are no results, or cannot be written.
+        It is a file, lies below a file, holds anything but results of the program, or cannot be written.
     """
     try:
         _refuse_files(out)
@@ -139,19 +136,12 @@ def _refuse_files(out: Path) -> None:
 
 
 def _refuse_strangers(out: Path) -> None:
-    if not out.is_dir() or not any(out.iterdir()) or _is_ours(out):
-        return
-    raise OutputPathError(
-        f"{out}: the directory holds other files, and results would mix with them. "
-        "Choose an empty or a new directory with --out."
-    )
-
-
-def _is_ours(out: Path) -> bool:
-    """Return whether a run or a study, complete or stopped early, wrote into the directory."""
-    own = (out / name for name in _OWN_FILES)
-    of_runs = (run / name for run in out.iterdir() if run.is_dir() for name in _OWN_FILES)
-    return any(path.exists() for path in (*own, *of_runs))
+    foreign = stranger(out) if out.is_dir() else None
+    if foreign:
+        raise OutputPathError(
+            f"{out}: the directory holds other files, such as {foreign.name}, and results would mix with "
+            "them. Choose an empty or a new directory with --out."
+        )
 
 
 def _prove_writable(directory: Path) -> None:

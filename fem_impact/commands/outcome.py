@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from fem_impact.commands.common import headed
+from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import shares
+from fem_impact.outcome.shares import EnergyShare, shares
 from fem_impact.tables.text import wrapped
 
 _MOTION = (
@@ -61,10 +62,17 @@ def _listed(outcome: Outcome) -> dict[str, Num]:
     """Return the shares of E_0 in this run by their labels."""
     values = {share: share.of(outcome.energy) for share in shares("terminal")}
     return {
-        share.label: value
+        _label(share, outcome.energy): value
         for share, value in values.items()
         if not (isinstance(value, Unknown) and share.key.path[-1] in _IF_ON)
     }
+
+
+def _label(share: EnergyShare, energy: Energy) -> str:
+    """Return the label of a share; a body in which nothing yields has no residual stress."""
+    body = share.key.path[-1].removeprefix("locked_")
+    elastic = share.label.startswith("residual") and getattr(energy, f"plastic_{body}") == 0.0
+    return f"elastic energy left in {body}" if elastic else share.label
 
 
 def _accuracy(outcome: Outcome) -> list[str]:

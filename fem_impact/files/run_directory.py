@@ -36,6 +36,12 @@ def remove_drafts(out: Path) -> None:
             draft.unlink()
 
 
+def remove_scene_alone(out: Path) -> None:
+    """Remove the scene of a run that ended before it computed: alone it does not show whose it is."""
+    if not any((out / name).exists() for name in COMPUTED):
+        (out / "scene.toml").unlink(missing_ok=True)
+
+
 def earlier(out: Path) -> list[Path]:
     """Return the directories of older runs, the oldest first."""
     return sorted(out.glob("earlier-*"))

@@ -10,12 +10,13 @@ import numpy as np
 
 from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
-from fem_impact.outcome.keys import Unknown, unknown
+from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import between
+from fem_impact.physics.contact import ContactBodies, between
 from fem_impact.plan.measured import reduced_table
 from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
+    HARDER,
     MASSIVE,
     UNBENT,
     angular_momentum_error,
@@ -28,6 +29,7 @@ from fem_impact.run.common import (
     plastic_shares,
     provenance,
     restitution,
+    rod_flows,
     too_slow,
     validity,
 )
@@ -62,7 +64,12 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
             failed or result.reason,
             result.V_n - result.V_bn,
             "the reduced model has no second mesh",
-            (*ASSUMPTIONS, *([LEVEL] if scene.barrier.inertia else []), *beside_solid(scene)),
+            (
+                *ASSUMPTIONS,
+                *_dent(plan.bodies),
+                *([LEVEL] if scene.barrier.inertia else []),
+                *beside_solid(scene),
+            ),
             [
                 *doubts(origin, moved, coefficients, energy),
                 *gravity_warning(plan, contacts),
@@ -100,7 +107,7 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         vibration_floor=floor,
         below_floor=bool(vibration < floor),
         friction=result.friction / E_0,
-        skin=result.skin / E_0,
+        skin=_skin(plan.bodies, result.skin / E_0, result.friction / E_0),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
         locked_rod=NO_STRESS,
@@ -151,8 +158,22 @@ ASSUMPTIONS = (
     "The forces of a sliding tip that ploughs and of a contact that yields in shear hold two constants, "
     "found from six other impacts.",
     "Left out: residual stress, and waves in the barrier. The harder body stays elastic.",
-    "A later contact meets the dent that the first one left in the barrier.",
 )
+
+
+def _dent(bodies: ContactBodies) -> list[str]:
+    """Return which body keeps the dent; none where neither yields."""
+    if not (bodies.rod_yields or bodies.barrier_yields):
+        return []
+    where = "tip" if rod_flows(bodies) else "barrier"
+    return [f"A later contact meets the dent that the first one left in the {where}."]
+
+
+def _skin(bodies: ContactBodies, sheared: float, friction: float) -> Num:
+    """Return friction and plastic work of the barrier's skin; ``sheared`` is with the softer body's."""
+    if not rod_flows(bodies):
+        return sheared
+    return HARDER if bodies.barrier_yields else friction
 
 
 def beside_solid(scene: Scene) -> tuple[str, ...]:

@@ -62,26 +62,35 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
 def _compute_in(out: Path, plan: Plan, options: RunOptions) -> Outcome:
     """Compute and write the files of the run to a directory, locked meanwhile."""
     from fem_impact.files.lock import directory_lock
-    from fem_impact.files.run_directory import remove_drafts
+    from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
 
     with directory_lock(out):
         remove_drafts(out)
         resume = plan.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
         if not resume:
             _begin(plan.scene, out)
-        outcome = _compute(plan, replace(options, resume=resume))
+        try:
+            outcome = _compute(plan, replace(options, resume=resume))
+        except BaseException:
+            remove_scene_alone(out)
+            raise
         _write(outcome, out)
     return outcome
 
 
 def _begin(scene: Scene, out: Path) -> None:
-    """Move the files of an older run aside and write the scene."""
-    from fem_impact.files.atomic import write_text
+    """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
+    from fem_impact.errors import OutputPathError
+    from fem_impact.files.atomic import read_text, write_text
     from fem_impact.files.run_directory import set_aside
     from fem_impact.scene.write import to_toml
 
-    set_aside(out)
-    write_text(out / "scene.toml", to_toml(scene))
+    path, text = out / "scene.toml", to_toml(scene)
+    if set_aside(out) is None and path.exists() and read_text(path) != text:
+        raise OutputPathError(
+            f"{path}: is no file of a run, and the run would replace it. Choose another place."
+        )
+    write_text(path, text)
 
 
 def _compute(plan: Plan, options: RunOptions) -> Outcome:

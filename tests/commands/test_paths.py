@@ -6,8 +6,14 @@ import sys
 from pathlib import Path
 
 import pytest
+from outcome_maker import outcome as an_outcome
 
+import fem_impact
+from fem_impact.errors import OutputPathError
+from fem_impact.options import RunOptions
 from fem_impact.render.timeline import Span
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import to_toml
 
 
 def refused(cli, stand, *words):
@@ -41,6 +47,64 @@ def test_an_output_among_other_files(cli, stand):
     assert "other files" in err
 
 
+MINE = {
+    "a store below beside my file": ("important.txt", "any/store.sqlite"),
+    "a result below beside my file": ("important.txt", "any/outcome.json"),
+    "an empty store": ("store.sqlite",),
+    "a result of another program": ("outcome.json",),
+    "a scene": ("scene.toml",),
+    "a scene and a table": ("history.csv", "scene.toml"),
+    "a scene below": ("sub/scene.toml",),
+}
+
+
+@pytest.mark.parametrize("names", MINE.values(), ids=MINE)
+def test_an_output_that_only_looks_like_results(cli, stand, names):
+    for name in names:
+        Path("home", name).parent.mkdir(parents=True, exist_ok=True)
+        Path("home", name).write_text("" if name.endswith("sqlite") else "mine")
+    code, err = refused(cli, stand, "run", "t5b", "--out", "home")
+    assert code == 4
+    assert f"other files, such as {names[0].split('/')[0]}" in err
+
+
+def test_a_file_among_results_is_named_and_kept(cli):
+    line = ("run", "t5b", "--fidelity", "rigid", "--quiet", "--out", "here")
+    assert cli(*line)[0] == cli(*line)[0] == 0
+    Path("here/notes.txt").write_text("mine")
+    code, _, err = cli(*line)
+    assert code == 4
+    assert "other files, such as notes.txt" in err
+
+
+def test_the_scene_that_a_run_reads_is_not_replaced(cli):
+    mine = "# mine\n" + to_toml(load("t5b"))
+    Path("scene.toml").write_text(mine)
+    code, _, err = cli("run", "scene.toml", "--fidelity", "rigid", "--out", ".")
+    assert code == 4
+    assert "other files, such as scene.toml" in err
+    with pytest.raises(OutputPathError, match="is no file of a run"):
+        fem_impact.simulate(load("t5c"), "rigid", RunOptions(out=Path()))
+    assert Path("scene.toml").read_text() == mine
+
+
+def test_a_run_that_ends_before_it_computes_leaves_no_scene(monkeypatch):
+    def stop(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("fem_impact.run.rigid.rigid_outcome", stop)
+    with pytest.raises(KeyboardInterrupt):
+        fem_impact.simulate(load("t5b"), "rigid", RunOptions(out=Path("here")))
+    assert list(Path("here").iterdir()) == []
+
+
+def test_a_sweep_and_a_verdict_go_on_in_their_directories(cli):
+    sweep = ("sweep", "t5b", "--vary", "impact.angle=30,40deg", "--fidelity", "rigid", "--quiet")
+    verdict = ("assess", "t5b", "--fidelity", "modal")
+    for line in (sweep, verdict):
+        assert [cli(*line, "--out", line[0])[0] for _ in range(2)] == [0, 0]
+
+
 def test_an_output_that_cannot_be_made(cli, stand):
     code, err = refused(cli, stand, "run", "t5b", "--out", "/proc/nowhere/results")
     assert code == 4
@@ -62,8 +126,7 @@ def test_a_run_that_was_not_finished_says_how_to_go_on(cli):
 
 
 def test_a_second_run_may_take_the_place_of_results(cli, stand):
-    Path("here").mkdir()
-    Path("here/outcome.json").write_text("{}")
+    an_outcome().write(Path("here/outcome.json"))
     assert cli("run", "t5b", "--out", "here", "--quiet")[0] == 0
 
 

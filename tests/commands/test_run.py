@@ -191,3 +191,15 @@ def test_a_spoiled_checkpoint_is_refused_by_the_command(cli, tmp_path):
     code, out, err = cli("run", "t5b", *words, "--resume", "--quiet", "--out", "here")
     assert (code, out) == (5, "")
     assert "is damaged" in err and "Run again without --resume to start anew." in err
+
+
+def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
+    stand.outcome = stand.an_outcome(
+        E_plastic_rod_over_E_0=0.0,
+        E_locked_rod_over_E_0=4e-5,
+        E_plastic_barrier_over_E_0=0.2,
+        E_locked_barrier_over_E_0=0.01,
+    )
+    out = cli("run", "t5b", "--quiet")[1]
+    assert "elastic energy left in rod         0.004 %" in out
+    assert "residual stress in barrier         1.000 %" in out

@@ -209,3 +209,29 @@ def test_friction_that_is_not_known_for_a_material_is_told_in_every_fidelity(fid
     scene = replace_all(load("t5b"), {"projectile.material": "aluminium-6061-t6"})
     told = simulate(scene, fidelity).validity.warnings
     assert any("friction" in sentence.lower() and "aluminium-6061-t6" in sentence for sentence in told)
+
+
+SOFT_TIP = {"projectile.material": "copper"}
+
+
+@pytest.mark.parametrize(
+    ("changes", "where"),
+    [({"effects": ["auto", "barrier-rigid"]}, "tip"), ({}, "tip"), (None, "barrier")],
+    ids=["rigid barrier", "both may yield", "steel tip"],
+)
+def test_the_skin_and_the_dent_are_those_of_the_body_that_flows(changes, where):
+    scene = load("t5b") if changes is None else replace_all(load("t5b"), SOFT_TIP | changes)
+    outcome = simulate(scene, "modal")
+    energy, told = outcome.energy, " ".join(outcome.validity.assumptions)
+    assert f"the dent that the first one left in the {where}." in told
+    if changes is None:
+        assert energy.skin > energy.friction
+    elif changes:
+        assert energy.skin == energy.friction
+        assert energy.plastic_barrier == 0.0
+    else:
+        assert "the softer body alone yields" in energy.skin.reason
+
+
+def test_no_dent_where_nothing_yields():
+    assert "dent" not in " ".join(simulate(load("elastic-frictionless"), "modal").validity.assumptions)
