@@ -42,7 +42,7 @@ def cost(options: Options) -> int:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
     require_turned(scene, "a ladder of costs")
-    names, family = chosen(asked, scene), _family(scene, options.finest)
+    names, meshes = chosen(asked, scene), _meshes(scene, options.finest)
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
@@ -52,9 +52,9 @@ def cost(options: Options) -> int:
     from fem_impact.study.cost_report import answers, scene_report
 
     with directory_lock(out):
-        study = _measured(scene, out, options, family, budget or inf)
+        study = _measured(scene, out, options, meshes, budget or inf)
         notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
-    told = [*_left_out(scene, family, study, budget), *answers(study, names, target, budget)]
+    told = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
     if target is not None:
         told.append(pair_sentence(study.settings, study.quantities, names, target))
     if options.json:
@@ -96,41 +96,42 @@ def _share(text: str) -> float:
         raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
 
 
-def _family(scene: Scene, finest: str) -> list[Mesh]:
+def _meshes(scene: Scene, finest: str) -> list[Mesh]:
     """Return the meshes whose tip elements are at least ``finest`` in size."""
-    from fem_impact.cost.settings import FAMILY
+    from fem_impact.cost.settings import family
     from fem_impact.scene.units import option_quantity
 
     least = option_quantity(finest, "length", "--finest") if finest else 0.0
-    sizes = [mesh.sizes(scene)[0] for mesh in FAMILY]
-    if least > sizes[1]:
+    meshes = family(scene)
+    sizes = [mesh.sizes(scene)[0] for mesh in meshes]
+    if least > sizes[:2][-1]:
         raise UsageError(
             "leaves fewer than two meshes.",
             key="--finest",
             value=finest,
-            remedy=f"Give at most {1e3 * sizes[1]:.3g} mm.",
+            remedy=f"Give at most {1e3 * sizes[:2][-1]:.3g} mm.",
         )
-    return [mesh for mesh, size in zip(FAMILY, sizes, strict=True) if size >= least]
+    return [mesh for mesh, size in zip(meshes, sizes, strict=True) if size >= least]
 
 
 def _measured(
-    scene: Scene, out: Path, options: Options, family: list[Mesh], budget: float = inf
+    scene: Scene, out: Path, options: Options, meshes: list[Mesh], budget: float = inf
 ) -> CostStudy:
     """Run all settings, or with ``--stored`` read those that have run."""
     from fem_impact.cost.measure import judge_stored, measure
 
     with closing(chosen_meter(options)) as meter:
         if options.stored:
-            return judge_stored(scene, out, meter, family)
-        return measure(scene, out, meter, family, budget_s=budget)
+            return judge_stored(scene, out, meter, meshes)
+        return measure(scene, out, meter, meshes, budget_s=budget)
 
 
-def _left_out(scene: Scene, family: list[Mesh], study: CostStudy, budget: float | None) -> list[str]:
+def _left_out(scene: Scene, meshes: list[Mesh], study: CostStudy, budget: float | None) -> list[str]:
     """Return a sentence that names the settings that the budget left out."""
     from fem_impact.cost.settings import ladder
 
     done = {one.name for one in study.settings} | {failure["setting"] for failure in study.failures}
-    missing = [setting.name for setting in ladder(scene, family) if setting.name not in done]
+    missing = [setting.name for setting in ladder(scene, meshes) if setting.name not in done]
     return [f"Not run within {budget:.3g} s: {', '.join(missing)}."] if budget and missing else []
 
 
@@ -147,7 +148,7 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
 
     stated_page = asked_page(options)
     scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
-    families = {name: _family(scene, options.finest) for name, scene in scenes.items()}
+    families = {name: _meshes(scene, options.finest) for name, scene in scenes.items()}
     out = checked_out(options.out or Path("results") / "cost" / PAPER)
     costs: dict[str, CostStudy] = {}
     with directory_lock(out):

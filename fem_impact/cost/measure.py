@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.cost.judge import Judged, front, judge
 from fem_impact.cost.limits import Placed, Truth, truths
 from fem_impact.cost.quantities import QUANTITIES
-from fem_impact.cost.settings import FAMILY, PLAIN, Mesh, Setting, ladder, on_mesh
+from fem_impact.cost.settings import Mesh, Setting, family, ladder, on_mesh
 from fem_impact.errors import RunError, UsageError
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
@@ -90,7 +90,7 @@ def measure(
     scene: Scene,
     out: Path,
     progress: ProgressMeter,
-    family: Sequence[Mesh] = FAMILY,
+    meshes: Sequence[Mesh] = (),
     executor: Executor | None = None,
     budget_s: float = inf,
 ) -> CostStudy:
@@ -105,7 +105,7 @@ def measure(
     RunError
         Fewer than two meshes gave a result, so nothing is known of the limit.
     """
-    settings = affordable(ladder(scene, family), budget_s)
+    settings = affordable(ladder(scene, meshes), budget_s)
     jobs = _jobs(settings)
     # a process of its own for every run: its peak memory is its own
     processes = LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor)
@@ -140,9 +140,7 @@ def _expected(job: Job) -> float:
     return plan(job.scene).size.time if job.fidelity == "solid" else 0.0
 
 
-def judge_stored(
-    scene: Scene, out: Path, progress: ProgressMeter, family: Sequence[Mesh] = FAMILY
-) -> CostStudy:
+def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Sequence[Mesh] = ()) -> CostStudy:
     """Judge what `measure` has stored in ``out`` so far, and run nothing.
 
     Raises
@@ -150,7 +148,7 @@ def judge_stored(
     RunError
         As `measure`, and where nothing is stored.
     """
-    settings = ladder(scene, family)
+    settings = ladder(scene, meshes)
     with Store.open(out / STORE) as base:
         results = stored_results(base, _jobs(settings), progress)
     if not results:
@@ -170,7 +168,7 @@ def _jobs(settings: Sequence[Setting]) -> list[Job]:
 def _compile(scene: Scene, executor: Executor) -> None:
     """Compile the kernels by a run of a few steps, so that compilation is no part of a measured time."""
     if not compiled_before():
-        coarse = on_mesh(scene, PLAIN)
+        coarse = on_mesh(scene, family(scene)[0])
         brief = replace(coarse, accuracy=replace(coarse.accuracy, max_time=BRIEF))
         executor.submit(compute, Job("compilation", brief)).result()
 
@@ -190,11 +188,13 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
     if len(meshes) < 2:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    truth, plain = truths(list(meshes.values())), meshes.get(PLAIN, [])[:1]  # the place of the changed runs
+    truth = truths(list(meshes.values()))
+    # an effect is left out at the first place of its mesh
+    whole = {s.name: meshes.get(s.meshes[0], [])[:1] for s in settings if s.kind == "effect"}
     judged = [
-        judge(setting, runs[setting.name], truth, plain if setting.kind == "effect" else None)
+        judge(setting, runs[setting.name], truth, whole.get(setting.name))
         for setting in settings
-        if runs[setting.name] and (plain or setting.kind != "effect")
+        if runs[setting.name] and whole.get(setting.name) != []
     ]
     fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
     marked = [

@@ -9,7 +9,7 @@ from time import perf_counter
 from fem_impact.cost.lanes import below, side_by_side
 from fem_impact.cost.limits import Placed, mesh_limits, mesh_means, truths
 from fem_impact.cost.quantities import TARGETED
-from fem_impact.cost.settings import FAMILY, placed
+from fem_impact.cost.settings import family, placed
 from fem_impact.errors import RunError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -53,7 +53,7 @@ class OwnLadder:
         """
         meshes: list[Placed] = []
         begun, pace = perf_counter(), 0.0  # wall time of the last mesh over the processor time expected of it
-        for mesh in FAMILY:
+        for mesh in family(scene):
             scenes, start = placed(scene, mesh), perf_counter()
             expected = sum(plan(one).size.time for one in scenes)
             if start - begun + pace * expected > self.budget_s:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
+from fem_impact.errors import SceneError
 from fem_impact.jobs.job import Job
 from fem_impact.plan.cells import body_cell, levels_of, rod_cell
 from fem_impact.plan.choose import active
@@ -52,21 +54,22 @@ class Mesh:
 
 OWN = 8  # cells across of a scene that states none
 # from coarse to fine; the barrier's cells, which carry more of the error, are half as large as the rod's
-FAMILY = (Mesh(8, -1, 0), Mesh(12, -1, 0), Mesh(8, 0, 1))
+RUNGS = (Mesh(8, -1, 0), Mesh(12, -1, 0), Mesh(8, 0, 1), Mesh(12, 0, 1), Mesh(8, 1, 2))
+FAMILY = RUNGS[:3]
+"""The meshes of a scene of which all `RUNGS` can be made, see `family`."""
 APART = 2.0  # least ratio of the sizes of a pair: extrapolation of closer meshes amplifies their scatter
-PLAIN = FAMILY[0]  # the coarsest: on it elements, steps and effects are changed
-FINEST = FAMILY[-1]
 # shifts of a meshed barrier's grid along t, in cells at the contact, at each of which a mesh is run; the
 # finest mesh, which scatters least and costs most, at fewer
 PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
 DEFAULT = "default run"  # one run as the scene states it
 FULL = "default run without savings"
 SAVINGS_OFF = {"accuracy.mass_scaling": 1, "accuracy.fine_zone": "even"}
-NUMERICS = {
-    "fully integrated": replace(PLAIN, element="full"),
-    "mean dilatation": replace(PLAIN, element="bbar"),
-    "with half the default step": replace(PLAIN, step=0.45),
+NUMERICS: dict[str, dict[str, Any]] = {
+    "fully integrated": {"element": "full"},
+    "mean dilatation": {"element": "bbar"},
+    "with half the default step": {"step": 0.45},
 }
+"""Changes of elements and step, made on the coarsest mesh, as those of the effects are."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,18 +91,48 @@ class Setting:
     meshes: tuple[Mesh, ...] = ()
 
 
-def ladder(scene: Scene, family: Sequence[Mesh] = FAMILY) -> list[Setting]:
-    """Return the settings in order of cost; the meshes of ``family`` are given from coarse to fine."""
+def can_be_made(scene: Scene) -> bool:
+    """Say whether the mesh that a scene states can be made for it.
+
+    It cannot where its cells leave a wide contact without a fine zone, or where it needs too much memory.
+    """
+    try:
+        plan(scene)
+    except SceneError:
+        return False
+    return True
+
+
+@lru_cache(maxsize=64)
+def family(scene: Scene) -> tuple[Mesh, ...]:
+    """Return the coarsest three meshes that can be made for a scene, from coarse to fine.
+
+    Raises
+    ------
+    SceneError
+        None can be made: the reason of that with the scene's own cells at the tip.
+    """
+    made = [mesh for mesh in RUNGS if can_be_made(on_mesh(scene, mesh))]
+    if not made:
+        plan(on_mesh(scene, FAMILY[-1]))
+    return tuple(made[: len(FAMILY)])
+
+
+def ladder(scene: Scene, meshes: Sequence[Mesh] = ()) -> list[Setting]:
+    """Return the settings in order of cost; ``meshes``, from coarse to fine, are by default the `family`."""
     scene = replace_all(scene, {"save.frames": 0})
     scene = replace(scene, accuracy=replace(scene.accuracy, target=None))  # each setting states its own
     settings = [Setting(kind, kind, kind, ((_job(scene, kind, kind),),)) for kind in ("rigid", "modal")]
-    settings += [_solid(scene, mesh) for mesh in family]
-    settings += _pairs(scene, family)
+    meshes = meshes or family(scene)
+    settings += [_solid(scene, mesh) for mesh in meshes]
+    settings += _pairs(scene, meshes)
     settings.append(Setting(DEFAULT, "default", "solid", ((_job(scene, DEFAULT, "solid"),),)))
     full = _job(replace_all(scene, SAVINGS_OFF), FULL, "solid")
     settings.append(Setting(FULL, "full", "solid", ((full,),)))
-    settings += [_solid(scene, mesh, "numerics", label) for label, mesh in NUMERICS.items()]
-    return settings + _without(scene)
+    settings += [
+        _solid(scene, replace(meshes[0], **changes), "numerics", label) for label, changes in NUMERICS.items()
+    ]
+    return settings + _without(scene, meshes[0])
 
 
 def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
@@ -115,7 +148,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
     """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
-    places = FEWER_PLACES if mesh == FINEST else PLACES
+    places = FEWER_PLACES if mesh == family(scene)[-1] else PLACES
     count = 1 if "barrier-rigid" in active(scene) else len(places)
     return [on_mesh(scene, mesh, place) for place in places[:count]]
 
@@ -141,11 +174,11 @@ def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Se
     return Setting(name, kind, "solid", (jobs[:1] if kind in ONE_PLACE else jobs,), (mesh,))
 
 
-def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[Setting]:
+def _pairs(scene: Scene, meshes: Sequence[Mesh]) -> list[Setting]:
     """Return all pairs of meshes with a ratio of sizes of `APART` or more."""
-    size = {mesh: mesh.sizes(scene)[0] for mesh in family}
+    size = {mesh: mesh.sizes(scene)[0] for mesh in meshes}
     settings = []
-    for coarse, fine in combinations(family, 2):
+    for coarse, fine in combinations(meshes, 2):
         if size[coarse] / size[fine] > APART * (1 - 1e-9):
             name = f"solid {size[coarse] * 1e3:.3g} and {size[fine] * 1e3:.3g} mm extrapolated"
             runs = tuple(_jobs(scene, mesh, _name(scene, mesh)) for mesh in (fine, coarse))
@@ -153,14 +186,16 @@ def _pairs(scene: Scene, family: Sequence[Mesh]) -> list[Setting]:
     return settings
 
 
-def _without(scene: Scene) -> list[Setting]:
-    """Return the scene with each effect left out that can be, and with a simpler barrier."""
+def _without(scene: Scene, mesh: Mesh) -> list[Setting]:
+    """Return the scene with each effect left out that can be, and with a simpler barrier, on a mesh."""
     optional = [name for name in active(scene) if name not in BARRIERS]
     fewer = {f"without {name}": grounded([e for e in active(scene) if e != name]) for name in optional}
     if "barrier-elastoplastic" in active(scene):
         softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in active(scene)]
         fewer["with an elastic barrier"] = grounded(softer)
+    scenes = {label: replace_all(scene, {"effects": names}) for label, names in fewer.items()}
     return [
-        _solid(replace_all(scene, {"effects": names}), PLAIN, "effect", label)
-        for label, names in fewer.items()
+        _solid(one, mesh, "effect", label)
+        for label, one in scenes.items()
+        if can_be_made(on_mesh(one, mesh))  # its contact is of another width, and so are its cells
     ]

@@ -38,7 +38,7 @@ LEAST_PAIRS = 2
 """Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
 
 LACKING = "There is no reduced model of {}: finite elements alone answer."
-COUNT = ("first", "second", "third", "fourth")
+COUNT = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
 
 Tell = Callable[[str], object]
 

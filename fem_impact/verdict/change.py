@@ -10,9 +10,8 @@ from typing import TYPE_CHECKING, Literal
 
 from fem_impact.cost.lanes import side_by_side
 from fem_impact.cost.limits import pair_limit
-from fem_impact.cost.settings import FAMILY, Mesh, on_mesh
+from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.effects.slots import bodies_of
-from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
@@ -29,8 +28,8 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-FINE_TIP = Mesh(8, 0, 0)
-"""Finer at the rod's tip only: enough where the rod's cells resolve the contact, and the cheapest."""
+FINE_TIPS = tuple(replace(mesh, tip=mesh.tip + 1) for mesh in RUNGS if mesh.across == OWN)
+"""Finer at the rod's tip only: enough where the rod's cells resolve the contact, and cheaper."""
 FINER = 0.9
 """A mesh counts as finer if the cells at its contact are below this share of those before."""
 
@@ -146,8 +145,8 @@ def modal_change(scene: Scene, pair: Pair) -> Change:
 class Ladder:
     """Twins on finite-element meshes of a scene, from coarse to fine.
 
-    The first mesh is the coarsest of `FAMILY` that can be made; then follows, each time, the cheapest whose
-    cells at the contact are finer than all before.
+    The first mesh is the coarsest of `RUNGS` that can be made; then follows, each time, the cheapest of them
+    and of `FINE_TIPS` whose cells at the contact are finer than all before.
 
     Attributes
     ----------
@@ -178,10 +177,10 @@ class Ladder:
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""
         if not self.meshes:
-            return next((mesh for mesh in FAMILY if self._made(mesh)), None)
+            return next(filter(self._made, RUNGS), None)
         edge = FINER * min(map(self._edge, self.meshes))
-        finer = [mesh for mesh in (*FAMILY[1:], FINE_TIP) if self._made(mesh) and self._edge(mesh) < edge]
-        return min(finer, key=self._expected, default=None)
+        finer = (mesh for mesh in (*RUNGS, *FINE_TIPS) if self._edge(mesh) < edge)
+        return min(filter(self._made, finer), key=self._expected, default=None)
 
     def expected_s(self, mesh: Mesh) -> float:
         """Return the wall time, s, that a mesh is expected to take, scaled by what the others took."""
@@ -276,12 +275,7 @@ class Ladder:
         return max(each) if self.workers > 1 else sum(each)
 
     def _made(self, mesh: Mesh) -> bool:
-        """Say whether the mesh can be made: the fine zone of a coarse tip may be missing."""
-        try:
-            self._expected(mesh)
-        except SceneError:
-            return False
-        return True
+        return all(can_be_made(on_mesh(one, mesh)) for one in twins(self.scene))
 
     def _edge(self, mesh: Mesh) -> float:
         """Return the size, m, of the cells that resolve the contact."""

@@ -2,12 +2,13 @@
 
 import pytest
 from cost_fakes import Here, run
+from wide_contact import WIDE
 
 import fem_impact.run.simulate
 from fem_impact.cost import own_ladder, to_target
 from fem_impact.cost.measure import affordable, measure
 from fem_impact.cost.own_ladder import OwnLadder
-from fem_impact.cost.settings import FAMILY, ladder, placed
+from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, family, ladder, on_mesh, placed
 from fem_impact.cost.to_target import settle
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import RunOptions
@@ -51,6 +52,28 @@ def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
     outcome = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=60.0)
     assert outcome.validity.accuracy_setting.startswith("1 meshes of its own")
     assert isinstance(outcome.validity.achieved_error, Unknown)
+
+
+def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
+    """Cells twice as large as its own leave the tip of a soft rod as coarse as the rod."""
+    assert family(FAR) == FAMILY
+    with pytest.raises(SceneError, match="leaves the tip as coarse as the rod"):
+        plan(on_mesh(WIDE, FAMILY[0]))
+    assert family(WIDE) == RUNGS[2:] == (Mesh(OWN, 0, 1), Mesh(12, 0, 1), Mesh(OWN, 1, 2))
+    outcome = to_target.simulate(replace(WIDE, "accuracy", "0.001 %"), budget_s=1e9)
+    assert outcome.validity.accuracy_setting.startswith("3 meshes of its own")
+    assert outcome.cost.tip_size == pytest.approx(family(WIDE)[-1].sizes(WIDE)[0])
+    assert [len(placed(WIDE, mesh)) for mesh in family(WIDE)] == [4, 4, 2]
+
+
+def test_a_cost_study_has_no_setting_that_cannot_be_made(fake, tmp_path):
+    study = measure(WIDE, tmp_path, NullMeter(), executor=Here())
+    assert not study.failures
+    assert sum(one.kind == "mesh" for one in study.settings) == len(FAMILY)
+    assert {one.kind for one in study.settings} >= {"numerics", "effect", "pair"}
+    for setting in ladder(WIDE):
+        for job in (one for runs in setting.runs for one in runs if one.fidelity == "solid"):
+            assert plan(job.scene).size.time > 0
 
 
 def test_a_cost_study_runs_what_its_budget_holds(fake, tmp_path):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from own_bodies import taper, write
+from wide_contact import WIDE
 
 from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
@@ -20,7 +21,7 @@ from fem_impact.scene.shipped import load, replace_all
 from fem_impact.verdict import assess as assess_module
 from fem_impact.verdict import change as change_module
 from fem_impact.verdict.assess import assess
-from fem_impact.verdict.change import FINE_TIP, Change, Ladder, modal_change, modal_pair
+from fem_impact.verdict.change import FINE_TIPS, Change, Ladder, modal_change, modal_pair
 from fem_impact.verdict.dropped import dropped
 from fem_impact.verdict.reliability import beside, known_error, stored
 from fem_impact.verdict.screening import screening
@@ -177,7 +178,7 @@ def test_auto_takes_meshes_until_the_answer_is_clear(monkeypatch):
 
 
 def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
-    meshed(monkeypatch, [0.0, 0.008, 0.008])
+    meshed(monkeypatch, [0.0, *(0.008,) * 4])
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert found.answer == "undecided"
     assert any("No finer mesh is tried" in note for note in found.notes)
@@ -185,7 +186,7 @@ def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
 
 def test_one_mesh_that_the_reduced_model_contradicts_does_not_decide(monkeypatch):
     """An aluminium rod's coarse mesh said no, with a band in which no finer mesh lay."""
-    asked = meshed(monkeypatch, [-0.4, 0.0, 0.0])
+    asked = meshed(monkeypatch, [-0.4, *(0.0,) * 4])
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert len(asked) > 1  # the first mesh alone says no beyond its band
     assert found.answer == "undecided"
@@ -208,7 +209,7 @@ def test_the_next_mesh_is_the_cheapest_with_finer_cells_at_the_contact():
     for ladder in (soft, steel):
         assert ladder.following() == FAMILY[0]
         ladder.meshes.append(FAMILY[0])
-    assert soft.following() == FINE_TIP
+    assert soft.following() == FINE_TIPS[0]
     assert steel.following() == FAMILY[1]
 
 
@@ -224,6 +225,17 @@ def test_the_first_mesh_is_the_coarsest_that_can_be_made():
     for name in ("sphere-cone", "ogive", "tube"):
         ladder = Ladder.of(load(name), 1.0, 2)
         assert plan(on_mesh(load(name), ladder.following())).size.rod > 0
+
+
+@pytest.mark.parametrize("scene", [load("t5b"), WIDE])
+def test_finer_meshes_follow_down_to_a_quarter_of_the_first(scene):
+    """Meshes finer than a scene's own can be made, though none that is coarser can under a wide contact."""
+    ladder, edges = Ladder.of(scene, 1.0, 2), []
+    while (mesh := ladder.following()) is not None:
+        edges.append(ladder._edge(mesh))
+        ladder.meshes.append(mesh)
+    assert edges == sorted(edges, reverse=True)
+    assert edges[-1] <= 0.25 * edges[0] * (1 + 1e-9)
 
 
 def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
