@@ -28,7 +28,7 @@ from fem_impact.study.inputs import (
     sensitivity_jobs,
     sensitivity_rows,
 )
-from fem_impact.study.pairs import COARSER, PLACES, resized, shifted, with_limits
+from fem_impact.study.pairs import PLACES, finer_and_coarser, shifted, with_limits
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import DASH, Table
 from fem_impact.tables.text import plain
@@ -39,7 +39,6 @@ if TYPE_CHECKING:
 
 # elements of the rod twice as large as its own, those of the plate as they are, a third of the frames
 QUICK = {"accuracy.tip_size": "0.6 mm", "accuracy.barrier_size": "0.3 mm", "save.frames": 40}
-NO_FILM = {"save.frames": 0}  # a film is made of the finer mesh; storing frames takes a tenth of a quick run
 QUICK_SETS = ("t3-machined", "t4", "t5b")
 HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
 
@@ -59,9 +58,9 @@ def mesh_jobs(name: str, quick: bool, out: Path) -> dict[str, Job]:
     set_id = scene.id
     if quick:
         scene = replace_all(scene, QUICK)
-    coarse = replace_all(resized(scene, COARSER), NO_FILM if quick else {})
+    fine, coarse = finer_and_coarser(scene)
     coarse_job = Job(f"{set_id}-coarse", coarse, out=out / f"{set_id}-coarse")
-    meshes = {"fine": Job(set_id, scene, out=out / set_id), "coarse": coarse_job}
+    meshes = {"fine": Job(set_id, fine, out=out / set_id), "coarse": coarse_job}
     if quick:
         return meshes
     return meshes | {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
@@ -125,7 +124,7 @@ def sets_report(
         sentences,
         sheets=[
             Sheet("comparison", "Every compared quantity", Table.of(COMPARISON, comparison), shown=False),
-            Sheet("beside", BESIDE, beside),
+            Sheet("beside", BESIDE.format(_banded(outcomes)), beside),
             Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
             *_limits(outcomes),
             *(_input_sheets(changed, explained) if changed else ()),
@@ -163,9 +162,17 @@ def miss_sentence(explained: Sequence[Row]) -> str:
 
 
 BESIDE = (
-    "Model, with the band of its two meshes, / measured mean with standard deviation; bold: inside the 95 % "
-    "interval of the mean, ?: undecided by the mesh"
+    "Model{} / measured mean with standard deviation; bold: inside the 95 % interval of the mean, "
+    "?: undecided by the mesh"
 )
+
+
+def _banded(outcomes: Sequence[Outcome]) -> str:
+    """Return which sets have the band of two meshes."""
+    without = [o.provenance.scene_id for o in outcomes if or_none(o.validity.mesh_band) is None]
+    if len(without) == len(outcomes):
+        return " on one mesh, without a band,"
+    return ", with the band of its two meshes" + (f" (one mesh: {', '.join(without)})," if without else ",")
 
 
 def with_spread(value: float, spread: float | None, digits: int) -> str:

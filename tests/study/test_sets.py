@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from study_fakes import outcome
+from wide_contact import WIDE
 
 from fem_impact.cost.limits import LOWEST
 from fem_impact.jobs.job import Failure
@@ -13,10 +14,12 @@ from fem_impact.plan.plan import plan as plan_of
 from fem_impact.progress import NullMeter
 from fem_impact.report.study_data import read_study
 from fem_impact.report.study_page import study_page
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.study.catalogue import run_study
 from fem_impact.study.document import SCHEMA, Request
 from fem_impact.study.inputs import INPUT_CHANGES
-from fem_impact.study.sets import COARSER, QUICK_SETS, conclude, jobs_of, plan
+from fem_impact.study.pairs import COARSER, finer_and_coarser
+from fem_impact.study.sets import QUICK_SETS, conclude, jobs_of, plan
 from fem_impact.tables.table import read_csv
 
 
@@ -75,6 +78,18 @@ def test_a_failing_coarse_mesh_leaves_the_fine_result_without_bands(tmp_path):
     assert "run t5b-coarse failed" in row["reasons"]["mesh_band"]
 
 
+@pytest.mark.parametrize(
+    ("broken", "said"),
+    [
+        ((), "Model, with the band of its two meshes, /"),
+        (("t5b-coarse",), "Model, with the band of its two meshes (one mesh: t5b), /"),
+        (("t5b-coarse", "t5c-coarse"), "Model on one mesh, without a band, /"),
+    ],
+)
+def test_the_table_says_which_sets_have_a_band(tmp_path, broken, said):
+    assert said in study(tmp_path, "t5b", "t5c", broken=broken).text
+
+
 def test_a_first_look_is_one_set_a_rod(tmp_path):
     assert [job.name for job in plan(Request(tmp_path, quick=True), {})][::2] == list(QUICK_SETS)
 
@@ -109,3 +124,15 @@ def test_the_coarser_twin(tmp_path):
     assert coarse.accuracy.tip_size == pytest.approx(COARSER * plan_of(fine).zones.tip_size, rel=1e-5)
     assert coarse.save.frames == 0
     assert replace(coarse, accuracy=fine.accuracy, save=fine.save) == fine
+
+
+def test_a_scene_that_cannot_be_made_coarser_is_the_coarser_twin(tmp_path):
+    """The quick cells are as large as those of a thin rod can be: twice as large, nothing could yield."""
+    thin = replace_all(load("t5b"), {"projectile.diameter": "10 mm", "accuracy.tip_size": "0.6 mm"})
+    for scene in (WIDE, thin):
+        fine, coarse = finer_and_coarser(scene)
+        sizes = [plan_of(one).zones.tip_size for one in (fine, coarse, scene)]
+        assert sizes[1] == sizes[2] == pytest.approx(COARSER * sizes[0])
+        assert (fine.save, coarse.save.frames) == (scene.save, 0)
+        assert coarse.accuracy.unresolved == "report"
+        assert fine.accuracy.unresolved == scene.accuracy.unresolved
