@@ -223,7 +223,7 @@ def settle(
     except NotMeasured as missing:
         if fidelity not in (None, "solid"):
             raise
-        return OwnLadder(scene.accuracy.target or 0.0, budget_s, missing.problem)
+        return OwnLadder.of(scene, budget_s, workers, missing.problem)
 
 
 def simulate(
@@ -253,7 +253,7 @@ def simulate(
     chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):
         if isinstance(chosen, OwnLadder):
-            return chosen.simulate(scene, options, workers)
+            return chosen.simulate(options, workers)
         meshes, wall_s = _runs(scene, chosen, options, workers)
         outcome = _stated(chosen, wall_s, meshes)
         if options.out is not None:

@@ -7,7 +7,7 @@ from wide_contact import WIDE
 import fem_impact.run.simulate
 from fem_impact.cost import own_ladder, to_target
 from fem_impact.cost.measure import affordable, measure
-from fem_impact.cost.own_ladder import OwnLadder
+from fem_impact.cost.own_ladder import ALONE, OwnLadder
 from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, family, ladder, on_mesh, placed
 from fem_impact.cost.to_target import settle
 from fem_impact.errors import SceneError, UsageError
@@ -50,8 +50,52 @@ def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
     monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
     outcome = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=60.0)
-    assert outcome.validity.accuracy_setting.startswith("1 meshes of its own")
-    assert isinstance(outcome.validity.achieved_error, Unknown)
+    stated = outcome.validity
+    assert stated.accuracy_setting.startswith("1 mesh of its own")
+    assert stated.achieved_error == stated.mesh_limit == stated.mesh_band == ALONE  # a mean is no limit
+
+
+def asked(monkeypatch, budget_s, workers=1):
+    """Return the ladder of `FAR` in a budget, the mesh and place of each of its runs, and its outcome."""
+    places = []
+
+    def noted(scene, *rest):
+        places.append((scene.accuracy.tip_size, scene.accuracy.grid_shift))
+        return run(scene, *rest)
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", noted)
+    chosen = settle(FAR, workers=workers, budget_s=budget_s)
+    return chosen, places, to_target.simulate(FAR, workers=1, chosen=chosen)
+
+
+def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(monkeypatch):
+    sizes = [mesh.sizes(FAR)[0] for mesh in FAMILY]
+    one, both = (sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:n]) for n in (1, 2))
+    chosen, places, outcome = asked(monkeypatch, 0.5 * one)
+    assert places == [(pytest.approx(sizes[0]), 0.0)]
+    assert (chosen.least_s, chosen.pair_s) == pytest.approx((one, both))
+    assert outcome.validity.expected_wall == chosen.least_s
+    assert f"about {float(f'{one:.2g}'):.0f} s, which exceeds the budget" in chosen.sentence
+    assert "error stays unknown" in chosen.sentence and '--budget "' in chosen.sentence
+    chosen, places, _ = asked(monkeypatch, 0.5 * (one + both))
+    assert len(places) == 1 and "exceeds" not in chosen.sentence
+
+
+def test_a_budget_below_all_places_of_two_meshes_takes_one_place_each(monkeypatch):
+    both = sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:2])
+    chosen, places, outcome = asked(monkeypatch, 1.5 * both)
+    assert {place for _, place in places} == {0.0} and len(places) >= 2
+    assert outcome.validity.achieved_error > 0
+    assert f"about {float(f'{both:.2g}'):.0f} s or more" in chosen.sentence
+    assert not [text for text in outcome.validity.warnings if "budget" in text]
+    assert asked(monkeypatch, 10 * both)[1][:4] == [(places[0][0], p) for p in (0.0, 0.25, 0.5, 0.75)]
+
+
+def test_runs_that_exceed_the_budget_say_so(fake, monkeypatch):
+    seconds = iter(range(0, 10000, 40))
+    monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
+    (said,) = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-1:]
+    assert said == "The runs for the wanted error took 120 s, more than the budget of 1 s."
 
 
 def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
