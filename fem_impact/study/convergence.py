@@ -101,7 +101,8 @@ def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row
         means = [fmean(on_mesh) for on_mesh in values]
         row = {"set": name, "quantity": quantity, "tip_size_m": sizes, "values": means}
         apart = [max(on_mesh) - min(on_mesh) for on_mesh in values]
-        rows.append({**row, "fit": limit(sizes, means), "apart": apart})
+        places = min(map(len, values))
+        rows.append({**row, "fit": limit(sizes, means), "apart": apart, "places": places})
     return rows
 
 
@@ -136,7 +137,7 @@ def _pairs(rows: list[Row]) -> list[str]:
     for row in rows:
         meshes = zip(row["tip_size_m"], row["values"], strict=True)
         for (coarse_size, coarse), (fine_size, fine) in combinations(meshes, 2):
-            extrapolated, band = pair_limit(fine, coarse, coarse_size / fine_size)
+            extrapolated, band = pair_limit(fine, coarse, coarse_size / fine_size, row["places"])
             inside.append(abs(extrapolated - row["fit"].value) <= band + 1e-9 * abs(extrapolated))
     if not inside:
         return []

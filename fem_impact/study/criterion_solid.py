@@ -22,7 +22,7 @@ from rigid import LIMIT
 GAMMAS, QUICK_GAMMAS = (10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0), (15.0, 35.0)
 ANGLES, QUICK_ANGLES = (5.0, 20.0, 35.0, 45.0, 60.0, 75.0), (20.0, 45.0)  # degrees
 SURFACES, QUICK_SURFACES = ("contaminated", "machined"), ("machined",)
-FULL, QUICK = Meshes(1.0, COARSER, ()), Meshes(COARSER, COARSER**2, ())
+FULL, QUICK = Meshes(1.0, COARSER, None), Meshes(COARSER, COARSER**2, None)
 ENDS = (10.0, 45.0)  # gammas of the elastic drops that confirm the modal fidelity
 QUICK_ENDS = (14.0,)
 

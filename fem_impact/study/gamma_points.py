@@ -1,4 +1,4 @@
-"""Points of the gamma study: a drop by finite elements on two to four meshes, and without vibration."""
+"""Points of the gamma study: a drop by finite elements on two or three meshes, and without vibration."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ class Meshes:
     """Sizes of the elements at the contact, over those that a scene gets by itself.
 
     Every point has ``own`` and ``second``, the coarser one of its band and the one of the rod that cannot
-    vibrate; those of ``finer``, one after the other, while its band of vibration is wider than wanted.
+    vibrate; ``finer`` is for points whose band of vibration is wider than wanted, None for never.
     """
 
     own: float
     second: float
-    finer: tuple[float, ...]
+    finer: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,30 +134,23 @@ def first_jobs(one: Member, meshes: Meshes) -> list[Job]:
 
 
 def more_jobs(one: Member, meshes: Meshes, results: Results) -> list[Job]:
-    """Return the jobs that the results of a point call for: finer meshes, and one cut at a second contact."""
-    point = point_of(one, replace(meshes, finer=()), results)
-    jobs = [one.first(meshes.own, point.contacts[0].end)] if len(point.contacts) > 1 else []
-    for i, factor in enumerate(meshes.finer):
-        if point_of(one, replace(meshes, finer=meshes.finer[:i]), results).close:
-            break
-        wanted = one.jobs(factor)
-        jobs += wanted
-        if any(job.name not in results for job in wanted):
-            break
-    return jobs
+    """Return the jobs that the results of a point call for: a finer mesh, and one cut at a second contact."""
+    point = point_of(one, replace(meshes, finer=None), results)
+    finer = [] if meshes.finer is None or point.close else one.jobs(meshes.finer)
+    cut = [one.first(meshes.own, point.contacts[0].end)] if len(point.contacts) > 1 else []
+    return [*finer, *cut]
 
 
 def point_of(one: Member, meshes: Meshes, results: Results) -> Point:
     """Return a point from the results of its jobs."""
-    second, own, *finer = (
-        _runs(one.jobs(factor), results) for factor in (meshes.second, meshes.own, *meshes.finer)
-    )
+    own, second = (_runs(one.jobs(factor), results) for factor in (meshes.own, meshes.second))
+    finer = [] if meshes.finer is None else _runs(one.jobs(meshes.finer), results)
     twin = results.get(one.twin(meshes.second).name)
     touches = (or_none(twin.contact.intervals) or ()) if isinstance(twin, Outcome) else ()
     return Point(
         one.name,
         one.drop,
-        _limited([second, own, *finer]),
+        _limited(own, second, finer),
         _vibration(own[0]),
         _vibration(results.get(f"{FIRST}{one.name}")),
         touches[0].duration if touches else None,
@@ -165,17 +158,13 @@ def point_of(one: Member, meshes: Meshes, results: Results) -> Point:
     )
 
 
-def _limited(meshes: Sequence[Sequence[Result]]) -> Result:
-    """Return the run on the finest mesh that knows vibration, with limits; none without the own mesh.
-
-    ``meshes`` are the runs of the second mesh, the own one and the finer ones, in this order.
-    """
-    second, own, *finer = meshes
+def _limited(own: Sequence[Result], second: Sequence[Result], finer: Sequence[Result]) -> Result:
+    """Return the run on the finest mesh that knows vibration, with limits; none without the own mesh."""
     if isinstance(own[0], Failure):
         return own[0]
-    known = [runs for runs in finer if all(_vibration(run) is not None for run in runs)]
-    coarse, fine = [second, own, *known][-2:]
-    return with_limits(fine, coarse)
+    if finer and all(_vibration(run) is not None for run in finer):
+        return with_limits(finer, own)
+    return with_limits(own, second)
 
 
 def _runs(jobs: Sequence[Job], results: Results) -> list[Result]:
