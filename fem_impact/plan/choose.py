@@ -153,9 +153,11 @@ def _forced(name: str, scene: Scene) -> bool:
 
 def _warning(choice: Choice) -> str:
     effect, harm = EFFECTS[choice.name], choice.harm
+    parts = [f"e may be off by about {harm.e:.1g}"] if round(harm.e, 6) else []
+    parts += [f"E_vib may be off by about {harm.E_vib:.1g} of E_0"] if round(harm.E_vib, 6) else []
     return (
         f"{choice.name} is left out by the scene although {effect.measure} is {choice.number:.2g}, above "
-        f"{effect.threshold:g}: e may be off by about {harm.e:.1g}, E_vib by {harm.E_vib:.1g} of E_0."
+        f"{effect.threshold:g}{': ' if parts else ''}{', '.join(parts)}."
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from math import degrees, inf
+from math import degrees, inf, isclose
 from typing import Any
 
 from fem_impact.outcome.groups import Energy
@@ -11,6 +11,8 @@ from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
 from fem_impact.physics.contact import projectile
+from fem_impact.run.common import RESIDUAL_LIMIT
+from fem_impact.run.doubts import ROUND_OFF
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene
@@ -44,16 +46,25 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
 
 def _may(v: Verdict) -> str:
     return (
-        f"{v.answer.upper()}: vibration changes e by {v.here.told} at this inclination, by {v.here.models} "
+        f"{v.answer.upper()}: vibration changes e by {v.here.told}{doubt(v.here)} at this inclination, by "
+        f"{v.here.models} "
         f"(allowed: {v.tolerance:g}). {_anywhere(v)}"
     )
+
+
+def doubt(change: Change) -> str:
+    """Return e of both twins where one of them is out of the range of a plain impact, else nothing."""
+    free, stiff = (known(run.restitution.edge.e) for run in (change.free, change.stiff))
+    if all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
+        return ""
+    return f" (doubtful: e is {free:.3f} with vibration and {stiff:.3f} without it, outside 0 to 1)"
 
 
 def _anywhere(v: Verdict) -> str:
     """Say what holds for other inclinations of the same projectile at the same speed."""
     if v.worst is None:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
-    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {v.worst.told}"
+    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {v.worst.told}{doubt(v.worst)}"
     if v.worst_answer == "yes":
         return f"Rigid theory may be used at other inclinations too: {largest}."
     if v.worst_answer == "undecided":
@@ -123,16 +134,23 @@ def case_sentence(scene: Scene) -> str:
     rod, impact = scene.projectile, scene.impact
     layers = "".join(f"{1e3 * one.thickness:g} mm of {one.material.name} on " for one in scene.barrier.layers)
     return (
-        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {rod.material.name}, "
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {_materials(rod)}, "
         f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {layers}{scene.barrier.material.name}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
     )
 
 
+def _materials(rod: ProjectileSpec) -> str:
+    """Return the material, of a rod of segments each with its end, m from the tip."""
+    parts = [f"{one.material.name} to {1e3 * one.to:g} mm" for one in rod.segments]
+    return ", ".join(parts) or rod.material.name
+
+
 def _form(rod: ProjectileSpec) -> str:
     if rod.shape is None:
-        return f"tip {rod.tip}"
+        round_nose = rod.tip == "B" and isclose(2 * rod.tip_radius, rod.diameter)
+        return "hemispherical nose" if round_nose else f"tip {rod.tip}"
     return rod.shape.name if isinstance(rod.shape, NamedShape) else "mesh" if rod.own_mesh else "profile"
 
 

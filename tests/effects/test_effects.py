@@ -251,6 +251,12 @@ def test_forced_effects_are_kept_and_missed_ones_named():
     assert len(said) == 2
     assert said[0].startswith("friction is left out by the scene although")
     assert said[1].startswith("barrier-elastoplastic is left out")
+    assert "e may be off by about 0.2, E_vib may be off by about" in said[0]
+
+
+def test_what_an_effect_does_not_change_is_not_told():
+    (said,) = neglected(replace(load("t5b"), effects=("auto", "-rod-plasticity")))
+    assert said.startswith("rod-plasticity is left out") and "may be off" not in said
 
 
 def test_a_stronger_barrier_than_needed_is_no_neglect():

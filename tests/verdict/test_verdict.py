@@ -25,7 +25,7 @@ from fem_impact.verdict.change import FINE_TIPS, Change, Ladder, modal_change, m
 from fem_impact.verdict.dropped import dropped
 from fem_impact.verdict.reliability import beside, known_error, stored
 from fem_impact.verdict.screening import screening
-from fem_impact.verdict.sentences import box, document
+from fem_impact.verdict.sentences import box, case_sentence, document, doubt
 from fem_impact.verdict.twins import inclined, twins
 
 ALUMINIUM = {
@@ -477,3 +477,28 @@ def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
     assert f"Next step: {command}\n" in out
     _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.5")
     assert "Next step" not in out
+
+
+@pytest.mark.parametrize(("e", "doubted"), [(0.5, False), (-0.2, True), (1.1, True)])
+def test_a_change_of_e_out_of_the_range_of_a_plain_impact_is_doubted(short, e, doubted):
+    """A change by more than 1 means that e of one twin is below 0 or above 1."""
+    free = short.here.free
+    edge = replace(free.restitution.edge, e=e)
+    here = replace(short.here, free=replace(free, restitution=replace(free.restitution, edge=edge)))
+    assert (f"(doubtful: e is {e:.3f} with vibration" in doubt(here)) is doubted
+    for one in (replace(short, here=here), replace(short, worst=here)):
+        assert ("doubtful" in box(one)[0][1]) is doubted
+
+
+def test_the_case_names_the_nose_and_the_segments(tmp_path):
+    text = """id = "lead"
+projectile = {shape = "hemisphere", length = "150 mm", diameter = "12 mm", segments = [{to = "120 mm", \
+material = "copper"}, {material = "lead"}]}
+barrier = {material = "plate-steel"}
+surface = {state = "machined"}
+impact = {angle = "40 deg", height = "1.5 m"}
+"""
+    (tmp_path / "lead.toml").write_text(text, encoding="utf-8")
+    said = case_sentence(read_toml(tmp_path / "lead.toml"))
+    assert "rod of copper to 120 mm, lead to 150 mm, hemispherical nose, " in said
+    assert "rod of rod-steel, tip B, " in case_sentence(load("t5b"))
