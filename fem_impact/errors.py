@@ -104,11 +104,14 @@ EXIT_CODES: dict[int, str] = {
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
-    """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near."""
+    """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near.
+
+    Hyphens before a name do not make it nearer to another.
+    """
     from difflib import get_close_matches
 
-    by_lower = {candidate.lower(): candidate for candidate in known}
-    near = get_close_matches(name.lower(), by_lower, 1)
+    by_lower = {candidate.lower().lstrip("-"): candidate for candidate in known}
+    near = get_close_matches(name.lower().lstrip("-"), by_lower, 1)
     return f"Did you mean {by_lower[near[0]]}?" if near else otherwise
 
 

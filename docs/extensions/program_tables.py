@@ -65,6 +65,7 @@ def scene_choices() -> str:
     choices = {
         "law of a material": fields.FlowLaw,
         "barrier.boundary": fields.Boundary,
+        "barrier.support": fields.Support,
         "accuracy.element": fields.Element,
         "accuracy.yielding_element": fields.YieldingElement,
         "accuracy.fine_zone": fields.FineZone,

@@ -66,7 +66,9 @@ def add_check(commands: Commands) -> None:
 def add_scenes(commands: Commands) -> None:
     """Add ``scenes``."""
     handler = "fem_impact.commands.run:scenes"
-    add_command(commands, "scenes", "list the shipped scenes", handler, ("fem-impact scenes",))
+    examples = "fem-impact scenes", "fem-impact scenes --materials"
+    parser = add_command(commands, "scenes", "list the shipped scenes, or the materials", handler, examples)
+    parser.add_argument("--materials", action="store_true", help="list the shipped materials instead")
 
 
 def add_sweep(commands: Commands) -> None:

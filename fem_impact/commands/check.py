@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, headed, print_json, say_kept, size_text
+from fem_impact.commands.common import changed_scene, headed, print_json, say_kept, shown_path, size_text
 from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
@@ -32,11 +32,10 @@ LONG = "--long prints every value with its source, flow stresses, and what leavi
 def check(options: Options) -> int:
     """Print what a scene comes to; its full statement, with every value and source, on demand."""
     from fem_impact.plan.plan import plan
-    from fem_impact.run.tests import tests_of
 
     drawing = _drawing_path(options)
     planned = plan(changed_scene(options.scene, options.changes))
-    tests_of(planned.scene)  # refuses a file of tests that cannot be read
+    tests = _tests_lines(planned.scene)  # before the rest: a file of tests that cannot be read is refused
     say_kept(planned.scene, options)
     if drawing:
         _draw(planned.scene, drawing)
@@ -46,8 +45,20 @@ def check(options: Options) -> int:
     else:
         place = Path(options.scene).parent
         sys.stdout.write(_long(planned, statement, place) if options.long else _short(planned, statement))
+        sys.stdout.write("".join(f"{line}\n" for line in tests))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
+
+
+def _tests_lines(scene: Scene) -> list[str]:
+    """Return how many tests a scene names, and what is doubtful about them."""
+    from fem_impact.run.tests import count, doubtful_tests, tests_of
+
+    tests = tests_of(scene)
+    if tests is None:
+        return []
+    lines = wrapped(f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}")
+    return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
 
 
 def _drawing_path(options: Options) -> Path | None:
@@ -243,6 +254,11 @@ def _contact_lines(planned: Plan) -> Iterator[str]:
     more = [f"{key} {value}" for key, value in stated if key not in ("material", "layers")]
     on = "".join(f"{1e3 * one.thickness:.4g} mm of {one.material.name} on " for one in layers)
     yield ", ".join([f"{on}{scene.barrier.material.name}", *more])
+    if scene.barrier.thickness and not scene.barrier.bends:
+        yield (
+            "its thickness changes nothing: a plate on a base is computed as a half-space. "
+            'One that is free underneath and bends: barrier.support = "infinite"'
+        )
     yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
     surface = scene.surface
     low, high = surface.friction_low, surface.friction_high

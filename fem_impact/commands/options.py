@@ -28,6 +28,7 @@ class Options(argparse.Namespace):
     problem: str | None = None
     only: str = ""
     parameters: bool = False
+    materials: bool = False
     page: str = ""
     quick: bool = False
     workers: int | None = None

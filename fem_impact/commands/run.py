@@ -23,11 +23,12 @@ from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
 from fem_impact.options import RunOptions
 from fem_impact.progress import clock_text
-from fem_impact.scene.library import shipped
+from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
+from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.cost.own_ladder import OwnLadder
@@ -77,7 +78,7 @@ def run(options: Options) -> int:
 
 def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     """Print the outcome beside the tests that its scene names."""
-    from fem_impact.run.tests import tests_of
+    from fem_impact.run.tests import count, doubtful_tests, tests_of
     from fem_impact.study.compare import compare
 
     tests = tests_of(scene)
@@ -93,9 +94,9 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
         for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
-    count = max(statistic.n for statistic in tests.statistics().values())
-    sys.stdout.write(f"beside {count} measured tests ({shown_path(str(scene.measured))}):\n")
+    sys.stdout.write(f"beside {count(tests)} measured tests ({shown_path(str(scene.measured))}):\n")
     print_table(Table.of(head, rows, left=(0, 4)), options, indent="  ")
+    sys.stdout.writelines(f"{line}\n" for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}"))
 
 
 def _say_screening(scene: Scene, options: Options) -> None:
@@ -163,13 +164,30 @@ def _default_out(scene: Scene, options: Options) -> Path:
 
 
 def scenes(options: Options) -> int:
-    """List the shipped scenes."""
+    """List the shipped scenes, or the shipped materials."""
+    if options.materials:
+        return _materials(options)
     listed = [_listed(load(name)) for name in shipped()]
     if options.json:
         print_json({"scenes": listed})
     else:
         rows = [[scene[key] for key in ("id", "speed", "title")] for scene in listed]
         print_table(Table.of(("id", "speed", "title"), rows, left=range(3)), options)
+    return 0
+
+
+def _materials(options: Options) -> int:
+    """List the shipped materials with their values."""
+    head = ("material", "E_Pa", "nu", "rho_kg_per_m3", "yield_stress_Pa", "ultimate_stress_Pa")
+    rows = [
+        (name, m.E, m.nu, m.rho, *(x if x < math.inf else None for x in (m.yield_stress, m.ultimate_stress)))
+        for name, m in materials().items()
+    ]
+    if options.json:
+        print_json({"materials": [dict(zip(head, row, strict=True)) for row in rows]})
+    else:
+        told = [(row[0], *("none" if x is None else f"{x:.4g}" for x in row[1:])) for row in rows]
+        print_table(Table.of(head, told), options)
     return 0
 
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
+from fem_impact.arrays import Ints
 from fem_impact.physics.contact import arms, projectile
-from fem_impact.scene.camera import read_camera
+from fem_impact.scene.camera import Camera, read_camera
 from fem_impact.scene.means import Mean, holds_means, read_means
 from fem_impact.scene.types import OWN
-from rigid import Arms
+from rigid import Arms, kinetic_energy
 from rigid.experiments import MeasuredSet, Statistic, measured_set, of_mean
 
 if TYPE_CHECKING:
@@ -58,6 +62,46 @@ def tests_of(scene: Scene) -> Tests | None:
     if not scene.measured.endswith(OWN):
         return measured_set(scene.measured)
     return _own(scene, Path(scene.measured).stat().st_mtime_ns)
+
+
+def count(tests: Tests) -> int:
+    """Return the number of tests, the largest of all quantities."""
+    return max(statistic.n for statistic in tests.statistics().values())
+
+
+FAR = 0.2
+"""Difference from the scene's velocity, over its speed, above which a test is told to be another impact."""
+
+
+def doubtful_tests(scene: Scene) -> list[str]:
+    """Return a sentence on single tests of another impact than the scene's, and on those that gained energy.
+
+    The first such test is named, with both its values. A barrier that moves may give energy.
+    """
+    file = scene.measured or ""
+    if not file.endswith(OWN) or holds_means(file):
+        return []
+    camera, body, fall = read_camera(file), projectile(scene), scene.relative
+    motion, speed, told = camera.motion, hypot(fall.v_n, fall.v_t), []
+    for name, wanted in (("v_n", fall.v_n), ("v_t", fall.v_t)):
+        far = np.flatnonzero(abs(motion[name] - wanted) > FAR * speed)
+        if far.size:
+            own = f"has {name} = {motion[name][far[0]]:.4g} m/s, the scene {wanted:.4g} m/s"
+            told.append(f"{_named(camera, far)} {own}: it is not the scene's impact.")
+    means = {"mass": body.mass, "k2": body.k2}
+    before = kinetic_energy(motion["v_n"], motion["v_t"], scene.impact.omega, **means)
+    after = kinetic_energy(motion["V_n"], motion["V_t"], motion["Omega"], **means)
+    gained = np.flatnonzero(after > before)
+    if gained.size and not (scene.barrier.v_n or scene.barrier.v_t):
+        both = " after ".join(f"{name} = {motion[name][gained[0]]:.4g} m/s" for name in ("V_n", "v_n"))
+        told.append(f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}.")
+    return told
+
+
+def _named(camera: Camera, rows: Ints) -> str:
+    """Return the first of several tests by its name, and how many more there are."""
+    more = f", the first of {len(rows)} like it," if len(rows) > 1 else ""
+    return f"Test {camera.tests[rows[0]]} of {len(camera.tests)}{more}"
 
 
 @lru_cache(maxsize=32)

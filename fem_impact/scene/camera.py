@@ -17,6 +17,8 @@ KINDS = {"v_n": "speed", "v_t": "speed", "V_n": "speed", "V_t": "speed", "Omega"
 ARMS = {"d_c": "length", "d_d": "length"}
 """Columns that may state the arms of the contact with which the tests are to be worked out."""
 HEADER = "v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
+MEANS = "quantity,mean,sd,n"
+"""Header of a file of means (`fem_impact.scene.means`)."""
 LARGEST = 1e6
 """Bound of the size of a velocity, m/s or rad/s."""
 
@@ -78,12 +80,18 @@ def read_camera(path: str | Path) -> Camera:
 
 def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
     """Return name and unit of the column of each quantity; refuse a header that lacks one."""
-    stated = {name: table.quantity(name, dimension) for name, dimension in {**KINDS, **ARMS}.items()}
-    missing = [name for name in KINDS if stated[name] is None]
-    if missing:
+    missing = [name for name in KINDS if not table.stating(name)]
+    if missing and not any(len(table.stating(name)) > 1 for name in KINDS):
         hint = " Separate columns by commas." if any(";" in n or "\t" in n for n in table.names) else ""
+        derived = [name for name in ("e", "mu") if table.stating(name)]
+        means = (
+            f" {' and '.join(derived)} of tests can be given as means only: a file {MEANS}."
+            if derived
+            else ""
+        )
         lacks = f"{table.path}: the header lacks {', '.join(missing)}.{hint}"
-        raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).")
+        raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
+    stated = {name: table.quantity(name, dimension) for name, dimension in {**KINDS, **ARMS}.items()}
     return {name: column for name, column in stated.items() if column}
 
 

@@ -51,10 +51,10 @@ def check_names(value: Any, key: str) -> tuple[str, ...]:
     return tuple(check_text(name, key, 60) for name in names)
 
 
-def check_choice(value: Any, choices: tuple[str, ...], key: str) -> str:
-    """Return one of a few words."""
+def check_choice(value: Any, choices: tuple[str, ...], key: str, other: str = "") -> str:
+    """Return one of a few words; ``other`` says what else may stand there."""
     if value not in choices:
         quoted = [f'"{choice}"' for choice in choices]
-        either = " or ".join([", ".join(quoted[:-1]), quoted[-1]])
+        either = " or ".join([", ".join(quoted[:-1]), quoted[-1], *([other] if other else [])])
         raise SceneError("is not a choice.", key=key, value=value, remedy=f"Use {either}.")
     return str(value)

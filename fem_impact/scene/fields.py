@@ -101,7 +101,14 @@ HEIGHT = Parameter(
 SPEED = Parameter("speed", "speed along the rod's axis", "speed", 1e-6, 500.0, derived=_GIVEN)
 _MASSIVE = "none: the barrier is massive"
 BARRIER = (
-    Parameter("thickness", "thickness of a plate", "length", 1e-5, 10.0, derived="none: a half-space"),
+    Parameter(
+        "thickness",
+        'thickness of a plate; used with support = "infinite"',
+        "length",
+        1e-5,
+        10.0,
+        derived="none: a half-space",
+    ),
     Parameter(
         "span",
         "shortest way across a plate struck in its middle",

@@ -34,6 +34,9 @@ def other_tip(measured: str) -> dict[str, Any]:
     return dict(_table("scenes.toml")["other_tips"].get(measured, {}))
 
 
+ALL_MATERIALS = "All: `fem-impact scenes --materials`; or give a table of values."
+
+
 def materials() -> dict[str, Material]:
     """Return the shipped materials by name, SI units."""
     return {name: _material(name, table) for name, table in _table("materials.toml").items()}
@@ -56,8 +59,8 @@ def _nearest_material(name: str, known: Collection[str]) -> str:
     part = name.lower().replace("aluminum", "aluminium")
     family = [one for one in known if part in one]
     if family not in ([], [part]):
-        return f"Shipped are {', '.join(family)}; or give a table of values."
-    return did_you_mean(part, known, f"Known: {', '.join(known)}; or give a table of values.")
+        return f"Some that are: {', '.join(family)}. {ALL_MATERIALS}"
+    return did_you_mean(part, known, ALL_MATERIALS)
 
 
 def surfaces() -> dict[str, Surface]:

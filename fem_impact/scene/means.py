@@ -9,6 +9,7 @@ from pathlib import Path
 from fem_impact.errors import ResultError, did_you_mean
 from fem_impact.scene.camera import ARMS, LARGEST, one_pair
 from fem_impact.scene.camera import HEADER as TESTS
+from fem_impact.scene.camera import MEANS as HEADER
 from fem_impact.scene.user_table import finite, read_user_table, unit_of
 
 KINDS = {"e": "", "mu": "", "Omega": "angular speed", "V_n": "speed", "V_t": "speed"}
@@ -19,7 +20,6 @@ LIKELY = {
 }
 """Bounds of the means of pure numbers, and what these are; beyond them it is per cent or another quantity."""
 SCATTER = ("sd", "standard_error")
-HEADER = "quantity,mean,sd,n"
 
 
 @dataclass(frozen=True, slots=True)

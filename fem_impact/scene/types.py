@@ -204,7 +204,7 @@ def _check_skin(surface: Surface) -> None:
 
 def _check_measured(name: object) -> None:
     if not (isinstance(name, str) and name.endswith(OWN)):
-        check_choice(name, MEASURED_SETS, "measured")
+        check_choice(name, MEASURED_SETS, "measured", f"the path of a CSV file of your own tests (*{OWN})")
 
 
 def _check_tip_size(scene: Scene) -> None:

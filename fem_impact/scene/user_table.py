@@ -51,6 +51,10 @@ class UserTable:
         """Return place, for complaints, and text of each cell. Raises ResultError as `records`."""
         return [(f"{self.path}: line {line}, column {name}", cells[name]) for line, cells in self.records()]
 
+    def stating(self, key: str) -> list[str]:
+        """Return the names of the columns that state a quantity, in whatever unit."""
+        return [name for name in self.names if _stated(name, key)]
+
     def quantity(self, key: str, dimension: str, bare: Unit | None = None) -> tuple[str, Unit] | None:
         """Return name and unit of the column that states a quantity, None where none does.
 
@@ -65,7 +69,7 @@ class UserTable:
         ResultError
             Two columns state it, or the unit is missing or of another dimension.
         """
-        stated = [name for name in self.names if _stated(name, key)]
+        stated = self.stating(key)
         if len(stated) > 1:
             raise ResultError(f"{self.path}: {key} has two columns, the second is {stated[1]!r}. Keep one.")
         if not stated:

@@ -5,7 +5,7 @@ import re
 
 from fem_impact.effects.registry import EFFECTS, NAMES
 from fem_impact.plan.choose import active
-from fem_impact.scene.library import shipped
+from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest, to_toml
@@ -133,3 +133,19 @@ def test_check_answers_at_both_ends_of_the_angle(cli):
         code, out, _ = cli("check", "t5b", "--set", f"impact.angle={angle}", "--json")
         assert code == 0
         assert json.loads(out)["scene"]["impact"]["angle"] == angle
+
+
+def test_scenes_lists_every_shipped_material(cli):
+    code, out, _ = cli("scenes", "--materials")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[1:]] == list(materials())
+    rows = json.loads(cli("scenes", "--materials", "--json")[1])["materials"]
+    assert {row["material"]: row["E_Pa"] for row in rows} == {name: m.E for name, m in materials().items()}
+
+
+def test_a_thickness_without_support_is_said_to_change_nothing(cli):
+    words = "its thickness changes nothing"
+    plate = ("check", "t5b", "--set", "barrier.thickness=20 mm")
+    assert words in " ".join(cli(*plate)[1].split())
+    assert words not in " ".join(cli(*plate, "--set", "barrier.support=infinite")[1].split())
+    assert words not in " ".join(cli("check", "t5b")[1].split())

@@ -130,3 +130,21 @@ def test_the_schema_of_an_outcome_is_printed(cli):
     code, out, err = cli("schema")
     assert (code, err) == (0, "")
     assert json.loads(out)["properties"]["mu"]["type"] == ["number", "null"]
+
+
+@pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        (("check", "t5b", "--set", "barrier.material=steel"), "fem-impact scenes --materials"),
+        (("check", "t5b", "--set", "barrier.material=unobtainium"), "fem-impact scenes --materials"),
+        (("check", "t5b", "--set", "measured=x"), "or the path of a CSV file of your own tests (*.csv)"),
+        (("report", "here", "--quite"), "Did you mean --quiet?"),
+    ],
+)
+def test_a_refusal_says_what_there_is(cli, line, told):
+    assert told in cli(*line)[2]
+
+
+def test_a_far_option_is_not_proposed(cli):
+    err = cli("report", "here", "--out", "there")[2]
+    assert "there is no option --out." in err and "Did you mean" not in err

@@ -253,6 +253,11 @@ def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
         ("quantity,mean,sd,n\ne,0.3,0.1,8\nmu,40,2,8\n", "line 3: mu = 40 is none of an impact"),
         ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2"),
         ("speed,time\n1,2\n", "the header lacks v_n"),
+        ("e,mu,Omega\n0.3,0.5,5\n", f"lacks v_n, v_t, V_n, V_t. It needs {HEADER}"),
+        (
+            "e,mu,Omega\n0.3,0.5,5\n",
+            "e and mu of tests can be given as means only: a file quantity,mean,sd,n",
+        ),
     ],
 )
 def test_check_refuses_a_file_of_tests_that_cannot_be_used(cli, tmp_path, text, words):
@@ -278,3 +283,34 @@ barrier = { material = "plate-steel" }
 surface = { state = "machined" }
 impact = { angle = "45 deg", v_n = "-1.54 m/s", v_t = "-1.56 m/s" }
 """
+
+
+GOOD = "-1.5,-1.48,0.3,-0.4,4"
+
+
+@pytest.mark.parametrize(
+    ("row", "words"),
+    [
+        (GOOD, ""),
+        ("-3.74,-1.48,0.3,-0.4,4", "warning: Test 2 of 3 has v_n = -3.74 m/s, the scene -1.502 m/s"),
+        ("-1.5,-2.5,0.3,-0.4,4", "warning: Test 2 of 3 has v_t = -2.5 m/s, the scene -1.482 m/s"),
+        (
+            "-1.5,-1.48,3.1,-0.4,4",
+            "more kinetic energy after than before the impact: V_n = 3.1 m/s after v_n = -1.5",
+        ),
+    ],
+)
+def test_check_and_run_count_the_tests_and_name_doubtful_ones(cli, tmp_path, row, words):
+    path = write(tmp_path)
+    (tmp_path / "my_tests.csv").write_text("\n".join([HEADER, GOOD, row, GOOD]) + "\n")
+    for line in (("check",), ("run", "--fidelity", "rigid", "--quiet", "--out", str(tmp_path / "out"))):
+        code, out, _ = cli(line[0], str(path), *line[1:])
+        told = " ".join(out.split())
+        assert code == 0
+        assert "3 tests" in told or "3 measured tests" in told
+        assert words in told
+        assert ("Test 2 of 3" in told) is bool(words)
+
+
+def test_check_counts_published_tests_too(cli):
+    assert "measured: 8 tests, t5b" in cli("check", "t5b")[1]
