@@ -187,7 +187,9 @@ def _say_fall(scene: Scene, changed: set[str]) -> None:
         return
     speed = math.hypot(impact.v_n, impact.v_t)
     if impact.speed:
-        sentence = f"the rod falls along its axis as fast as before, {speed:.4g} m/s"
+        named = scene.projectile.shape
+        falls = "the ball falls" if getattr(named, "name", "") == "ball" else "the rod falls along its axis"
+        sentence = f"{falls} as fast as before, {speed:.4g} m/s"
     else:
         sentence = (
             "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from fem_impact.arrays import Array
 
 
-OUTCOME = tuple(name for name in LEDGER if name not in ("run", "contacts"))
+OUTCOME = (*("V_n_m_per_s", "V_t_m_per_s"), *(name for name in LEDGER if name not in ("run", "contacts")))
 STATE = ("finished", "reason")
 """Columns of how a run ended: whether it came to its end, and why not."""
 

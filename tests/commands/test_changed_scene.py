@@ -41,3 +41,21 @@ def test_a_bore_that_stays_short_is_told(cli, tmp_path):
     bore = 'projectile.bore=[["0 mm", "6 mm"], ["400 mm", "6 mm"]]'
     assert "bore" not in cli("check", "tube", "--set", "projectile.length=0.4 m", "--set", bore)[2]
     assert "bore" not in cli("check", "t5b", "--set", "projectile.length=0.1 m")[2]
+
+
+def test_a_ball_has_no_axis_to_fall_along(cli):
+    Path("ball.toml").write_text(BALL)
+    for scene, falls in (
+        ("ball.toml", "the ball falls as fast"),
+        ("t5b", "the rod falls along its axis as fast"),
+    ):
+        assert falls in " ".join(cli("check", scene, "--set", "impact.angle=20 deg")[2].split())
+
+
+BALL = """
+id = "ball"
+projectile = { shape = "ball", diameter = "25 mm", material = "rod-steel" }
+barrier = { material = "plate-steel" }
+surface = { state = "machined" }
+impact = { angle = "30 deg", speed = "3 m/s" }
+"""

@@ -86,6 +86,9 @@ def test_each_row_is_the_run_of_its_scene(swept):
     alone = fem_impact.simulate(scene, "rigid")
     assert row.outcome.to_dict()["e_edge"] == alone.to_dict()["e_edge"]
     assert np.isfinite(results.numbers("mu")).sum() == 4
+    after = [row.outcome.motion.V_t for row in results if row.outcome]
+    numbers = results.numbers("V_t_m_per_s")
+    assert list(numbers[np.isfinite(numbers)]) == after
 
 
 def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
