@@ -63,7 +63,7 @@ class OwnLadder:
         if self.pair_s <= self.budget_s:
             return (
                 f"{begin} The scene is run on meshes of its own, from coarse to fine, until their band is as "
-                f"narrow or {self.budget_s:.3g} s are used up. About {_whole(self.least_s)} or more."
+                f"narrow or {self.budget_s:.3g} s are used up: about {_whole(self.least_s)} or more."
             )
         over = self.least_s > self.budget_s
         return (
