@@ -83,7 +83,8 @@ class Validity:
         "mesh_band",
         "as the key",
         "Half-width about the limit of two meshes that holds those of all orders from 3/4 up, and the "
-        "standard error of means over places of the barrier's grid.",
+        "standard error of means over places of the barrier's grid; three times as wide where a mesh ran at "
+        "one place.",
     )
 
 

@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
 from fem_impact.cost.lanes import side_by_side
-from fem_impact.cost.limits import pair_limit
+from fem_impact.cost.limits import ALONE, pair_limit
 from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.effects.slots import bodies_of
 from fem_impact.options import RunOptions
@@ -251,7 +251,10 @@ class Ladder:
                 "such meshes were off by on the measured sets: the band holds both, and all limits."
             )
         else:
-            told += "the band holds the limits of all orders of convergence from 3/4 up."
+            told += (
+                f"the band is {ALONE:g} times the range of the limits of all orders of convergence from 3/4 "
+                "up, as each mesh runs once."
+            )
         if self.scene.projectile.own_mesh:
             share, error = self._error(-1)
             band, of_vibration = band + error, of_vibration + share * E_vib
