@@ -167,11 +167,12 @@ def _body(line: FloatArray, bore: FloatArray | None, across: int) -> _Body:
     """Return the body with the section that fits its bore."""
     if line.ndim != 2 or line.shape[1] != 2 or not line[-1, 1] > 0.0 or np.any(np.diff(line[:, 1]) < 0.0):
         raise MeshError("an outline needs rows (rho, z) with z growing from 0 at the tip to the tail")
-    if np.any(np.diff(line[line[:, 1] <= 0.0, 0]) <= 0.0):
+    same = SAME * line[:, 0].max()  # heights, m
+    if np.any(np.diff(line[line[:, 1] <= same, 0]) <= 0.0):
         raise MeshError(
             "the radius of the flat face at the tip shrinks at z = 0: give its points from the axis out"
         )
-    if np.any(np.diff(line[line[:, 1] >= line[-1, 1], 0]) >= 0.0):
+    if np.any(np.diff(line[line[:, 1] >= line[-1, 1] - same, 0]) >= 0.0):
         raise MeshError(
             f"the radius of the flat face at the tail grows at z = {line[-1, 1]:.6g} m: give its points from "
             "the edge in, without a rim of no thickness"

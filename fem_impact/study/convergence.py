@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.cost.limits import limit, pair_limit
-from fem_impact.cost.settings import FAMILY, Mesh, placed
+from fem_impact.cost.settings import FAMILY, Mesh, family, placed
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
@@ -52,7 +52,7 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     The quick study takes the meshes of `QUICK` at the first position.
     """
     plain = replace_all(load(name), {"save.frames": 0})
-    meshes, positions = (QUICK, 1) if quick else (FAMILY, None)
+    meshes, positions = (QUICK, 1) if quick else (family(plain), None)
     return [
         [
             Job(f"{name}-{1e3 * mesh.sizes(plain)[0]:.3f}-{scene.accuracy.grid_shift:g}", scene)
