@@ -85,7 +85,7 @@ class Stop:
 def test_the_impact_is_over_when_the_rod_flies_off():
     stop = Stop(1e-5, V_n=0.5)
     assert stop.over() and stop.rule.finished
-    assert "has no contact" in stop.rule.reason
+    assert "does not touch again" in stop.rule.reason
 
 
 @pytest.mark.parametrize(

@@ -15,15 +15,18 @@ def errors(found):
 
 
 def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
-    """Held to the error of its mesh, a third of a per cent: elements that are 2 % too stiff are noticed."""
-    done = verify("hertz", {"cells": 6, "across": 8, "block": 0, "speed": 4.0})
+    """Held to the error of its mesh, a third of a per cent: elements that are 2 % too stiff are noticed.
+
+    Faster balls miss the linear reference by some .45 (a/R)^2 of the force on every mesh.
+    """
+    done = verify("hertz", {"cells": 4, "across": 8, "block": 0, "speed": 1.0})
     found = errors(done)
     assert done.passed
     assert {c.name: c.tolerance < 0.0045 for c in done.checks[:2]} == {
         "largest force": True,
         "contact time": True,
     }
-    assert found["largest force, Hertz"] > 0.02  # which the closed form would call a failure of the solver
+    assert found["largest force, Hertz"] > 0.015  # which the closed form would call a failure of the solver
     assert abs(found["rebound + radiated energy / E_0"]) < 1e-3
 
 
