@@ -73,8 +73,8 @@ STUDIES = {
         "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, "
         "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
         "26.45, means.",
-        "1407 runs, most with finite elements, some 50 min; where the band is wide a finer mesh follows, as at "
-        "half of the points of the full study: some 1.8 h in all",
+        "1407 runs, most with finite elements, some 50 min; where the band is wide a finer mesh follows, as "
+        "at half of the points of the full study: some 1.8 h in all",
         "five rods on coarse elements: 61 runs, some 2 min",
         1407,
         61,
