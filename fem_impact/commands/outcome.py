@@ -11,7 +11,7 @@ from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import EnergyShare, shares
-from fem_impact.run.common import AGAIN
+from fem_impact.run.common import strikes_again
 from fem_impact.tables.text import wrapped
 
 _MOTION = (
@@ -54,9 +54,8 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     lines += _accuracy(outcome)
     lines += _unknown({**listed, "friction + plate's top 0.1 mm": outcome.energy.skin})
     v = outcome.validity
-    at = v.stopped_because.find(AGAIN)
-    again = [v.stopped_because[at:]] if v.finished and at >= 0 else []
-    notes = (*v.assumptions, *v.outside, *v.warnings, *again)
+    again = strikes_again(outcome.motion.V_n - outcome.barrier.V_bn).strip() if v.finished else ""
+    notes = (*v.assumptions, *v.outside, *v.warnings, *([again] if again else []))
     lines += ["", *(line for sentence in notes for line in wrapped(f"note: {sentence}"))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 

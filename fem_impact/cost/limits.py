@@ -3,8 +3,8 @@
 Two meshes do not determine the order of convergence that Richardson's extrapolation needs. `pair_limit`
 therefore states the band of the limits of all orders from `LOWEST` up (from the mean on the finer mesh, the
 limit of infinite order, to the limit of order `LOWEST`), and its middle as the limit. Where each mesh ran at
-one place of the barrier's grid alone, the scatter by the place is not known, and the band is `ALONE` times
-as wide. Three meshes or more are fitted by least squares (`limit`).
+one place of the barrier's grid alone, the scatter by the place is not known, and the band is
+`ONE_RUN` times as wide. Three meshes or more are fitted by least squares (`limit`).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ LOWEST = 0.75
 # Of 98 pairs of the gamma study, bands of one place held the limit of the next finer pair in 42 (vibration)
 # and 44 (e) cases, three times as wide ones in 91 and 81; with the limit of all meshes of the 13 sets they
 # did in 74 and 91 %. Means of two places do in 90 % as they are.
-ALONE = 3.0
+ONE_RUN = 3.0
 # Standard error of a mean over evenly spaced places, over that of places taken at random. Even places cancel
 # the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two places
 # lay .49, .45 and .60 of the latter from those of four on 0.59, 0.40 and 0.30 mm (medians .25 to .31), means
@@ -101,7 +101,8 @@ def pair_limit(fine: float, coarse: float, ratio: float, places: int = 1) -> tup
     """Return the limit of two meshes and its half-width; ``ratio`` is coarse over fine size.
 
     The band holds the limits of all orders from `LOWEST` up, since two meshes do not determine the order; the
-    limit is its middle. With values from one of the ``places`` of the grid it is `ALONE` times as wide.
+    limit is its middle. Each value is the mean over ``places`` of the grid; with one the band is `ONE_RUN`
+    times as wide.
 
     Examples
     --------
@@ -112,7 +113,7 @@ def pair_limit(fine: float, coarse: float, ratio: float, places: int = 1) -> tup
     0.15
     """
     half = 0.5 * (fine - coarse) / (ratio**LOWEST - 1)
-    return fine + half, abs(half) * (ALONE if places == 1 else 1.0)
+    return fine + half, abs(half) * (ONE_RUN if places == 1 else 1.0)
 
 
 def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import chain
 from time import perf_counter
 
-from fem_impact.cost.lanes import below, side_by_side
+from fem_impact.cost.lanes import below, in_lanes, side_by_side
 from fem_impact.cost.limits import Placed, mesh_limits, truths
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import family, placed
@@ -136,7 +136,7 @@ def achieved_error(meshes: Sequence[Placed]) -> float:
 def expected_s(scenes: Iterable[Scene], workers: int) -> float:
     """Return the wall time, s, that runs side by side are expected to take."""
     times = [plan(one).size.time for one in scenes]
-    return max(sum(times[0::2]), sum(times[1::2])) if workers > 1 else sum(times)
+    return max(map(sum, in_lanes(times, workers)))
 
 
 def _whole(time: float) -> str:

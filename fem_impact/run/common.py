@@ -97,14 +97,11 @@ def validity(
     )
 
 
-AGAIN = "The mass centre still comes down at"
-
-
 def strikes_again(V_n: float) -> str:
     """Return that a mass centre with a normal velocity, m/s, still comes down, nothing if it does not."""
     if V_n > 0:
         return ""
-    return f" {AGAIN} {-V_n:.3g} m/s, so that the rod strikes again later."
+    return f" The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
 
 
 def open_ledger(share: float) -> str:

@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
 from fem_impact.cost.lanes import side_by_side
-from fem_impact.cost.limits import ALONE, pair_limit
+from fem_impact.cost.limits import ONE_RUN, pair_limit
 from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.effects.slots import bodies_of
 from fem_impact.options import RunOptions
@@ -252,8 +252,8 @@ class Ladder:
             )
         else:
             told += (
-                f"the band is {ALONE:g} times the range of the limits of all orders of convergence from 3/4 "
-                "up, as each mesh runs once."
+                f"the band is {ONE_RUN:g} times the range of the limits of all orders of convergence from "
+                "3/4 up, as each mesh runs once."
             )
         if self.scene.projectile.own_mesh:
             share, error = self._error(-1)

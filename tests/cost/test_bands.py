@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from study_fakes import outcome
 
-from fem_impact.cost.limits import ALONE, LOWEST, mesh_limits, mesh_means, pair_limit
+from fem_impact.cost.limits import LOWEST, ONE_RUN, mesh_limits, mesh_means, pair_limit
 from fem_impact.outcome.record import KEYS
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.study.compare import MEASURED, UNSEEN, compare, verdict
@@ -37,7 +37,7 @@ def test_one_run_on_each_mesh_has_a_wider_band_about_the_same_limit():
     fine, coarse = outcome(tip_size_m=3e-4, e_edge=0.30), outcome(tip_size_m=6e-4, e_edge=0.36)
     (limits, bands), (means, narrow) = (mesh_limits([fine] * n, [coarse] * n) for n in (1, 2))
     assert limits["e_edge"] == means["e_edge"]
-    assert bands["e_edge"] == pytest.approx(ALONE * narrow["e_edge"])
+    assert bands["e_edge"] == pytest.approx(ONE_RUN * narrow["e_edge"])
     assert mesh_limits([fine] * 2, [coarse])[1]["e_edge"] == bands["e_edge"]
 
 

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
@@ -11,13 +12,6 @@ from fem_impact.physics.contact import projectile
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 
-M, J, DEPTH, OFFSET = 0.5, 3e-4, 0.03, 0.02
-TURNING = {
-    "barrier.mass": "0.5 kg",
-    "barrier.inertia": "3e-4 kg m2",
-    "barrier.centre_depth": "30 mm",
-    "barrier.centre_offset": "20 mm",
-}
 BALL = {
     "projectile": {"shape": "ball", "diameter": "20 mm", "material": "rod-steel"},
     "impact.angle": "0 deg",

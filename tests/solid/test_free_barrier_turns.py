@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import known
@@ -13,13 +14,6 @@ from fem_impact.solid.ground import Ground
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.rodview import FieldSampler, RodState
 
-M, J, DEPTH, OFFSET = 0.5, 3e-4, 0.03, 0.02
-TURNING = {
-    "barrier.mass": "0.5 kg",
-    "barrier.inertia": "3e-4 kg m2",
-    "barrier.centre_depth": "30 mm",
-    "barrier.centre_offset": "20 mm",
-}
 MESH = {"accuracy.unresolved": "report", "accuracy.max_time": "0.5 ms", "save.frames": 0}
 ROD = MESH | {"accuracy.tip_size": "1 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
 BALL = MESH | {

@@ -7,7 +7,7 @@ import pytest
 from study_fakes import outcome
 from wide_contact import WIDE
 
-from fem_impact.cost.limits import ALONE, LOWEST
+from fem_impact.cost.limits import LOWEST, ONE_RUN
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
 from fem_impact.plan.plan import plan as plan_of
@@ -42,14 +42,14 @@ def test_a_set_is_two_meshes_and_a_table(tmp_path):
     found = study(tmp_path, "t5b")
     (row,) = found.document["rows"]
     half = 0.5 * 100 * 0.59375e-3 / (2**LOWEST - 1)
-    assert row["mesh_band"]["e_paper"] == pytest.approx(ALONE * half)
+    assert row["mesh_band"]["e_paper"] == pytest.approx(ONE_RUN * half)
     assert row["mesh_limit"]["e_paper"] == pytest.approx(row["e_paper"] - half)
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
     assert (tmp_path / "comparison.csv").is_file()
     assert "t5b" in found.text
     assert found.runs == (tmp_path / "t5b",)
     stored = Outcome.read(tmp_path / "t5b" / "outcome.json")
-    assert stored.validity.mesh_band["e_paper"] == pytest.approx(ALONE * half)
+    assert stored.validity.mesh_band["e_paper"] == pytest.approx(ONE_RUN * half)
 
 
 def test_the_study_runs_its_jobs_through_the_store(tmp_path, monkeypatch):
