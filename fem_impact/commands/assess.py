@@ -30,6 +30,11 @@ def assess(options: Options) -> int:
     scene = _scene(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
+    if out is not None:
+        from fem_impact.files.ownership import refuse_other_scene
+        from fem_impact.scene.write import to_toml
+
+        refuse_other_scene(out / "scene.toml", to_toml(scene))
     means = _budget(options), min(options.workers or cores(), 2)
     verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
     found = document(verdict, _command(options))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fem_impact.errors import OutputPathError
+from fem_impact.files.atomic import read_text
 from fem_impact.files.lock import LOCK
 from fem_impact.files.run_directory import CHECKPOINT, COMPUTED, DERIVED
 from fem_impact.files.signed_json import CHECKSUM
@@ -42,6 +44,21 @@ def stranger(out: Path) -> Path | None:
     if foreign or any(map(_shows_us, entries)):
         return foreign
     return next(iter(entries), None)
+
+
+def refuse_other_scene(path: Path, text: str) -> None:
+    """Refuse to replace a scene file by the ``text`` of a scene that does not stand there word for word.
+
+    Raises
+    ------
+    OutputPathError
+        The file exists and holds anything else, if only comments.
+    """
+    if path.exists() and read_text(path) != text:
+        raise OutputPathError(
+            f"{path}: is not the scene as this command would write it, and would be replaced. Choose "
+            "another place with --out."
+        )
 
 
 def _is_known(path: Path, names: tuple[str, ...]) -> bool:

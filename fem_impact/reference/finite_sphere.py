@@ -19,10 +19,8 @@ from functools import cache
 from math import ceil, log, pi
 
 import numpy as np
-from scipy.integrate import cumulative_simpson
 
 from fem_impact.arrays import Array
-from fem_impact.reference.hertz import HertzImpact, hertz
 
 GAUSS = 100  # points of the quadrature over the contact circle
 POINTS = 4001  # tabulated contact radii, and points of the integral over the approach
@@ -50,7 +48,7 @@ def pressure_rings(a: float) -> tuple[Array, Array]:
     return np.arcsin(a * np.sin(s)), ring
 
 
-def _load(a: float, orders: int) -> tuple[Array, Array]:
+def pole_load(a: float, orders: int) -> tuple[Array, Array]:
     """Return the series (orders,) of radial and polar traction of Hertz' pressure on a unit ball.
 
     A unit force pushes along the axis, as a flattened cap is pushed, against the pole theta = 0.
@@ -99,7 +97,7 @@ def ball_excess(a: float, nu: float) -> float:
     -0.424
     """
     orders = ceil(RESOLUTION / a)
-    radial, polar = _load(a, orders)
+    radial, polar = pole_load(a, orders)
     out, along = surface_shape(nu, radial, polar)
     out[1], along[1] = braked(nu, float(polar[1]))
     n = np.arange(orders)
@@ -119,25 +117,6 @@ def local_law(E_star: float, radius: float, a: Array, excess: Array) -> tuple[Ar
     return force, force * (3 / (5 * E_star * a) + excess) + a**2 / (5 * radius)
 
 
-def ball_impact(
-    E_star: float, E_ball: float, nu: float, radius: float, mass: float, speed: float
-) -> HertzImpact:
-    """Return the impact of a finite ball, E_ball = E / (1 - nu^2), on a half-space; E_star is of both.
-
-    Examples
-    --------
-    >>> from math import pi
-    >>> mass = 4 / 3 * pi * 0.01**3 * 7850
-    >>> slow, plain = ball_impact(2e11, 2e11, 0.3, 0.01, mass, 1e-3), hertz(2e11, 0.01, mass, 1e-3)
-    >>> round(slow.force / plain.force, 3), round(slow.duration / plain.duration, 3)
-    (1.001, 0.999)
-    """
-    plain = hertz(E_star, radius, mass, speed)
-    a = plain.radius * np.linspace(0.0, 1.3, POINTS)[1:]
-    force, approach = local_law(E_star, radius, a, fitted(ball_excess, nu, a / radius) / (E_ball * radius))
-    return bounce(force, approach, a, mass, speed)
-
-
 def fitted(excess: Callable[[float, float], float], nu: float, a: Array) -> Array:
     """Return ``excess(a, nu)`` at many contact radii (k,), in ball radii, by a polynomial in log(a)."""
     return np.asarray(np.polyval(_excess_series(excess, nu), np.log(a)))
@@ -148,22 +127,6 @@ def _excess_series(excess: Callable[[float, float], float], nu: float) -> Array:
     """Return ``excess`` as a polynomial (5,) of log(a / R), fitted from `SMALLEST` to `LARGEST`."""
     reach = np.exp(np.linspace(log(SMALLEST), log(LARGEST), 9))
     return np.polyfit(np.log(reach), [excess(float(a), nu) for a in reach], 4)
-
-
-def bounce(force: Array, approach: Array, a: Array, mass: float, speed: float) -> HertzImpact:
-    """Return the impact of a mass on a spring of ``force`` (k,), N, at ``approach`` (k,), m."""
-    stored = cumulative_simpson(force, x=approach, initial=0.4 * force[0] * approach[0])
-    squared = speed**2 - 2 * stored / mass  # of the speed
-    top = int(np.argmax(squared <= 0.0))
-    deepest = float(np.interp(0.0, -squared[top - 1 : top + 1], approach[top - 1 : top + 1]))
-    peak, radius = (float(np.interp(deepest, approach, y)) for y in (force, a))
-    # d = deepest (1 - s^2) makes the end of the approach smooth
-    s = np.linspace(0.0, 1.0, POINTS)
-    d = deepest * (1 - s[1:] ** 2)
-    pace = np.sqrt(np.maximum(np.interp(d, [0.0, *approach], [speed**2, *squared]), 0.0))
-    slope = 2 * deepest * s[1:] / np.maximum(pace, 1e-12 * speed)
-    first = 2 * np.sqrt(mass * deepest / (2 * peak))  # for pace^2 = 2 peak deepest s^2 / mass
-    return HertzImpact(peak, deepest, radius, 2 * float(np.trapezoid([first, *slope], s)))
 
 
 def _shear_load(a: float, orders: int) -> tuple[Array, Array, Array, Array]:

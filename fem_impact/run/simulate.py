@@ -80,16 +80,14 @@ def _compute_in(out: Path, plan: Plan, options: RunOptions) -> Outcome:
 
 def _begin(scene: Scene, out: Path) -> None:
     """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
-    from fem_impact.errors import OutputPathError
-    from fem_impact.files.atomic import read_text, write_text
+    from fem_impact.files.atomic import write_text
+    from fem_impact.files.ownership import refuse_other_scene
     from fem_impact.files.run_directory import set_aside
     from fem_impact.scene.write import to_toml
 
     path, text = out / "scene.toml", to_toml(scene)
-    if set_aside(out) is None and path.exists() and read_text(path) != text:
-        raise OutputPathError(
-            f"{path}: is no file of a run, and the run would replace it. Choose another place."
-        )
+    if set_aside(out) is None:
+        refuse_other_scene(path, text)
     write_text(path, text)
 
 

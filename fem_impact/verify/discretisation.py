@@ -30,6 +30,17 @@ def grid_force_error(size: float, half: float) -> float:
     return 0.1 * (size / half) ** 2
 
 
+def graded_error(reach: float) -> float:
+    """Return the relative error of a contact's stiffness where fine cells end at ``reach`` contact radii.
+
+    A point force has 4 / (3 pi reach) of Hertz' approach beyond. Two rows of cells on each level outside the
+    zone make edges of a quarter of the distance r. The strain falls as r^-2: even strains miss (2 h / r)^2 /
+    12 of the energy, those of incompatible modes, linear along one edge, half of that. With a zone of twice
+    the reach a slow ball was 0.35 % less stiff, beside 0.34 % by this.
+    """
+    return 4 / (3 * pi * reach) * (2 / 4) ** 2 / 24
+
+
 def grid_radiation_error(size: float, half: float) -> float:
     """Return the relative error of what such a contact radiates, the mean square of its force's rate.
 

@@ -83,7 +83,7 @@ def test_the_scene_that_a_run_reads_is_not_replaced(cli):
     code, _, err = cli("run", "scene.toml", "--fidelity", "rigid", "--out", ".")
     assert code == 4
     assert "other files, such as scene.toml" in err
-    with pytest.raises(OutputPathError, match="is no file of a run"):
+    with pytest.raises(OutputPathError, match="is not the scene as this command would write it"):
         fem_impact.simulate(load("t5c"), "rigid", RunOptions(out=Path()))
     assert Path("scene.toml").read_text() == mine
 
@@ -103,6 +103,41 @@ def test_a_sweep_and_a_verdict_go_on_in_their_directories(cli):
     verdict = ("assess", "t5b", "--fidelity", "modal")
     for line in (sweep, verdict):
         assert [cli(*line, "--out", line[0])[0] for _ in range(2)] == [0, 0]
+
+
+SWEEP = ("--vary", "impact.angle=30,40deg", "--fidelity", "rigid", "--quiet")
+
+
+def test_a_verdict_does_not_replace_the_scene_that_it_reads(cli, monkeypatch):
+    """Beside its own files, where the directory is not refused as a stranger's."""
+    assert cli("assess", "t5b", "--fidelity", "modal", "--out", "here")[0] == 0
+    mine = "# mine\n" + Path("here/scene.toml").read_text()
+    Path("here/scene.toml").write_text(mine)
+    monkeypatch.setattr("fem_impact.verdict.assess.assess", lambda *_, **__: pytest.fail("work has begun"))
+    code, _, err = cli("assess", "here/scene.toml", "--fidelity", "modal", "--out", "here")
+    assert code == 4
+    assert "would be replaced. Choose another place with --out" in err
+    assert Path("here/scene.toml").read_text() == mine
+
+
+def test_a_sweep_leaves_the_scene_that_it_reads(cli):
+    assert cli("sweep", "t5b", *SWEEP, "--out", "here")[0] == 0
+    mine = "# mine\n" + to_toml(load("t5b"))
+    Path("here/scene.toml").write_text(mine)
+    assert cli("sweep", "here/scene.toml", *SWEEP, "--out", "here")[0] == 0
+    assert Path("here/scene.toml").read_text() == mine
+
+
+@pytest.mark.parametrize(
+    "line", [("sweep", "scene.toml", *SWEEP), ("cost", "scene.toml"), ("assess", "scene.toml")]
+)
+def test_a_command_does_not_write_beside_a_scene_alone(cli, line):
+    mine = "# mine\n" + to_toml(load("t5b"))
+    Path("scene.toml").write_text(mine)
+    code, _, err = cli(*line, "--out", ".")
+    assert code == 4
+    assert "other files, such as scene.toml" in err
+    assert Path("scene.toml").read_text() == mine
 
 
 def test_an_output_that_cannot_be_made(cli, stand):

@@ -14,15 +14,16 @@ def errors(found):
     return {c.name: c.error for c in found.checks}
 
 
-def test_a_coarse_sphere_on_a_plane_is_a_finite_ball():
-    """Held to the error of its mesh, a third of a per cent: elements that are 2 % too stiff are noticed.
+@pytest.mark.parametrize("speed", [1.0, 4.0, 8.0])
+def test_a_coarse_sphere_on_a_plane_is_a_finite_ball(speed):
+    """Held to the error of its mesh, below half a per cent: elements that are 1 % off are noticed at 4 m/s.
 
-    Faster balls miss the linear reference by some .45 (a/R)^2 of the force on every mesh.
+    Its own vibration takes 0.3 % of the force there, which steady braking does not know.
     """
-    done = verify("hertz", {"cells": 4, "across": 8, "block": 0, "speed": 1.0})
+    done = verify("hertz", {"cells": 6, "across": 8, "block": 0, "speed": speed})
     found = errors(done)
     assert done.passed
-    assert {c.name: c.tolerance < 0.0045 for c in done.checks[:2]} == {
+    assert {c.name: c.tolerance < 0.0048 for c in done.checks[:2]} == {
         "largest force": True,
         "contact time": True,
     }
