@@ -1,6 +1,13 @@
 """Structured hexahedral meshes of rods and barrier blocks."""
 
-from meshes.block import block, drawn_depths, thin_skin_rise, with_rows_at, with_thin_skin
+from meshes.block import (
+    block,
+    drawn_depths,
+    thin_skin_rise,
+    with_free_bottom,
+    with_rows_at,
+    with_thin_skin,
+)
 from meshes.cut import without_slices
 from meshes.errors import MeshError
 from meshes.files import MeshFile, read, write
@@ -42,6 +49,7 @@ __all__ = [
     "thin_skin_rise",
     "turned",
     "volume",
+    "with_free_bottom",
     "with_rows_at",
     "with_thin_skin",
     "without_slices",

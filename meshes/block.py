@@ -13,7 +13,15 @@ from meshes.refine import refine
 from meshes.topology import CORNERS
 from meshes.zone import Zone
 
-__all__ = ["block", "box_cells", "drawn_depths", "thin_skin_rise", "with_rows_at", "with_thin_skin"]
+__all__ = [
+    "block",
+    "box_cells",
+    "drawn_depths",
+    "thin_skin_rise",
+    "with_free_bottom",
+    "with_rows_at",
+    "with_thin_skin",
+]
 
 
 def block(
@@ -98,6 +106,12 @@ def with_rows_at(mesh: HexMesh, rows: FloatArray, depths: FloatArray) -> HexMesh
     points = mesh.points.copy()
     points[:, 2] = -np.interp(-points[:, 2], rows, depths)
     return replace(mesh, points=np.asarray(mesh.tie @ points))
+
+
+def with_free_bottom(mesh: HexMesh) -> HexMesh:
+    """Make the bottom of a block a part of its skin: that of a plate, of which the edges alone are cut."""
+    bottom = (mesh.points[mesh.faces, 2] == mesh.points[:, 2].min()).all(axis=1)
+    return replace(mesh, face_tag=np.where(bottom, SKIN, mesh.face_tag).astype(mesh.face_tag.dtype))
 
 
 def thin_skin_rise(rows: int) -> float:

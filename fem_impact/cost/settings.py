@@ -9,10 +9,11 @@ from itertools import combinations
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
+from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.jobs.job import Job
 from fem_impact.plan.cells import body_cell, levels_of, rod_cell
-from fem_impact.plan.choose import active
+from fem_impact.plan.choose import active, resolved
 from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import replace_all
 
@@ -44,7 +45,7 @@ class Mesh:
     def sizes(self, scene: Scene) -> tuple[float, float]:
         """Return the element sizes of rod and barrier at the contact, m."""
         stateless = replace(scene.accuracy, across=OWN, tip_size=None, barrier_size=None)
-        levels, below = levels_of(plan(replace(scene, accuracy=stateless), "rigid").bodies)
+        levels, below = levels_of(bodies_of(resolved(replace(scene, accuracy=stateless))))
         crossed = replace(scene, accuracy=replace(stateless, across=self.across))
         # the cells of a user's mesh know nothing of ``across``: they are asked to be finer by as much
         finer = OWN / self.across if scene.projectile.own_mesh else 1.0

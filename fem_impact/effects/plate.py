@@ -24,7 +24,7 @@ def harm(scene: Scene) -> Harm:
 
 
 def fill(scene: Scene, spec: ModelSpec) -> None:
-    """Set the impedance of the plate.
+    """Set the impedance of the plate; where finite elements mesh it through, the plan takes it back.
 
     Raises
     ------
@@ -43,7 +43,8 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
 
 EFFECT = Effect(
     "plate-bending",
-    "The plate gives way as a whole at F / (8 sqrt(D rho h)), and bending waves run away in it.",
+    "The plate gives way as a whole, by F / (8 sqrt(D rho h)) or, where finite elements mesh it through, by "
+    "itself; bending waves run away in it.",
     "The barrier does not bend.",
     "Zener's lambda, m / (8 sqrt(D rho h) T)",
     0.006,

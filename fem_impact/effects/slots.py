@@ -27,7 +27,8 @@ class ModelSpec:
     skin : hardened layer of the surfaces, or None
     meshed_barrier : a block instead of the rigid plane
     radiating : the block's outer boundary lets waves out
-    plate : impedance of a plate that bends, N s/m, or None
+    plate : impedance of a plate that bends and is not meshed through its thickness, N s/m, or None
+    bending : phase speed, m/s, of the bending waves that leave at the edges of one that is, or None
     gravity : acceleration, m/s2, or None
     loss_factor : of the rod's vibration, or None
     heat : the contact's heat is computed
@@ -43,6 +44,7 @@ class ModelSpec:
     meshed_barrier: bool = False
     radiating: bool = False
     plate: float | None = None
+    bending: float | None = None
     gravity: float | None = None
     loss_factor: float | None = None
     heat: bool = False

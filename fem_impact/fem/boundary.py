@@ -53,6 +53,33 @@ def spread_boundary(
     return totals[0], totals[1]
 
 
+def plate_edges(mesh: HexMesh, E: float, nu: float, rho: float, speed: float) -> tuple[Array, Array]:
+    """Return springs, N/m, none, and damping, N s/m, at the outer faces of a plate: (n, 3) of all nodes.
+
+    Bending waves of the phase speed c, m/s, that come to an edge at right angles push it with
+    Q = rho h c w' and turn it with M = (D / c) theta', so dashpots of these sizes send none of them back:
+    rho c a unit area along n, and rho c_p^2 / c along the edge's normal, c_p^2 = E / (rho (1 - nu^2)) (from
+    D d4w/dx4 = -rho h d2w/dt2 with w = exp(i (omega t - k x)), k = omega / c). Along the edge they are those
+    of shear waves, rho c_s.
+    """
+    G = E / (2 * (1 + nu))
+    c_s, turning = sqrt(G / rho), E / (rho * (1 - nu**2)) / speed
+    basis = face_basis(hex_mesh(mesh.points, mesh.cells), mesh.faces_with(OUTER))
+    ones, damping = np.ones(mesh.points.size), np.zeros((len(mesh.points), 3))
+    outer = np.unique(mesh.faces_with(OUTER))
+    normal, along = (
+        (dashpots.assemble(basis, rho=rho, c_d=c_d, c_s=c) @ ones).reshape(-1, 3)[outer]
+        for c_d, c in ((1.0, 0.0), (0.0, 1.0))
+    )
+    height = mesh.points[outer, 2] - 0.5 * (mesh.points[:, 2].min() + mesh.points[:, 2].max())
+    area = normal.sum(axis=1)
+    lumped = float(area @ height**2 / area.sum())  # over h^2 / 12: masses at the nodes lie further out
+    turning *= float(np.ptp(mesh.points[:, 2])) ** 2 / 12 / lumped
+    damping[outer] = turning * normal + c_s * along
+    damping[outer, 2] *= speed / c_s
+    return np.zeros_like(damping), damping
+
+
 def radiating_share(
     K: sp.csr_matrix,
     damping: Array,

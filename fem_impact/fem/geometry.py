@@ -178,7 +178,7 @@ def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float
 
 
 def _block(scene: Scene, zones: Zones) -> HexMesh:
-    """Return the barrier block, rows of its cells at the interfaces of its layers."""
+    """Return the barrier block, rows of its cells at the interfaces of its layers and at its underside."""
     h, base = zones.barrier_size, zones.base
     margin = scene.accuracy.block_margin  # springs replace the half-space beyond
     low, high = block_of(scene, zones)
@@ -193,8 +193,10 @@ def _block(scene: Scene, zones: Zones) -> HexMesh:
             remedy="Give less: a third of the diameter does.",
         )
     coarse = meshes.block(low, high, base, boxes, buffer=BUFFER)
+    if zones.edges:
+        coarse = meshes.with_free_bottom(coarse)
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
-    if scene.barrier.layers:
+    if scene.barrier.layers or zones.edges:
         block = meshes.with_rows_at(block, rows, depths)
     return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))
 
@@ -202,7 +204,7 @@ def _block(scene: Scene, zones: Zones) -> HexMesh:
 def _before_moving(box: Corners, zones: Zones, rows: Array, depths: Array) -> Zone:
     """Return the zone whose cells fill a box once rows have moved to the depths of interfaces."""
     low, high = box
-    if len(rows) > 2:
+    if len(rows) > 2 or zones.edges:
         depth = float(np.interp(-low[2] - zones.rise, depths, rows))
         low = np.array([low[0], low[1], -depth - zones.rise])
     return Zone(np.zeros(3), np.eye(3), low, high)

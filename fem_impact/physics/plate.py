@@ -1,4 +1,4 @@
-"""Bending of a wide plate under a blow: its impedance, Zener's number, and waves that come back from an edge.
+"""Bending of a wide plate under a blow: its impedance, Zener's number, and its bending waves.
 
 A point force F moves an infinite thin plate at F / Z, Z = 8 sqrt(D rho h), D = E h^3 / (12 (1 - nu^2)): the
 plate takes energy like a dashpot, for bending waves carry it away (drive-point mobility of an infinite plate,
@@ -73,10 +73,37 @@ def least_span(bodies: ContactBodies) -> float:
     """Return the width, m, of a plate from whose edges no wave of the pulse comes back while it lasts.
 
     The fastest bending waves of a pulse of duration tau are those of the frequency at the end of its main
-    lobe, omega = 3 pi / tau. They travel at the group speed 2 (D / (rho h))^(1/4) sqrt(omega) from the middle
-    to the edge and back.
+    lobe, omega = 3 pi / tau. They travel at their group speed from the middle to the edge and back.
     """
     m, h, tau = bodies.scene.barrier.material, bodies.scene.barrier.thickness, contact_time(bodies)
     assert h is not None, "a plate that bends has a thickness"
-    D = bending_stiffness(m.E, m.nu, h)
-    return float(2 * (D / (m.rho * h)) ** 0.25 * sqrt(2 * pi * MAIN_LOBE / tau) * tau)
+    return 2 * bending_speed(m.E, m.nu, m.rho, h, 2 * pi * MAIN_LOBE / tau) * tau
+
+
+def bending_speed(E: float, nu: float, rho: float, thickness: float, omega: float) -> float:
+    """Return the phase speed, m/s, of bending waves in a thin plate (Pa, -, kg/m3, m) at ``omega``, rad/s.
+
+    It is (D / (rho h))^(1/4) sqrt(omega); their group speed is twice as large.
+    """
+    return float((bending_stiffness(E, nu, thickness) / (rho * thickness)) ** 0.25 * sqrt(omega))
+
+
+def pulse_wave(E: float, nu: float, rho: float, thickness: float, time: float) -> tuple[float, float]:
+    """Return the phase speed, m/s, of a pulse's bending waves, and how far, m, they go and come back in it.
+
+    A half-sine pulse of duration ``time``, s, is of the frequency omega = pi / time; its fastest waves are
+    those at the end of its main lobe, at their group speed. In plates that are thick beside their waves,
+    shear limits both speeds to about that of shear waves.
+    """
+    shear = sqrt(E / (2 * (1 + nu) * rho))
+    middle, fastest = (
+        bending_speed(E, nu, rho, thickness, omega) for omega in (pi / time, 2 * pi * MAIN_LOBE / time)
+    )
+    return min(middle, shear), 0.5 * min(2 * fastest, shear) * time
+
+
+def plate_waves(bodies: ContactBodies) -> tuple[float, float]:
+    """Return the `pulse_wave` of the contact of two bodies, of which the barrier is a plate that bends."""
+    m, h = bodies.scene.barrier.material, bodies.scene.barrier.thickness
+    assert h is not None, "a plate that bends has a thickness"
+    return pulse_wave(m.E, m.nu, m.rho, h, contact_time(bodies))

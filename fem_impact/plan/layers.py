@@ -9,6 +9,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, contact_estimate
+from fem_impact.plan.plates import rows_through
 from fem_impact.plan.zones import Corners, Zones
 from fem_impact.scene.types import Scene
 from meshes import drawn_depths
@@ -29,8 +30,12 @@ def interfaces(scene: Scene) -> Array:
 def block_of(scene: Scene, zones: Zones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
-    It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide.
+    It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. A
+    plate that is meshed through its thickness goes on to its edges instead.
     """
+    if zones.edges:
+        low, high = zones.block(zones.edges)
+        return np.array([*low[:2], -rows_through(scene, zones.base) * zones.base]), high
     ends = interfaces(scene)
     low, high = zones.block(max(scene.accuracy.block_margin, AROUND * ends.max(initial=0.0)))
     if len(ends):
@@ -42,7 +47,8 @@ def block_of(scene: Scene, zones: Zones) -> Corners:
 def moved_rows(scene: Scene, zones: Zones) -> tuple[Array, Array]:
     """Return depths (k,), m, of rows of whole cells before and after they are moved to the interfaces.
 
-    The first is the surface, the last the bottom; between two of them depths are stretched evenly.
+    The first is the surface, the last the bottom, which moves to the underside of a plate that is meshed
+    through its thickness; between two of them depths are stretched evenly.
     """
     low, _ = block_of(scene, zones)
     count = max(1, round(-float(low[2]) / zones.base))
@@ -54,7 +60,8 @@ def moved_rows(scene: Scene, zones: Zones) -> tuple[Array, Array]:
             raise _too_thin(scene, zones, 0.0)
         chosen.append(chosen[-1] + 1 + int(np.argmin(np.abs(np.log(stretch)))))
         done = float(depth)
-    return rows[[*chosen, -1]], np.array([0.0, *interfaces(scene), rows[-1]])
+    bottom = scene.barrier.thickness if zones.edges else rows[-1]
+    return rows[[*chosen, -1]], np.array([0.0, *interfaces(scene), bottom])
 
 
 def require_layers(bodies: ContactBodies, zones: Zones, fidelity: str) -> None:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Collection
 from dataclasses import replace
 
-from fem_impact.effects.barrier import compliance_share
+from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import (
     ContactBodies,
@@ -17,7 +17,8 @@ from fem_impact.physics.contact import (
     projectile,
     touch_point,
 )
-from fem_impact.physics.plate import contact_time, least_span
+from fem_impact.plan.choose import resolved
+from fem_impact.plan.plates import is_wider, thin_plate
 from fem_impact.scene import library
 from fem_impact.scene.impact import BESIDE
 from fem_impact.scene.types import Scene
@@ -25,7 +26,6 @@ from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Projectile
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
-THIN = 0.02  # of e, by the thickness of a plate: told above it
 FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
@@ -36,8 +36,11 @@ TIPS = {("A", 0.007), ("B", 0.003)}
 SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 
-def validity(bodies: ContactBodies, active: Collection[str]) -> tuple[str, ...]:
-    """Return one sentence for each way in which the scene lies outside the measured range."""
+def validity(bodies: ContactBodies, active: Collection[str], meshed_through: bool = False) -> tuple[str, ...]:
+    """Return one sentence for each way in which the scene lies outside the measured range.
+
+    ``meshed_through`` says whether a plate that bends is meshed through its thickness.
+    """
     scene = bodies.scene
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     sentences = (
@@ -46,7 +49,7 @@ def validity(bodies: ContactBodies, active: Collection[str]) -> tuple[str, ...]:
         _segments(scene),
         _own_mesh(scene),
         _layers(scene),
-        _thin_plate(bodies),
+        thin_plate(bodies, meshed_through),
         _outside(speed, SPEEDS, "speed", "speed"),
         _outside(scene.impact.angle, ANGLES, "angle", "angle"),
         _fall(scene),
@@ -102,30 +105,6 @@ def _layers(scene: Scene) -> str:
     return (
         "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
         "of the rigid fidelity) know the first layer alone"
-    )
-
-
-def _thin_plate(bodies: ContactBodies) -> str:
-    """Tell where a plate that bends is too thin for a half-space under the contact.
-
-    Under a force P a half-space has u = (1 + nu)(3 - 2 nu) P / (2 pi E h) of its give deeper than h on the
-    axis (Boussinesq), and Hertz' contact of the radius a gives 3 (1 - nu^2) P / (4 E a) in all (Johnson 1985,
-    Contact Mechanics, sections 3.2 and 4.2, doi:10.1017/CBO9781139171731). e changes by half of the share of
-    the compliance that is wrong (Thornton 1997, doi:10.1115/1.2787319).
-    """
-    barrier, size = bodies.scene.barrier, contact_estimate(bodies)
-    if not barrier.bends or barrier.thickness is None:
-        return ""
-    a, nu = math.sqrt(size.a_t * size.a_b), barrier.material.nu
-    deeper = 2 * (3 - 2 * nu) / (3 * math.pi * (1 - nu)) * a / barrier.thickness
-    changed = 0.5 * deeper * compliance_share(bodies.scene) if bodies.compliant else 0.0
-    if changed <= THIN:
-        return ""
-    width = 2 * a
-    return (
-        f"idealised: the contact is {width * 1e3:.2g} mm wide, {width / barrier.thickness:.2g} of the "
-        f"plate's thickness, and taken as that of a half-space, which gives {100 * deeper:.2g} % of its way "
-        f"deeper than the plate is thick: e may be off by some {100 * changed:.2g} %"
     )
 
 
@@ -189,30 +168,6 @@ def require_shallow(bodies: ContactBodies) -> None:
         )
 
 
-def require_plate(bodies: ContactBodies) -> None:
-    """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
-    barrier, estimate = bodies.scene.barrier, contact_estimate(bodies)
-    if not barrier.bends or barrier.thickness is None:
-        return
-    width, least = 2 * max(estimate.a_t, estimate.a_b), least_span(bodies)
-    if width > barrier.thickness:
-        raise SceneError(
-            f"is less than the width of the contact, {width * 1e3:.2g} mm: it is no local one, and the plate "
-            "would bulge under it.",
-            key="barrier.thickness",
-            value=f"{barrier.thickness * 1e3:.3g} mm",
-            remedy="Give a thicker plate or a lower speed.",
-        )
-    if barrier.span is not None and barrier.span < least:
-        raise SceneError(
-            f"is so short that bending waves are back after less than the contact of about "
-            f"{contact_time(bodies) * 1e6:.2g} us.",
-            key="barrier.span",
-            value=f"{barrier.span * 1e3:.3g} mm",
-            remedy=f"Give at least {least * 1e3:.3g} mm.",
-        )
-
-
 def require_still(scene: Scene, fidelity: str) -> None:
     """Refuse a barrier that turns where a fidelity has none (SceneError)."""
     if scene.barrier.inertia is not None and fidelity == "rigid":
@@ -263,8 +218,12 @@ def require_turned(scene: Scene, asked: str) -> None:
 
 def not_reduced(scene: Scene) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
-    own = "a projectile with a mesh of its own" if scene.projectile.own_mesh else ""
-    return own or ("a barrier of layers" if scene.barrier.layers else "")
+    found = {
+        "a projectile with a mesh of its own": scene.projectile.own_mesh,
+        "a barrier of layers": scene.barrier.layers,
+        "a plate thinner than its contact is wide": is_wider(bodies_of(resolved(scene))),
+    }
+    return next((what for what, there in found.items() if there), "")
 
 
 def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:

@@ -10,19 +10,20 @@ from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.options import FIDELITIES
 from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import ContactBodies
+from fem_impact.physics.plate import plate_waves
 from fem_impact.plan.cells import coarse_tip, thin_cells
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
-from fem_impact.plan.layers import layer_warning, require_layers
+from fem_impact.plan.layers import block_of, layer_warning, require_layers
 from fem_impact.plan.limits import (
     require_approach,
     require_own_mesh,
-    require_plate,
     require_point,
     require_shallow,
     require_still,
     validity,
 )
 from fem_impact.plan.metals import unknowns
+from fem_impact.plan.plates import is_thin, require_plate, require_plate_mesh
 from fem_impact.plan.size import RunSize, require_memory, require_rest, run_size
 from fem_impact.plan.zones import Zones, require_fine_zone, require_layer, zones_of
 from fem_impact.scene.types import Scene
@@ -61,7 +62,7 @@ class Plan:
     @property
     def validity(self) -> tuple[str, ...]:
         """Return a sentence for each way in which the scene leaves the measured range."""
-        return validity(self.bodies, self.active)
+        return validity(self.bodies, self.active, self.slots.bending is not None)
 
     @property
     def unknown(self) -> tuple[str, ...]:
@@ -105,15 +106,20 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     in_model = resolved(scene)
     require_own_mesh(scene, in_model.effects, fidelity)
     bodies = bodies_of(in_model)
-    require_plate(bodies)
+    through = fidelity == "solid" and is_thin(bodies)
+    require_plate(bodies, through)
     require_point(bodies)
     slots, zones = ModelSpec(), zones_of(bodies)
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)
+    if through:  # the mesh bends by itself: its impedance would count that twice
+        slots.plate, slots.bending = None, plate_waves(bodies)[0]
     require_layers(bodies, zones, fidelity)
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)
+        if through:
+            require_plate_mesh(scene, zones.base, block_of(scene, zones))
         if not slots.vibrating:
             require_rest(scene, zones)
         if slots.skin and slots.barrier_law:

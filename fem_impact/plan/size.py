@@ -22,7 +22,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, max_time
 from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
 from fem_impact.plan.cells import posture
-from fem_impact.plan.layers import block_of
+from fem_impact.plan.layers import block_of, moved_rows
 from fem_impact.plan.zones import BUFFER, Zones, lowest_point, zones_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
@@ -176,9 +176,17 @@ def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
     shares = {"rod": scene.projectile.material}
     if slots.meshed_barrier:
         shares["barrier"] = max((m for _, m in scene.barrier.strata), key=_wave_speed)
-    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size}
+    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size * _flat(scene, zones)}
     crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
     return scene.accuracy.step / 0.9 * sqrt(scene.accuracy.mass_scaling) * min(crossing)
+
+
+def _flat(scene: Scene, zones: Zones) -> float:
+    """Return the height of the cells of a plate that is meshed through over their width, at most 1."""
+    if not zones.edges:
+        return 1.0
+    before, after = moved_rows(scene, zones)
+    return min(1.0, float(after[-1] / before[-1]))
 
 
 def _wave_speed(steel: Material) -> float:

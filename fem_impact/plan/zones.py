@@ -20,7 +20,9 @@ from fem_impact.physics.contact import (
     sliding,
 )
 from fem_impact.physics.hardening import Skin
+from fem_impact.physics.plate import plate_waves
 from fem_impact.plan.cells import body_cell, contact_radius, levels_of, posture, rod_cell
+from fem_impact.plan.plates import is_thin
 from fem_impact.scene.types import Scene
 from meshes import thin_skin_rise
 from rigid import Faceted
@@ -61,6 +63,7 @@ class Zones:
     reach : how far the rod's zone follows its flat face along -t; along : how far the barrier's goes along -t
     conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
     skin_rows : thin rows of cells at the top of the barrier
+    edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
     """
 
     base: float
@@ -72,6 +75,7 @@ class Zones:
     along: float
     conforming: bool
     skin_rows: int
+    edges: float = 0.0
 
     @property
     def tip_size(self) -> float:
@@ -142,6 +146,7 @@ def zones_of(bodies: ContactBodies) -> Zones:
         along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
         conforming=conforming,
         skin_rows=rows,
+        edges=plate_waves(bodies)[1] if is_thin(bodies) else 0.0,
     )
 
 

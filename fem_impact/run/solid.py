@@ -48,6 +48,9 @@ if TYPE_CHECKING:
 
 RINGING, LEAST = 0.1, 1e-4  # of E_vib and of E_0: so much above the modes is told
 STIFF = Unknown("the vibration effect is off: the rod is rigid behind its nose")
+IN_WAVES = Unknown(
+    "in a plate meshed through its thickness it is not told from the bending waves: W_plate holds both"
+)
 ONE_MESH = "error unknown: run a second tip size, or `fem-impact cost`"
 
 
@@ -153,6 +156,8 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     check = result.vibration_check
     locked = a["strain_rod"] - (check[1] if check else result.flight.strain)
     locked += a["kinetic_rod"] - result.motion.kinetic if stiff else 0.0  # the nose rings a little
+    held = a["strain_barrier"] + a["kinetic_barrier"] - given
+    bending = result.plan.slots.bending is not None  # then what the plate holds are its waves
 
     def share(energy: float) -> float:
         return float(energy / E_0)
@@ -169,9 +174,9 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         plastic_rod=share(a["plastic_rod"]),
         plastic_barrier=share(a["plastic_barrier"]),
         locked_rod=share(locked),
-        locked_barrier=share(a["strain_barrier"] + a["kinetic_barrier"] - given),
+        locked_barrier=IN_WAVES if bending else share(held),
         radiated=share(a["radiated"]),
-        plate=share(a["plate"]) if result.plan.slots.plate else UNBENT,
+        plate=share(a["plate"] + held * bending) if result.plan.slots.plate or bending else UNBENT,
         barrier=share(given) if barrier.mass else MASSIVE,
         closing=share(a["closing"]),
         damping=_if_on("material-damping", result, share(a["damping"])),

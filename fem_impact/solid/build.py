@@ -5,12 +5,10 @@ Modules that only some effects need are imported where they are used.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
-import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
 from fem_impact.fem.body import (
@@ -18,12 +16,11 @@ from fem_impact.fem.body import (
     MeshedBodies,
     MeshedBody,
     slices_of,
-    stiffness_of,
 )
 from fem_impact.fem.eigen import MassStiffness, rod_modes
 from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
-from fem_impact.fem.sparse import Hanging, NodeProduct, tie_operator
+from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.physics.hardening import Hardening
@@ -32,7 +29,7 @@ from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
-from fem_impact.solid.elastic import Dashpots, ElasticBlock, ElasticRod, Weight
+from fem_impact.solid.elastic import Dashpots, ElasticRod, Weight
 from fem_impact.solid.frame import FixedFrame, TurningFrame, mass_centre
 from fem_impact.solid.ground import Ground
 from fem_impact.solid.items import Force, Impulse
@@ -41,6 +38,7 @@ from meshes import SKIN
 from rigid import Faceted
 
 if TYPE_CHECKING:
+    from fem_impact.solid.block import ElasticBlockParts
     from fem_impact.solid.elastic import ModalDamping
     from fem_impact.solid.footing import FootingSprings
     from fem_impact.solid.rigid_rest import ElasticNose, RigidRest
@@ -49,59 +47,6 @@ if TYPE_CHECKING:
 
 START_GAP = 1e-10  # m, so small that contact begins in the first step, before gravity or spin acts
 PLAY, BAND = 0.05, 0.02  # over the tip size, see `SurfaceContact`
-
-
-@dataclass(frozen=True, slots=True)
-class ElasticBlockParts:
-    """Operators of a meshed barrier and of the half-space around it.
-
-    Attributes
-    ----------
-    linear : the item of its linear part
-    stiffness : (size, size) of all its cells, N/m
-    springs, pots : (size, size), N/m, and (size,), N s/m, of the half-space
-    """
-
-    linear: ElasticBlock
-    stiffness: sp.csr_matrix
-    springs: sp.dia_matrix
-    pots: Array
-
-
-def elastic_block(
-    body: MeshedBody, layout: DofLayout, x: Array, effect: str = "barrier-elastic"
-) -> ElasticBlockParts:
-    """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it."""
-    from fem_impact.fem.boundary import spread_boundary
-
-    place = layout.barrier_slice
-    shifted, n = body.places - place.start, place.stop - place.start
-    T = tie_operator(body.mesh.tie, shifted, n)
-    around = [spread_boundary(body.mesh, m.E, m.nu, m.rho, here) for m, here in body.parts]
-    spring, damping = (sum(parts[1:], parts[0]) for parts in zip(*around, strict=True))
-    springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
-    linear = stiffness_of(body, ~body.yields, n, place.start)
-    K = sp.csr_matrix(linear + springs)
-    K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
-    item = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
-    return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
-
-
-def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
-    """Return the dashpots of a block's boundary, which take the radiated energy."""
-    from fem_impact.fem.boundary import radiating_share
-
-    place, (m, _) = layout.barrier_slice, body.parts[-1]  # slow waves are far longer than layers are thick
-    nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
-    loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
-    fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
-    damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))
-    places = place.start + np.flatnonzero(damping)
-    places = places[inverse_mass[places] > 0]
-    ends = layout.ends(places) if len(layout.footing) else places[:0]
-    return Dashpots(
-        places, damping[places - place.start], inverse_mass[places], ends, inverse_mass[ends].copy()
-    )
 
 
 def yielding_zone(
@@ -201,9 +146,13 @@ class Builder:
     @cached_property
     def block_parts(self) -> ElasticBlockParts:
         """Return the operators of a meshed barrier."""
+        from fem_impact.solid.block import elastic_block
+
         assert self.meshed.barrier is not None, "the barrier is meshed"
         effect = "barrier-elastoplastic" if any(self.spec.barrier_laws) else "barrier-elastic"
-        return elastic_block(self.meshed.barrier, self.meshed.layout, self.meshed.x, effect)
+        return elastic_block(
+            self.meshed.barrier, self.meshed.layout, self.meshed.x, effect, self.spec.bending
+        )
 
     @cached_property
     def ground(self) -> Ground:
@@ -216,12 +165,16 @@ class Builder:
         """Return the items of a meshed barrier and its stable step, s, under its name; empty without one."""
         if self.meshed.barrier is None:
             return [], [], {}
+        from fem_impact.solid.block import dashpots, plate_dashpots
+
         block = self.block_parts
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
         pots = (
             [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if self.spec.radiating else []
         )
+        if self.spec.bending:
+            pots = [plate_dashpots(self.meshed.layout, inverse, block)]
         if self.ground.turns:
             return self.turning_block(pots, step)
         return [block.linear], [*pots], {"barrier": step}

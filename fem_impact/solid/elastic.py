@@ -74,15 +74,13 @@ class ElasticBlock:
 
 @dataclass(slots=True)
 class Dashpots:
-    """Viscous boundary that absorbs radiated waves; implicit in time, so it does not limit the step.
+    """Viscous boundary that absorbs outgoing waves; implicit in time, so it does not limit the step.
 
     ``places`` (k,) are the damped unknowns, ``damping`` (k,), N s/m, ``inverse_mass`` (k,), 1/kg. On a free
     barrier ``ends`` (k,) are the unknowns of its footing that hold the other ends, ``footing_inverse`` (k,),
-    1/kg, its inverse masses; both are empty else.
+    1/kg, its inverse masses; both are empty else. ``effect`` and ``accounts`` are those of the waves.
     """
 
-    effect: ClassVar[str] = "radiation"
-    accounts: ClassVar[tuple[str, ...]] = ("radiated",)
     every: ClassVar[int] = 1
     moving: ClassVar[tuple[str, ...]] = ("radiated",)
     places: Ints
@@ -90,6 +88,8 @@ class Dashpots:
     inverse_mass: Array
     ends: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     footing_inverse: Array = field(default_factory=lambda: np.zeros(0))
+    effect: str = "radiation"
+    accounts: tuple[str, ...] = ("radiated",)
     radiated: float = 0.0
 
     def resolve(self, state: State) -> None:

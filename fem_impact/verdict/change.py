@@ -17,7 +17,9 @@ from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import SHARES
 from fem_impact.plan.cells import ERROR, contact_edge, expected_cells, kind
+from fem_impact.plan.choose import resolved
 from fem_impact.plan.plan import plan
+from fem_impact.plan.plates import half_space_error, is_thin
 from fem_impact.run.simulate import simulate
 from fem_impact.verdict.reliability import known_error
 from fem_impact.verdict.twins import twins
@@ -39,6 +41,11 @@ REDUCED, ONE_MESH, MESHES = "the reduced model", "one mesh of finite elements", 
 OWN_CELLS = (
     " All meshes have the cells of your file behind the contact, whose error they do not show: the {:.2g} by "
     "which such a mesh was off on the measured sets is added. A file of smaller cells shows it."
+)
+
+THIN_PLATE = (
+    " The plate is thin beside the contact, and a half-space under it in this model: the {:.2g} by which e "
+    "may be off is added."
 )
 
 Answer = Literal["yes", "no", "undecided"]
@@ -125,15 +132,16 @@ def modal_pair(scene: Scene) -> Pair:
 
 def modal_change(scene: Scene, pair: Pair) -> Change:
     """Return what the reduced model says, with its known error."""
-    error = known_error(_meshless(scene))
+    error, bodies = known_error(_meshless(scene)), bodies_of(resolved(scene))
+    thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
     return Change(
         scene.impact.angle,
         _difference(pair),
-        error.change_of_e,
+        error.change_of_e + thin,
         known(pair[0].energy.vibration),
         error.shares["vibration"],
         *pair,
-        error.sentence,
+        error.sentence + THIN_PLATE.format(thin) * bool(thin),
         REDUCED,
         REDUCED,
         f"known error of {REDUCED}",

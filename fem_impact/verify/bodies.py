@@ -23,6 +23,7 @@ from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.hardening import Hardening
 from fem_impact.solid import build
+from fem_impact.solid.block import ElasticBlockParts, dashpots, elastic_block, plate_dashpots
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.elastic import ElasticRod
@@ -45,6 +46,7 @@ class Block:
     mesh : as fine as the body around the contact; its outer faces carry on as springs and dashpots
     size : cell edge at the contact, m
     E, nu, rho : material; law : hardening of its finest cells, or None where it stays elastic
+    bending : of a plate meshed through its thickness, the phase speed of the waves that leave its edges, m/s
     """
 
     mesh: HexMesh
@@ -53,6 +55,7 @@ class Block:
     nu: float
     rho: float
     law: Hardening | None = None
+    bending: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,11 +124,10 @@ def body_model(body: FreeBody) -> Model:
     n, place = layout.rod_size, layout.barrier_slice
     steps = {} if body.driven else {"rod": stable_step(stiffness, inverse[:n])}
     if block:
-        around = build.elastic_block(parts[1], layout, x)
+        around = elastic_block(parts[1], layout, x, bending=block.bending)
         steps["barrier"] = stable_step(around.stiffness, inverse[place])
         forces.append(around.linear)
-        if body.impedance is None:
-            impulses.append(build.dashpots(parts[1], layout, inverse, around))
+        impulses += _around(body, parts[1], layout, inverse, around)
     contact = _contact(body, parts, inverse, x)
     touching: list[Impulse] = [contact] if contact else []
     if contact and body.impedance is not None:
@@ -149,6 +151,15 @@ def body_model(body: FreeBody) -> Model:
         steps=steps,
         start=(x, v),
     )
+
+
+def _around(
+    body: FreeBody, part: Meshed, layout: DofLayout, inverse: Array, around: ElasticBlockParts
+) -> list[Impulse]:
+    """Return the dashpots around a block; a plate's impedance takes their place."""
+    if body.block and body.block.bending:
+        return [plate_dashpots(layout, inverse, around)]
+    return [dashpots(part, layout, inverse, around)] if body.impedance is None else []
 
 
 def _zones(body: FreeBody, parts: list[Meshed], layout: DofLayout) -> list[YieldingZone]:

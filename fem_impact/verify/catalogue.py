@@ -19,6 +19,7 @@ PROBLEMS = {
     "hertz": ("spheres", "HERTZ"),
     "oblique-sphere": ("spheres", "OBLIQUE_SPHERE"),
     "plate": ("plate_strike", "PROBLEM"),
+    "thin-plate": ("plate_through", "PROBLEM"),
     "sears": ("sears_rod", "PROBLEM"),
     "thornton": ("thornton_tip", "PROBLEM"),
     "taylor": ("taylor_bar", "PROBLEM"),

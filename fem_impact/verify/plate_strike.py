@@ -23,7 +23,7 @@ STRIKES = 3
 AFTER = 1.1  # contact times that are followed
 
 
-def _unit_of_time(p: Values) -> float:
+def unit_of_time(p: Values) -> float:
     """Return T = (m / (k sqrt(v)))^(2/5), s, with k = 4/3 E* sqrt(R)."""
     stiffness = 4 / 3 * modulus(p) * p["radius"] ** 0.5
     return float((ball_mass(p) / (stiffness * p["speed"] ** 0.5)) ** 0.4)
@@ -31,7 +31,7 @@ def _unit_of_time(p: Values) -> float:
 
 def _strike(p: Values, inelasticity: float) -> tuple[TipImpact, float, int]:
     """Return an impact on a plate of Zener's lambda, what its ledger misses over E_0, and cells."""
-    T, plain = _unit_of_time(p), plain_hertz(p, p["speed"])
+    T, plain = unit_of_time(p), plain_hertz(p, p["speed"])
     model = sphere_model(p, plain, p["speed"], impedance=ball_mass(p) / (inelasticity * T))
     end = AFTER * zener_impact(inelasticity).duration * T
     found = run_strike(model, end, plain.duration)
@@ -42,7 +42,7 @@ def _strike(p: Values, inelasticity: float) -> tuple[TipImpact, float, int]:
 
 
 def _checks(p: Values, inelasticity: float, found: TipImpact, residual: float) -> tuple[Check, ...]:
-    exact, T, v = zener_impact(inelasticity), _unit_of_time(p), p["speed"]
+    exact, T, v = zener_impact(inelasticity), unit_of_time(p), p["speed"]
     force = ball_mass(p) * v / T * exact.peak
     at = f"lambda {inelasticity:.3g}"
     return (

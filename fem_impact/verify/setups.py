@@ -9,6 +9,7 @@ import numpy as np
 
 import meshes
 from fem_impact.fem.flight import RigidMotion
+from fem_impact.plan.plates import ROWS
 from fem_impact.scene.material import Material
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.shipped import load
@@ -120,6 +121,17 @@ def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> 
     low, high = low - around, high + around
     low[1] = high[2] = 0.0
     return meshes.block(low, high, base, [zone] * levels)
+
+
+def plate_under(radius: float, base: float, levels: int, thickness: float, edges: float) -> HexMesh:
+    """Return a plate of ``thickness``, m, fine like `block_under`, whose edges are ``edges``, m, away."""
+    rows, half = max(ROWS, round(thickness / base)), REACH * radius
+    depth = rows * base  # before its rows are drawn to the thickness
+    low, high = np.array([-half, 0.0, -radius * depth / thickness]), np.array([half, half, 0.0])
+    zone = Zone(np.zeros(3), np.eye(3), low, high)
+    mesh = meshes.block([-edges, 0.0, -depth], [edges, edges, 0.0], base, [zone] * levels)
+    mesh = meshes.with_free_bottom(mesh)
+    return meshes.with_rows_at(mesh, np.array([0.0, depth]), np.array([0.0, thickness]))
 
 
 def levels_for_radius(base: float, radius: float, cells: float) -> int:

@@ -35,6 +35,7 @@ from fem_impact.verify.setups import (
     block_under,
     contact_zone,
     levels_for_radius,
+    plate_under,
     run_strike,
 )
 
@@ -83,6 +84,15 @@ def small_contact(p: Values, share: float = 1.0) -> None:
     within(p, "speed", low, high, "m/s", f"contact radii of {CONTACT[0]:g} to {CONTACT[1]:g} of the ball's.")
 
 
+@dataclass(frozen=True, slots=True)
+class Plate:
+    """A plate under a ball: thickness, m; its edges from the contact, m; speed of its bending waves, m/s."""
+
+    thickness: float
+    edges: float
+    speed: float
+
+
 def sphere_model(
     p: Values,
     touch: HertzImpact,
@@ -90,10 +100,12 @@ def sphere_model(
     v_t: float = 0.0,
     f: float = 0.0,
     impedance: float | None = None,
+    plate: Plate | None = None,
 ) -> Model:
     """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t.
 
-    The barrier as a whole gives way at the force over the ``impedance``, N s/m, if there is one.
+    The barrier as a whole gives way at the force over the ``impedance``, N s/m, if there is one; or it is a
+    ``plate`` that is meshed through its thickness.
     """
     R, across = p["radius"], int(p["across"])
     base = 2 * R / across
@@ -106,9 +118,11 @@ def sphere_model(
     block = None
     if p["block"]:
         under = block_under(touch.radius, base, levels, v_t * touch.duration)
+        if plate:
+            under = plate_under(touch.radius, base, levels, plate.thickness, plate.edges)
         # a block of the sphere's kind unless the values state another
         E, nu, rho = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
-        block = Block(under, base / 2**levels, E, nu, rho)
+        block = Block(under, base / 2**levels, E, nu, rho, bending=plate.speed if plate else None)
     denser = _denser(points, mesh.mesh.cells, p)
     E, nu, rho = p["E"], p["nu"], p["rho"]
     return body_model(

@@ -14,7 +14,8 @@ from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import materials
 from fem_impact.scene.read import read_dict
-from fem_impact.solid.build import build, elastic_block
+from fem_impact.solid.block import elastic_block
+from fem_impact.solid.build import build
 from meshes import SKIN, RodMesh
 
 STEEL, ALUMINIUM = (materials()[name] for name in ("steel-4340", "aluminium-6061-t6"))

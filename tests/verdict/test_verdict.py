@@ -12,9 +12,11 @@ from wide_contact import WIDE
 
 from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
+from fem_impact.outcome.keys import known
 from fem_impact.plan.cells import ERROR, expected_cells
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
+from fem_impact.plan.plates import half_space_error
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.shipped import load, replace_all
@@ -374,7 +376,7 @@ def solid_alone(monkeypatch, moved):
         assert fidelity == "solid"
         shift = moved[len(asked)]
         asked.append(scenes[0].accuracy)
-        plain, made = load("t5b"), []
+        plain, made = load("plate-10mm" if scenes[0].barrier.bends else "t5b"), []
         for effects, by in zip((scene.effects for scene in scenes), (shift, 0.0), strict=True):
             run = simulate(replace(plain, effects=effects), "modal")
             edge = replace(run.restitution.edge, e=0.4 + by)
@@ -395,6 +397,25 @@ def test_layers_are_decided_by_finite_elements_alone_on_two_meshes(monkeypatch):
     assert any("no reduced model of a barrier of layers" in note for note in found.notes)
     case = dict(document(found)["basis"])["case"]
     assert "tip A, 0.168 kg, on 2 mm of steel-4340 on aluminium-6061-t6" in case
+
+
+def test_a_plate_thinner_than_its_contact_is_wide_is_decided_by_finite_elements_alone(monkeypatch):
+    solid_alone(monkeypatch, [0.2, 0.19])
+    found = assess(replace_all(load("plate-10mm"), {"barrier.thickness": "3 mm"}), budget_s=1e5)
+    assert (found.fidelity, found.answer, found.worst) == ("solid", "no", None)
+    assert any("no reduced model of a plate thinner than" in note for note in found.notes)
+
+
+def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plate_may_change():
+    thin, thick = (
+        replace_all(load("plate-10mm"), {"barrier.thickness": thickness}) for thickness in ("8 mm", "12 mm")
+    )
+    change, plain = (modal_change(scene, modal_pair(scene)) for scene in (thin, thick))
+    told = known_error(thin).change_of_e
+    share = (change.band - told) / known(change.free.restitution.edge.e)
+    assert share == pytest.approx(half_space_error(plan(thin).bodies), rel=1e-12)
+    assert "The plate is thin beside the contact" in change.source
+    assert plain.band == known_error(thick).change_of_e
 
 
 def test_one_mesh_that_no_reduced_model_bears_out_decides_nothing(monkeypatch):

@@ -1,0 +1,87 @@
+"""A meshed barrier as items of the model: its linear part, and what stands for all that lies around it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.sparse as sp
+
+from fem_impact.arrays import Array
+from fem_impact.fem.body import MeshedBody, stiffness_of
+from fem_impact.fem.boundary import plate_edges, radiating_share, spread_boundary
+from fem_impact.fem.layout import DofLayout
+from fem_impact.fem.sparse import NodeProduct, tie_operator
+from fem_impact.solid.elastic import Dashpots, ElasticBlock
+
+
+@dataclass(frozen=True, slots=True)
+class ElasticBlockParts:
+    """Operators of a meshed barrier and of the half-space around it.
+
+    Attributes
+    ----------
+    linear : the item of its linear part
+    stiffness : (size, size) of all its cells, N/m
+    springs, pots : (size, size), N/m, and (size,), N s/m, of the half-space
+    """
+
+    linear: ElasticBlock
+    stiffness: sp.csr_matrix
+    springs: sp.dia_matrix
+    pots: Array
+
+
+def elastic_block(
+    body: MeshedBody,
+    layout: DofLayout,
+    x: Array,
+    effect: str = "barrier-elastic",
+    bending: float | None = None,
+) -> ElasticBlockParts:
+    """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it.
+
+    A plate meshed through its thickness has no springs, and dashpots at its edges for bending waves of the
+    phase speed ``bending``, m/s.
+    """
+    place = layout.barrier_slice
+    shifted, n = body.places - place.start, place.stop - place.start
+    T = tie_operator(body.mesh.tie, shifted, n)
+    around = [
+        plate_edges(body.mesh, m.E, m.nu, m.rho, bending)
+        if bending
+        else spread_boundary(body.mesh, m.E, m.nu, m.rho, here)
+        for m, here in body.parts
+    ]
+    spring, damping = (sum(parts[1:], parts[0]) for parts in zip(*around, strict=True))
+    springs, pots = sp.diags(T.T @ spring.ravel()), T.T @ damping.ravel()
+    linear = stiffness_of(body, ~body.yields, n, place.start)
+    K = sp.csr_matrix(linear + springs)
+    K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
+    item = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
+    return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
+
+
+def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
+    """Return the dashpots of a block's boundary, which take the radiated energy."""
+    place, (m, _) = layout.barrier_slice, body.parts[-1]  # slow waves are far longer than layers are thick
+    nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
+    loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
+    fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
+    damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))
+    return _dashpots(damping, layout, inverse_mass)
+
+
+def plate_dashpots(layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
+    """Return the dashpots at the edges of a plate meshed through its thickness, which take bending waves."""
+    return replace(_dashpots(block.pots, layout, inverse_mass), effect="plate-bending", accounts=("plate",))
+
+
+def _dashpots(damping: Array, layout: DofLayout, inverse_mass: Array) -> Dashpots:
+    place = layout.barrier_slice
+    places = place.start + np.flatnonzero(damping)
+    places = places[inverse_mass[places] > 0]
+    ends = layout.ends(places) if len(layout.footing) else places[:0]
+    return Dashpots(
+        places, damping[places - place.start], inverse_mass[places], ends, inverse_mass[ends].copy()
+    )
