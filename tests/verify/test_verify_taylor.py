@@ -14,21 +14,25 @@ def checks(found):
 
 
 def test_a_coarse_bar_is_near():
-    found = checks(verify("taylor", COARSE))
+    """Slices of half the radius: the error of such a mesh is told as large as it is."""
+    done = verify("taylor", COARSE)
+    found = checks(done)
+    assert done.passed
     for name in ("final length", "final length, printed"):
-        assert abs(found[name].error) < 0.35e-3
+        assert abs(found[name].error) < found[name].tolerance < 0.35e-3
     for name in ("foot radius", "foot radius, printed"):
         assert abs(found[name].error) < 0.25e-3
-    assert found["energy ledger / E_0"].passed
 
 
 def test_another_metal_shape_and_speed():
-    steel = {"E": "200 GPa", "nu": 0.29, "rho": 7850, "yield_stress": "700 MPa", "hardening": "1 GPa"}
-    found = checks(verify("taylor", {**steel, **COARSE, "slices": 32, "radius": "4 mm", "speed": 150.0}))
+    """Within 0.2 % of its length, 2 % of what it is shortened by: a yield stress 2 % too high is noticed."""
+    metal = {"E": "200 GPa", "nu": 0.29, "rho": 7850, "yield_stress": "700 MPa", "hardening": "1 GPa"}
+    done = verify("taylor", {**metal, "slices": 48, "radius": "4 mm", "speed": 150.0})
+    found = checks(done)
     assert "final length, printed" not in found
-    assert abs(found["final length"].error) < 2e-3 * 32.4e-3
-    assert abs(found["foot radius"].error) < 0.02 * 4e-3
-    assert found["energy ledger / E_0"].passed
+    assert found["final length"].tolerance < 0.055e-3
+    assert found["foot radius"].tolerance < 0.01 * 4e-3
+    assert done.passed
 
 
 def test_a_bar_without_hardening_goes_on_though_its_foot_thins():
