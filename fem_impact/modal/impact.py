@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import cos, sin
+from math import cos, sin, sqrt
 
 import numpy as np
 
@@ -42,7 +42,7 @@ from fem_impact.progress import Progress, compiling
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
-FASTEST = 0.1  # of a step, rad of the highest mode
+FASTEST = 0.1  # of a step, rad of the highest mode and of the struck point on its contact
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,12 +114,13 @@ def solve(
     scene = plan.scene
     rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
     flow = flow_law(plan.bodies, plan.slots.rod_law, plan.slots.barrier_law)
-    dt = contact_estimate(plan.bodies).duration / STEPS
-    dt = min(dt, FASTEST / float(rod.omega.max())) if len(rod.omega) else dt
     contacts = np.zeros((MOST_CONTACTS, 4))
     start, modes = _start(plan, rod), Modes(rod.omega, rod.along_t, rod.along_n)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
-    bounds = Bounds(dt, horizon(scene), plan.max_time, reach(law, flow, E_0))
+    widest = reach(law, flow, E_0)
+    fastest = max([*rod.omega, contact_rate(law, flow, start, modes, widest)])
+    dt = min(contact_estimate(plan.bodies).duration / STEPS, FASTEST / fastest)
+    bounds = Bounds(dt, horizon(scene), plan.max_time, widest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     record = np.zeros((MOST_ROWS if recorded else 0, 15))
     drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
@@ -203,6 +204,22 @@ def reach(law: ContactLaw, flow: FlowLaw, energy: float) -> float:
         return float(np.sqrt(law.R) * (2.5 * energy / law.stiffness) ** 0.2)
     depth = np.sqrt(energy / (np.pi * law.limit * law.R))
     return float(np.sqrt(2 * flow.R1 * depth))
+
+
+def contact_rate(law: ContactLaw, flow: FlowLaw, start: Start, modes: Modes, widest: float) -> float:
+    """Return a bound, rad/s, of how fast the struck point swings on a contact of half length ``widest``, m.
+
+    The tip of a thin rod gives way to its many modes as if it were light; on a contact that grows wide under
+    the weight of the whole rod it swings faster than any of them.
+    """
+    light = 2 * (1 / start.mass + start.lightness) + start.ease * (start.deep**2 + start.beside**2)
+    light += (start.centre_t**2 + (start.centre_n - start.radius) ** 2) / (start.mass * start.k2)
+    light += float(np.sum(modes.along_t**2 + modes.along_n**2))
+    if flow.yields:
+        stiffness = 2 * widest * max(flow.normal, flow.shear)
+    else:
+        stiffness = widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
+    return sqrt(stiffness * light)
 
 
 def _start(plan: Plan, rod: ModalRod) -> Start:
