@@ -47,6 +47,7 @@ def _shipped(name: str) -> Scene:
 
 
 LENGTH = {"projectile.length", "projectile.length_m"}
+BODIES = ("projectile", "impact", "barrier")
 _CHANGED = ", changed: "
 _LONGEST = 300  # characters of a title
 # longest first: "_rad_per_s" before "_s"
@@ -69,7 +70,7 @@ def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     data = to_dict(scene)
     for key, value in changes.items():
         _change(data, key, value)
-    if other := {key: value for key, value in changes.items() if _is_another_impact(key)}:
+    if other := {key: value for key, value in changes.items() if _is_another_impact(key, value)}:
         measured = data.pop("measured", "")
         if "title" not in changes:
             data["title"] = _title(data["title"], measured, other)
@@ -125,10 +126,11 @@ def _bare(key: str) -> str:
     return next((key.removesuffix(suffix) for suffix in _SUFFIXES if key.endswith(suffix)), key)
 
 
-def _is_another_impact(key: str) -> bool:
+def _is_another_impact(key: str, value: Any) -> bool:
     *path, last = key.split(".")
-    bodies = (["projectile"], ["impact"], ["barrier"])
-    return (path in bodies and last not in ("material", "boundary")) or key == "surface.state"
+    names = value if isinstance(value, Mapping) and not path else [last]  # a whole table states several
+    body = path[0] if len(path) == 1 else key
+    return (body in BODIES and not {*names} <= {"material", "boundary"}) or key == "surface.state"
 
 
 def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
@@ -140,7 +142,10 @@ def _title(title: str, measured: str, changes: Mapping[str, Any]) -> str:
 
 def titled(title: str, changes: Mapping[str, Any]) -> str:
     """Return a title that tells changed values, after those that it tells already."""
-    told = ", ".join(f"{key} = {value}" for key, value in changes.items())
+    told = ", ".join(
+        f"another {key}" if isinstance(value, Mapping) else f"{key} = {value}"
+        for key, value in changes.items()
+    )
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
 
 

@@ -140,6 +140,27 @@ def test_another_rod_motion_or_surface_no_longer_repeats_a_set(key, value):
     assert replace(load("t4"), key, value).measured is None
 
 
+BALL = {"shape": "ball", "diameter": "19 mm", "material": "rod-steel"}
+
+
+@pytest.mark.parametrize(
+    ("key", "table"),
+    [
+        ("projectile", BALL),
+        ("impact", {"angle": "45 deg", "speed": "1 m/s"}),
+        ("barrier", {"material": "plate-steel", "mass": "1 kg"}),
+    ],
+)
+def test_a_whole_table_repeats_no_set_and_the_title_says_so(key, table):
+    changed = replace(load("t5b"), key, table)
+    assert changed.measured is None
+    assert changed.title == f"t5b, changed: another {key}"
+
+
+def test_a_table_of_materials_alone_is_the_models_side():
+    assert replace(load("t5b"), "barrier", {"material": "steel-4340"}).measured == "t5b"
+
+
 def test_a_title_says_that_its_set_was_changed():
     stated = load("t5b")
     assert replace(stated, "surface.friction", 0.3).title == stated.title
