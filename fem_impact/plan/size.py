@@ -44,7 +44,11 @@ FILL = 2400.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n
 # element, w cells across: the largest resident memory (VmHWM) of processes that did nothing else, for half
 # boxes of 7 000 to 32 000 cells, as long as wide and five times longer (tests/benchmarks/own_mesh_memory.py)
 OWN_BASE, OWN_ELEMENT, OWN_FILL, PIECE = 2.4e8, 9.5e3, 330.0, 1.15
+# bytes of that for an entry of the lower factor (boxes of 7 000 to 16 000 cells, 13.6 to 14), which SuperLU
+# numbers by 32 bits
+ENTRY, MOST_ENTRIES = 14.0, 2.0**31
 ELASTIC, YIELDING = 30e-9, 270e-9  # s of a step for an element that cannot yield, and for one that may
+LARGER = 'Give a mesh of larger cells, or let it not vibrate: effects = ["auto", "-vibration"].'
 SETUP = 4.0e-4  # s for an element: mesh, assembly, modes
 
 
@@ -108,8 +112,10 @@ def machine_memory() -> float:
 
 
 def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> None:
-    """Refuse a mesh that needs more memory than the machine has (SceneError)."""
+    """Refuse a mesh that needs more memory than the machine has, or too large a factor (SceneError)."""
     size, there = run_size(slots, bodies, zones), machine_memory()
+    if slots.vibrating:
+        _require_factor(bodies.scene, size.rod)
     if size.memory <= there:
         return
     problem = (
@@ -118,11 +124,22 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
     )
     finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.scene.projectile.own_mesh
     if mesh is not None and not finest:
-        remedy = 'Give a mesh of larger cells, or let it not vibrate: effects = ["auto", "-vibration"].'
-        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=remedy)
+        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
     none = "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
     value = format_quantity(zones.tip_size, "length")
     raise SceneError(problem, key="accuracy.tip_size", value=value, remedy=finest or none)
+
+
+def _require_factor(scene: Scene, rod: int) -> None:
+    """Refuse a user's mesh of so many elements that vibrate that the solver cannot number their factor."""
+    mesh = scene.projectile.own_mesh
+    if mesh is None or (entries := _own_factor(mesh, rod) / ENTRY) <= MOST_ENTRIES:
+        return
+    problem = (
+        f"makes about {about(rod)} elements, whose modes need a factor of some {entries:.2g} entries; the "
+        f"solver numbers {MOST_ENTRIES:.2g} of them at most."
+    )
+    raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
 
 
 def _memory(scene: Scene, vibrates: bool, rod: float, barrier: float) -> float:

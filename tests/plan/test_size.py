@@ -117,6 +117,20 @@ def test_a_users_mesh_that_does_not_fit_is_refused_before_any_work(tmp_path, mon
     assert plan(half_box(tmp_path, 24, 12, 24)).size.memory < 8e8
 
 
+def test_a_users_mesh_whose_modes_the_solver_cannot_number_is_refused(tmp_path, monkeypatch):
+    """However much memory there is: the lower factor of 24 x 12 x 24 cells has 14 782 579 entries."""
+    scene = half_box(tmp_path, 24, 12, 24)
+    monkeypatch.setattr(sizes, "MOST_ENTRIES", 1.1 * 14_782_579)
+    assert plan(scene).size.rod == 6912
+    monkeypatch.setattr(sizes, "MOST_ENTRIES", 0.9 * 14_782_579)
+    with pytest.raises(
+        SceneError, match=r"projectile\.mesh = .*needs? a factor of some .* entries.*larger cells"
+    ):
+        plan(scene)
+    still = {"effects": ["auto", "-vibration"], "accuracy.tip_size": "0.6 mm"}
+    assert not plan(replace_all(scene, still)).slots.vibrating
+
+
 def test_a_rod_that_never_fits_is_told_so(monkeypatch):
     monkeypatch.setattr(sizes, "machine_memory", lambda: 1e8)
     with pytest.raises(SceneError, match="No tip size fits"):
