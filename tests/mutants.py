@@ -302,6 +302,20 @@ MUTANTS = (
         "np.divide(0.5 * total * total, total,",
         f"{HEATING}::test_a_short_flash_is_shared_by_effusivity",
     ),
+    Mutant(
+        "the impedance of a plate beside its mesh, which bends by itself",
+        "fem_impact/plan/plan.py",
+        "slots.plate, slots.bending = None, plate_waves(bodies)[0]",
+        "slots.bending = plate_waves(bodies)[0]",
+        "tests/plan/test_plates.py::test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong",
+    ),
+    Mutant(
+        "dashpots that turn the edge of a plate as if its nodes lay evenly through it",
+        "fem_impact/fem/boundary.py",
+        " ** 2 / 12 / lumped",
+        " ** 0",
+        "tests/solid/test_plate_mesh.py::test_edges_push_and_turn_like_the_rest_of_the_plate",
+    ),
 )
 
 

@@ -89,6 +89,16 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
         assert (found.stretch == expected.stretch).all() and (found.bending == expected.bending).all()
 
 
+def test_a_run_on_a_plate_that_is_meshed_through_goes_on(tmp_path):
+    scene = short(SETS[2])
+    scene = replace(scene, barrier=replace(scene.barrier, thickness=5e-3))
+    assert plan(scene).slots.bending is not None
+    expected = kept(scene, tmp_path / "whole")
+    found = kept(scene, interrupted(scene, tmp_path / "parts", 400), resume=True)
+    assert found.accounts["plate"] > 0
+    assert outcome_numbers(found) == outcome_numbers(expected)
+
+
 def test_killed_after_its_last_step_a_run_does_not_go_on_past_its_end(tmp_path):
     scene = short(SETS[1])
     expected = kept(scene, tmp_path, checkpoint_s=0.0)  # a checkpoint whenever one may be written
