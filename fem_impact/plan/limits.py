@@ -196,12 +196,18 @@ def require_point(bodies: ContactBodies) -> None:
         _require_tip(bodies, body)
         return
     size, (length, height) = contact_estimate(bodies), body.flank(scene.impact.angle)
-    if length > 2 * size.a_t and height < FLAT * size.depth:
+    flat = FLAT * size.depth
+    if length > 2 * size.a_t and height < flat:
+        steeper = math.degrees(math.asin(min(1.0, flat / length)) - math.asin(height / length))
+        turned = f"Change it by {steeper:.2g} deg or more."
+        slower = (
+            f"Give a lower speed or stronger materials: the tip is pressed in by {size.depth * 1e3:.2g} mm."
+        )
         raise SceneError(
             f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
             key="impact.angle",
             value=f"{math.degrees(scene.impact.angle):.4g} deg",
-            remedy=f"Change it by {math.degrees(FLAT * size.depth / length):.2g} deg or more.",
+            remedy=turned if flat < length else slower,
         )
 
 

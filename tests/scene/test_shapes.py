@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from math import copysign, radians
 
@@ -188,6 +189,28 @@ def test_a_flank_that_lies_on_the_barrier_is_refused():
     with pytest.raises(SceneError, match=r"flank of 2\.83 mm along the barrier"):
         plan(read_dict(scene(chamfer)), "modal")
     assert plan(read_dict(scene(chamfer, "30 deg")), "modal")
+
+
+@pytest.mark.parametrize("angle", [45.0, 41.0])
+def test_an_angle_that_is_changed_by_about_what_the_refusal_says_is_accepted(angle):
+    """About, as the depth of the contact changes with the angle."""
+    chamfer = {"profile": [["0 mm", "5 mm"], ["2 mm", "7 mm"], ["80 mm", "8 mm"]]}
+    with pytest.raises(SceneError) as refused:
+        plan(read_dict(scene(chamfer, f"{angle} deg")), "modal")
+    told = float(re.search(r"Change it by (\S+) deg", refused.value.remedy).group(1))
+    assert plan(read_dict(scene(chamfer, f"{angle - 1.15 * told} deg")), "modal")
+    with pytest.raises(SceneError, match="flank"):
+        plan(read_dict(scene(chamfer, f"{angle - 0.85 * told} deg")), "modal")
+
+
+def test_a_flank_that_is_pressed_in_whole_asks_for_a_lower_speed():
+    """No angle helps: one of 170 deg was asked for."""
+    cone = {"shape": "cone", "length": "700 mm", "diameter": "7.4 mm", "cone_angle": "67 deg"}
+    fast = scene(cone | {"face_diameter": "1.3 mm"}, "5 deg")
+    fast["impact"] = fast["impact"] | {"v_n": "-14 m/s", "v_t": "-1 m/s"}
+    with pytest.raises(SceneError, match="flank") as refused:
+        plan(read_dict(fast), "modal")
+    assert "lower speed" in refused.value.remedy and "deg" not in refused.value.remedy
 
 
 def test_the_radius_at_the_contact_is_that_of_the_point_that_touches():
