@@ -268,6 +268,27 @@ MUTANTS = (
         "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
     ),
     Mutant(
+        "cells of a rod's tip counted over its diameter, not where it touches",
+        "fem_impact/verify/sears_rod.py",
+        "if levels_for_radius(edge, touch,",
+        "if levels_for_radius(2 * R / p['across'] / 2 ** len(zones), touch,",
+        "tests/verify/test_verify_sears.py::test_the_cells_are_counted_where_it_touches",
+    ),
+    Mutant(
+        "yield stress of a linear hardening 2 % too high",
+        "fem_impact/physics/hardening.py",
+        "return Hardening(yield_stress, modulus / yield_stress, 1.0)",
+        "return Hardening(1.02 * yield_stress, modulus / yield_stress, 1.0)",
+        "tests/verify/test_verify_taylor.py::test_another_metal_shape_and_speed",
+    ),
+    Mutant(
+        "steps of the reduced model by its modes alone",
+        "fem_impact/modal/impact.py",
+        "fastest = max([*rod.omega, contact_rate(law, flow, start, modes, widest)])",
+        "fastest = max([*rod.omega, 1.0])",
+        "tests/modal/test_modal_limits.py::test_the_step_follows_the_contact_of_a_thin_rod_too",
+    ),
+    Mutant(
         "springs of the block's boundary a third as stiff",
         "fem_impact/fem/forms.py",
         "return w.G / r * along_and_across",
