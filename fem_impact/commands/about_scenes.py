@@ -106,7 +106,7 @@ def add_cost(commands: Commands) -> None:
             "run no more than takes so much CPU time, such as '30 s', and name the best setting",
         ),
         ("--of", "NAMES", "quantities that count, as --of e,mu (default: e,E_vib)"),
-        ("--finest", "SIZE", "leave out finer meshes than this, such as '0.25 mm'"),
+        ("--finest", "SIZE", "smallest element at the tip, such as '0.25 mm' (default: three meshes)"),
     ):
         parser.add_argument(option, default="", metavar=metavar, help=text)
     parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")

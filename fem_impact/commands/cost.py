@@ -47,7 +47,7 @@ def cost(options: Options) -> int:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
     out = checked_out(options.out or Path("results") / "cost" / scene.id)
     from fem_impact.cost.document import text_table
-    from fem_impact.cost.judge import pair_sentence
+    from fem_impact.cost.judge import group_sentence
     from fem_impact.files.lock import directory_lock
     from fem_impact.study.cost_report import answers, scene_report
 
@@ -56,7 +56,7 @@ def cost(options: Options) -> int:
         notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
     told = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
     if target is not None:
-        told.append(pair_sentence(study.settings, study.quantities, names, target))
+        told.append(group_sentence(study.settings, study.quantities, names, target))
     if options.json:
         print_json({**study.to_dict(), "advice": told, "notes": notes})
     else:
@@ -97,12 +97,13 @@ def _share(text: str) -> float:
 
 
 def _meshes(scene: Scene, finest: str) -> list[Mesh]:
-    """Return the meshes whose tip elements are at least ``finest`` in size."""
-    from fem_impact.cost.settings import family
+    """Return the meshes whose tip elements are at least ``finest`` in size, without it the usual three."""
+    from fem_impact.cost.settings import family, rungs
     from fem_impact.scene.units import option_quantity
 
-    least = option_quantity(finest, "length", "--finest") if finest else 0.0
-    meshes = family(scene)
+    if not finest:
+        return list(family(scene))
+    least, meshes = option_quantity(finest, "length", "--finest"), rungs(scene)
     sizes = [mesh.sizes(scene)[0] for mesh in meshes]
     if least > sizes[:2][-1]:
         raise UsageError(

@@ -126,12 +126,11 @@ def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
         sys.stderr.write(f"{sentence}\n")
 
 
-def _budget(options: Options) -> float:
+def _budget(options: Options) -> float | None:
     """Return the wall time, s, of ``--budget``, for a scene that states the error it allows."""
-    from fem_impact.cost.to_target import BUDGET
     from fem_impact.scene.units import option_quantity
 
-    return option_quantity(options.budget, "time", "--budget") if options.budget else BUDGET
+    return option_quantity(options.budget, "time", "--budget") if options.budget else None
 
 
 def _long_run(scene: Scene) -> str:

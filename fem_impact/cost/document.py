@@ -68,7 +68,11 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
         (
             "scatter",
             "Scatter between places of the barrier's grid, as standard error, in %",
-            [_line(one, one.scatter, listed) for one in cost.settings if one.kind in ("mesh", "pair")],
+            [
+                _line(one, one.scatter, listed)
+                for one in cost.settings
+                if one.kind in ("mesh", "extrapolated")
+            ],
         ),
         (
             "bands",

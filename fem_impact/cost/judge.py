@@ -27,17 +27,18 @@ class Judged:
 
     Attributes
     ----------
-    value : by quantity, the mean over the places of the barrier's grid; of a pair of meshes its limit
-    error : by quantity, over its scale: distance from the limit plus the uncertainty of the limit, of a pair
-        its band where that is less; where an effect is left out, the change by that on the same mesh
+    value : by quantity, the mean over the places of the barrier's grid; of several meshes their limit
+    error : by quantity, over its scale: distance from the limit plus the uncertainty of the limit, of
+        several meshes their band where that is less; where an effect is left out, the change by that on the
+        same mesh
     scatter : standard error of the value over the scale, of a solid setting with all effects
-    band : of a pair, uncertainty of its extrapolation over the scale, scatter included
+    band : of several meshes, uncertainty of their extrapolation over the scale, scatter included
     wall_s, cpu_s : wall and processor time of all runs, each with its set-up, which an outcome states apart
         from its own ``wall_s`` and ``cpu_s`` (``setup_wall_s``, ``setup_cpu_s``)
     two_cores_s : ``cpu_s`` of the longer half when the runs are divided between two cores
     element_steps : elements times time steps, None for a reduced model
     peak_memory_MB : of the largest run
-    meshes : of a solid setting, the finer first
+    meshes : of a solid setting, the finest first
     front : names of the quantities on whose Pareto front the setting lies
     """
 
@@ -66,7 +67,7 @@ def judge(
 ) -> Judged:
     """Return a setting with its errors.
 
-    ``runs`` are those on each mesh, the finer first, or one of a reduced model. If the setting leaves an
+    ``runs`` are those on each mesh, the finest first, or one of a reduced model. If the setting leaves an
     effect out, ``whole`` are the runs with all effects on the same mesh, which are the reference then.
     """
     if whole is not None:
@@ -76,7 +77,7 @@ def judge(
             if q.name in truth
         }
     flat = [run for placed in runs for run in placed]
-    own = truths(runs) if len(runs) == 2 else {}
+    own = truths(runs) if len(runs) > 1 else {}
     value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
     if len(runs) == 1 and setting.meshes and whole is None:
@@ -110,7 +111,7 @@ def cpu_seconds(run: Outcome) -> float:
 
 
 def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
-    """Return a bound of the error over the scale, by the limit of all meshes or a pair's own band if less."""
+    """Return a bound of the error over the scale, by the limit of all meshes or its own band if less."""
     if value is None or truth is None:
         return None
     bound = abs(value - truth.value) + truth.uncertainty
@@ -191,36 +192,34 @@ def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
     return f"{setting.name}, error {plain(100 * worst(setting, names), 2)} % in {plain(setting.cpu_s)} s"
 
 
-def best_pair(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
-    """Return the quickest pair on two cores whose bands meet the target.
+def best_group(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
+    """Return the several meshes whose bands meet the target most quickly on two cores.
 
-    If none does, the pair with the largest ratio of sizes, the finer if there are two: scatter of the values
-    has the least influence on its limit. The smallest band may be small by chance.
+    If none do, the finest two: the smallest band may be small by chance.
     """
-    pairs = [one for one in settings if one.band]
-    good = [one for one in pairs if all(one.band[name] <= target for name in names)]
+    groups = [one for one in settings if one.band]
+    good = [one for one in groups if all(one.band[name] <= target for name in names)]
     if good:
         return min(good, key=lambda one: one.two_cores_s)
-    cells = [[mesh["across"] * 2 ** mesh["tip"] for mesh in pair.meshes] for pair in pairs]
-    ranked = [(fine / coarse, fine) for fine, coarse in cells]
-    return pairs[ranked.index(max(ranked))] if pairs else None
+    pairs = [one for one in groups if len(one.meshes) == 2]
+    return max(pairs, key=lambda one: [mesh["finer"] for mesh in one.meshes], default=None)
 
 
-def pair_sentence(
+def group_sentence(
     settings: Sequence[Judged], quantities: Quantities, names: Sequence[str], target: float
 ) -> str:
-    """Say what the best pair gives for every quantity that is asked for."""
-    pair = best_pair(settings, names, target)
-    if pair is None:
+    """Say what the best several meshes give for every quantity that is asked for."""
+    group = best_group(settings, names, target)
+    if group is None:
         return "No two meshes gave a result."
-    verdicts = "; ".join(f"{name} {verdict(pair, quantities, name, target)}" for name in names)
-    took = f"{pair.two_cores_s:.3g} s on two cores"
-    return f"Two meshes against {100 * target:.3g} %, {pair.name}: {verdicts}; {took}."
+    verdicts = "; ".join(f"{name} {verdict(group, quantities, name, target)}" for name in names)
+    took = f"{group.two_cores_s:.3g} s on two cores"
+    return f"Several meshes against {100 * target:.3g} %, {group.name}: {verdicts}; {took}."
 
 
-def verdict(pair: Judged, quantities: Quantities, name: str, target: float) -> str:
+def verdict(group: Judged, quantities: Quantities, name: str, target: float) -> str:
     """Return value, band, how much of it is scatter, and whether the band meets the target."""
-    value, band, scale = pair.value[name] or 0.0, pair.band[name], quantities[name]["scale"]
+    value, band, scale = group.value[name] or 0.0, group.band[name], quantities[name]["scale"]
     reached = "reached" if band <= target else "not reached"
-    scatter = f"{pair.scatter[name] * scale:.4f} of it scatter"
+    scatter = f"{group.scatter[name] * scale:.4f} of it scatter"
     return f"{value:.4f} ± {band * scale:.4f} ({scatter}), {reached}: {plain(100 * band, 2)} %"

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-SCHEMA = "fem-impact/cost/3"
+SCHEMA = "fem-impact/cost/4"
 BRIEF = 5e-6  # s, end of the run that compiles the kernels: within the first contact
 
 
@@ -160,7 +160,7 @@ def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Seque
 
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:
-    """Return the runs of a ladder without repetition: a pair uses the runs of its two meshes."""
+    """Return the runs of a ladder without repetition: several meshes use the runs of each."""
     jobs = (job for setting in settings for on_mesh in setting.runs for job in on_mesh)
     return list({job.name: job for job in jobs}.values())
 

@@ -10,7 +10,7 @@ from time import perf_counter
 from fem_impact.cost.lanes import below, in_lanes, side_by_side
 from fem_impact.cost.limits import Placed, mesh_limits, truths
 from fem_impact.cost.quantities import TARGETED
-from fem_impact.cost.settings import family, placed
+from fem_impact.cost.settings import placed, rungs
 from fem_impact.errors import RunError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -48,7 +48,7 @@ class OwnLadder:
     @classmethod
     def of(cls, scene: Scene, budget_s: float, workers: int, reason: str) -> OwnLadder:
         """Return the ladder whose first two meshes fit the budget, or one run on the coarsest mesh."""
-        whole = [tuple(placed(scene, mesh)) for mesh in family(scene)]
+        whole = [tuple(placed(scene, mesh)) for mesh in rungs(scene)]
         single = [scenes[:1] for scenes in whole]
         of_pair = [expected_s(chain.from_iterable(each[:2]), workers) for each in (whole, single)]
         fitting = [each for each, time in zip((whole, single), of_pair, strict=True) if time <= budget_s]
@@ -74,7 +74,7 @@ class OwnLadder:
         )
 
     def simulate(self, options: RunOptions, workers: int) -> Outcome:
-        """Return the outcome of the finest mesh at its first place, with the limits of all meshes.
+        """Return the outcome of the finest mesh at its first place, with the limits of the finest two.
 
         Raises
         ------
@@ -97,14 +97,14 @@ class OwnLadder:
                 break
             meshes.append(runs)
             pace = (perf_counter() - start) / expected
-            if len(meshes) > 1 and achieved_error(meshes) <= self.target:
+            if len(meshes) > 1 and achieved_error(meshes[-2:]) <= self.target:
                 break
         return self._stated(meshes, perf_counter() - begun, options)
 
     def _stated(self, meshes: list[Placed], wall_s: float, options: RunOptions) -> Outcome:
         """Return the outcome with what was reached in its validity; its files come up from below."""
         finest, pair = meshes[-1][0], len(meshes) > 1
-        limits, bands = mesh_limits(meshes[-1], meshes[0]) if pair else (ALONE, ALONE)
+        limits, bands = mesh_limits(meshes[-2:]) if pair else (ALONE, ALONE)
         warnings = [OVER.format(wall_s, self.budget_s)] if wall_s > self.budget_s else []
         stated = replace(
             finest.validity,
@@ -114,7 +114,7 @@ class OwnLadder:
             expected_error=NOT_MEASURED,
             expected_wall=max(self.budget_s, self.least_s),
             achieved_wall=wall_s,
-            achieved_error=achieved_error(meshes) if pair else ALONE,
+            achieved_error=achieved_error(meshes[-2:]) if pair else ALONE,
             mesh_limit=limits,
             mesh_band=bands,
         )

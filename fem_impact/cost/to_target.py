@@ -33,7 +33,7 @@ from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
-SUMMARY = "fem-impact/cost-summary/3"
+SUMMARY = "fem-impact/cost-summary/4"
 
 STEEL = ("E", "rho", "yield", "ultimate over yield")
 # largest differences of a scene from one whose cost was measured; of ratios and sizes, of their logarithms
@@ -50,7 +50,7 @@ NEARNESS = {
 }
 # keys of accuracy that change errors or times and must be the same
 SAME = ("element", "yielding_element", "step", "mass_scaling", "fine_zone", "block_margin")
-BUDGET = 120.0  # s of wall time for a scene whose like was not measured
+BUDGET = 120.0  # s of wall time, unless stated, for a scene whose like was not measured
 
 
 class NotMeasured(SceneError):
@@ -69,7 +69,7 @@ class ChosenSetting:
 
     @property
     def meshes(self) -> list[Mesh]:
-        """Return the meshes to run, fine first."""
+        """Return the meshes to run, the finest first."""
         return [Mesh(**mesh) for mesh in self.setting.meshes]
 
     @property
@@ -209,9 +209,11 @@ def _written(scene: Scene) -> str:
 
 
 def settle(
-    scene: Scene, fidelity: str | None = None, workers: int = 1, budget_s: float = BUDGET
+    scene: Scene, fidelity: str | None = None, workers: int = 1, budget_s: float | None = None
 ) -> ChosenSetting | OwnLadder:
     """Return the stored setting that meets the scene's target, or a ladder of its own where there is none.
+
+    A stored setting that takes longer than a stated ``budget_s``, s of wall time, gives way to such a ladder.
 
     Raises
     ------
@@ -219,11 +221,16 @@ def settle(
         The fidelity that is asked for does not know the quantities of a target.
     """
     try:
-        return choose_setting(scene, fidelity, workers)
+        chosen = choose_setting(scene, fidelity, workers)
+        if budget_s is None or chosen.expected_wall_s <= budget_s:
+            return chosen
+        took = plain(chosen.expected_wall_s, 2)
+        reason = f"{chosen.setting.name}, measured on {chosen.like}, takes about {took} s."
     except NotMeasured as missing:
         if fidelity not in (None, "solid"):
             raise
-        return OwnLadder.of(scene, budget_s, workers, missing.problem)
+        reason = missing.problem
+    return OwnLadder.of(scene, BUDGET if budget_s is None else budget_s, workers, reason)
 
 
 def simulate(
@@ -231,17 +238,17 @@ def simulate(
     fidelity: str | None = None,
     options: RunOptions = RunOptions(),
     workers: int = 1,
-    budget_s: float = BUDGET,
+    budget_s: float | None = None,
     chosen: ChosenSetting | OwnLadder | None = None,
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
     A chosen setting runs each mesh at its places of the barrier's grid. The result is the outcome of the
-    finer mesh at the first place, with the limits of two meshes, or the means of one, in its ``validity``.
-    Files of the other runs stand below ``options.out``. With two or more ``workers`` a second process does
-    half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
-    ``budget_s``, s, and the outcome says what they reached. ``chosen`` is what `settle` returned for this
-    scene, where the caller has asked already.
+    finest mesh at the first place, with the limits of several meshes, or the means of one, in its
+    ``validity``. Files of the other runs stand below ``options.out``. With two or more ``workers`` a second
+    process does half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
+    ``budget_s``, s (`BUDGET` unless stated), and the outcome says what they reached. ``chosen`` is what
+    `settle` returned for this scene, where the caller has asked already.
 
     Raises
     ------
@@ -279,9 +286,9 @@ def _runs(
 
 def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> Outcome:
     """Return the first outcome with target, expected and achieved error and time in its validity."""
-    first, pair = meshes[0][0], len(meshes) == 2
+    first, several = meshes[0][0], len(meshes) > 1
     means = mesh_means(meshes[0]) if chosen.meshes else ALONE
-    limits, bands = mesh_limits(*meshes) if pair else (means, ALONE)
+    limits, bands = mesh_limits(meshes) if several else (means, ALONE)
     stated = replace(
         first.validity,
         accuracy_target=chosen.target,
@@ -289,7 +296,7 @@ def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> O
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
         achieved_wall=wall_s,
-        achieved_error=achieved_error(meshes) if pair else ALONE,
+        achieved_error=achieved_error(meshes) if several else ALONE,
         mesh_limit=limits,
         mesh_band=bands,
     )

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 Row = dict[str, Any]
 
-QUICK = (Mesh(8, -2, -1), *FAMILY[:-1])
+QUICK = (Mesh(-2), *FAMILY[:-1])
 """Meshes of the quick study: a coarser one for the finest, since a limit takes three."""
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")

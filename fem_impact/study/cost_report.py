@@ -7,7 +7,7 @@ from statistics import median
 from typing import NamedTuple
 
 from fem_impact.cost.document import cost_tables
-from fem_impact.cost.judge import Judged, advice, best_pair, cheapest, default_sentence, front
+from fem_impact.cost.judge import Judged, advice, best_group, cheapest, default_sentence, front
 from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
@@ -25,7 +25,7 @@ LOOKS: dict[str, tuple[str, Look, str]] = {
     "rigid": ("rigid theory", "squares", "purple"),
     "modal": ("reduced model (modal)", "diamonds", "orange"),
     "mesh": ("finite elements, one mesh", "points", "blue"),
-    "pair": ("finite elements, two meshes extrapolated", "triangles", "green"),
+    "extrapolated": ("finite elements, several meshes extrapolated", "triangles", "green"),
     "numerics": ("other elements or half the step", "crosses", "vermilion"),
     "default": ("default run", "rings", "ink"),
     "full": ("default run without savings", "squares", "brown"),
@@ -33,7 +33,7 @@ LOOKS: dict[str, tuple[str, Look, str]] = {
 """Label, look and colour of each kind of setting."""
 GUIDE = (
     "The error of a setting is its distance from the limit for vanishing elements plus the uncertainty of "
-    "that limit; of two meshes it is the band of their own extrapolation where that is smaller.",
+    "that limit; of several meshes it is the band of their own extrapolation where that is smaller.",
     "Errors are divided by the value of the quantity, at least by 0.05 of e and by 0.5 % of E_0 of an "
     "energy: 2 % of E_vib are then at least 1e-4 of E_0.",
     "A time is the processor time of all runs of a setting with their set-up, on one core; two free cores "
@@ -47,8 +47,8 @@ GUIDE = (
 )
 
 
-class Pair(NamedTuple):
-    """The best two meshes of a set for one quantity, and whether their band meets `WANTED`."""
+class Group(NamedTuple):
+    """The best several meshes of a set for one quantity, and whether their band meets `WANTED`."""
 
     cells: tuple[Cell, ...]
     seconds: float
@@ -92,12 +92,12 @@ def answers(
 
 def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
     """Return the report of the measured sets, of the quantities that a target applies to."""
-    pairs = {
+    groups = {
         name: [_best(cost, quantity) for quantity in TARGETED]
         for name, cost in costs.items()
         if any(one.band for one in cost.settings)
     }
-    reached = map(_reached, TARGETED, zip(*pairs.values(), strict=True))
+    reached = map(_reached, TARGETED, zip(*groups.values(), strict=True))
     answer = " ".join([*reached, _defaults(costs), _savings(costs)]).strip()
     shown = {name: costs[name].settings for name in SHOWN if name in costs} or {
         name: cost.settings for name, cost in costs.items()
@@ -113,7 +113,7 @@ def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
         "What accuracy costs",
         [answer, *failed],
         [_picture(shown, TARGETED, panels)],
-        [_pair_sheet(pairs), _setting_sheet(costs)],
+        [_group_sheet(groups), _setting_sheet(costs)],
         GUIDE,
         conclusions=[(FIGURE, answer)],
     )
@@ -156,29 +156,29 @@ def _points(settings: Sequence[Judged], name: str) -> tuple[list[float], list[fl
     return [one.cpu_s for one in settings], [100 * (one.error[name] or 0.0) for one in settings]
 
 
-def _best(cost: CostStudy, name: str) -> Pair:
-    """Return the best pair of meshes for a quantity; its band is bold where it meets `WANTED`."""
-    pair = best_pair(cost.settings, (name,), WANTED)
-    assert pair is not None  # sets without a pair are left out
+def _best(cost: CostStudy, name: str) -> Group:
+    """Return the best several meshes for a quantity; their band is bold where it meets `WANTED`."""
+    group = best_group(cost.settings, (name,), WANTED)
+    assert group is not None  # sets with one mesh are left out
     truth = cost.truth[name]
-    both = pair.band[name] * truth.scale + truth.uncertainty
-    off = abs((pair.value[name] or 0.0) - truth.value) / both if both else 0.0
-    value = f"{pair.value[name] or 0.0:.4f} ± {pair.band[name] * truth.scale:.4f}"
-    met = pair.band[name] <= WANTED
-    band = f"**{_percent(pair.band[name])}**" if met else _percent(pair.band[name])
-    sizes = pair.name.removeprefix("solid ").removesuffix(" mm extrapolated")
-    shown = f"{band} ({_percent(pair.scatter[name])})"
-    return Pair((value, shown, sizes, f"{off:.1f}", f"{pair.two_cores_s:.3g}"), pair.two_cores_s, met)
+    both = group.band[name] * truth.scale + truth.uncertainty
+    off = abs((group.value[name] or 0.0) - truth.value) / both if both else 0.0
+    value = f"{group.value[name] or 0.0:.4f} ± {group.band[name] * truth.scale:.4f}"
+    met = group.band[name] <= WANTED
+    band = f"**{_percent(group.band[name])}**" if met else _percent(group.band[name])
+    sizes = group.name.removeprefix("solid ").removesuffix(" mm extrapolated")
+    shown = f"{band} ({_percent(group.scatter[name])})"
+    return Group((value, shown, sizes, f"{off:.1f}", f"{group.two_cores_s:.3g}"), group.two_cores_s, met)
 
 
-def _reached(name: str, pairs: Sequence[Pair]) -> str:
-    """Say in how many sets two meshes know a quantity as well as `WANTED`, and how long that takes."""
-    met = [pair.seconds for pair in pairs if pair.met]
+def _reached(name: str, groups: Sequence[Group]) -> str:
+    """Say in how many sets several meshes know a quantity as well as `WANTED`, and how long that takes."""
+    met = [group.seconds for group in groups if group.met]
     least = " (or to 1e-4 of E_0)" if name == "E_vib" else ""
     took = f", in {plain(min(met))} to {plain(max(met))} s on two cores" if met else ""
     return (
-        f"Two meshes together give {name} to {100 * WANTED:g} %{least} in {len(met)} of {len(pairs)} "
-        f"sets{took}."
+        f"Two or three meshes together give {name} to {100 * WANTED:g} %{least} in {len(met)} of "
+        f"{len(groups)} sets{took}."
     )
 
 
@@ -223,20 +223,20 @@ def _savings(costs: Mapping[str, CostStudy]) -> str:
     )
 
 
-def _pair_sheet(pairs: Mapping[str, Sequence[Pair]]) -> Sheet:
+def _group_sheet(groups: Mapping[str, Sequence[Group]]) -> Sheet:
     columns = ("value", "band, % (scatter)", "meshes, mm", "off", "s on two cores")
     head = ("set", *(f"{name}: {title}" for name in TARGETED for title in columns))
-    rows = [(name, *(cell for pair in found for cell in pair.cells)) for name, found in pairs.items()]
+    rows = [(name, *(cell for group in found for cell in group.cells)) for name, found in groups.items()]
     caption = (
-        f"The quickest two meshes with a band of {100 * WANTED:g} % (bold) or, where there are none, the two "
-        "widest apart; off: distance from the limit of all meshes over the sum of both bands, above 1 where "
-        "they contradict each other"
+        f"The quickest two or three meshes with a band of {100 * WANTED:g} % (bold) or, where there are "
+        "none, the finest two; off: distance from the limit of all meshes over the sum of both bands, above "
+        "1 where they contradict each other"
     )
     return Sheet("pairs", caption, Table.of(head, rows, left=range(len(head))))
 
 
 def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
-    # in order of cost, without pairs and settings that leave an effect out
+    # in order of cost, without extrapolations and settings that leave an effect out
     kinds = ("rigid", "modal", "default", "full", "mesh", "numerics")
     named = {one.name: one for cost in costs.values() for one in cost.settings if one.kind in kinds}
     columns = sorted(named, key=lambda name: (kinds.index(named[name].kind), -(named[name].tip_size_m or 0)))

@@ -66,5 +66,5 @@ def with_limits(fine: Sequence[Outcome | Failure], coarse: Sequence[Outcome | Fa
     elif known(coarser[0].cost.tip_size) <= known(finer[0].cost.tip_size):
         limits = bands = Unknown("the second mesh is not coarser: give a smaller accuracy.tip_size")
     else:
-        limits, bands = mesh_limits(finer, coarser)
+        limits, bands = mesh_limits((finer, coarser))
     return replace(finer[0], validity=replace(finer[0].validity, mesh_limit=limits, mesh_band=bands))

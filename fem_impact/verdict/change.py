@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from fem_impact.cost.lanes import side_by_side
 from fem_impact.cost.limits import ONE_RUN, pair_limit
-from fem_impact.cost.settings import FAMILY, OWN, RUNGS, Mesh, can_be_made, on_mesh
+from fem_impact.cost.settings import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.effects.slots import bodies_of
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known, or_none
@@ -29,11 +29,6 @@ if TYPE_CHECKING:
     from fem_impact.physics.contact import ContactBodies
     from fem_impact.scene.types import Scene
 
-
-FINE_TIPS = tuple(replace(mesh, tip=mesh.tip + 1) for mesh in RUNGS if mesh.across == OWN)
-"""Finer at the rod's tip only: enough where the rod's cells resolve the contact, and cheaper."""
-FINER = 0.9
-"""A mesh counts as finer if the cells at its contact are below this share of those before."""
 
 REDUCED, ONE_MESH, MESHES = "the reduced model", "one mesh of finite elements", "meshes of finite elements"
 """What a change of e rests on."""
@@ -153,8 +148,7 @@ def modal_change(scene: Scene, pair: Pair) -> Change:
 class Ladder:
     """Twins on finite-element meshes of a scene, from coarse to fine.
 
-    The first mesh is the coarsest of `RUNGS` that can be made; then follows, each time, the cheapest of them
-    and of `FINE_TIPS` whose cells at the contact are finer than all before.
+    They are those of `RUNGS` that can be made.
 
     Attributes
     ----------
@@ -184,11 +178,8 @@ class Ladder:
 
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""
-        if not self.meshes:
-            return next(filter(self._made, RUNGS), None)
-        edge = FINER * min(map(self._edge, self.meshes))
-        finer = (mesh for mesh in (*RUNGS, *FINE_TIPS) if self._edge(mesh) < edge)
-        return min(filter(self._made, finer), key=self._expected, default=None)
+        edge = min(map(self._edge, self.meshes), default=inf)
+        return next((mesh for mesh in RUNGS if self._edge(mesh) < edge and self._made(mesh)), None)
 
     def expected_s(self, mesh: Mesh) -> float:
         """Return the wall time, s, that a mesh is expected to take, scaled by what the others took."""

@@ -29,14 +29,14 @@ PRESENT = Path(__file__).parents[2]
 SETS = ("t5b", "t3-machined", "t6-17")
 # what the plain model has: its block always radiates, and nothing hardens with the rate
 EFFECTS = "vibration, friction, rod-plasticity, barrier-elastoplastic, gravity, large-rotation, radiation"
-COMPARED = (Mesh(8, -1, -1), Mesh(8, 0, 0))
+COMPARED = (Mesh(-1), Mesh(0))
 NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
 def outcome(model, name, mesh, out, place=0.0):
     """Return the file of a set's outcome, made by one model in its own process unless it lies in ``out``."""
     kind = "present" if model == PRESENT else "plain"
-    folder = out / f"{kind}-{name}-{mesh.across}-{mesh.tip}-{mesh.barrier}{f'-at-{place:g}' if place else ''}"
+    folder = out / f"{kind}-{name}-{mesh.finer}{f'-at-{place:g}' if place else ''}"
     if not (folder / "outcome.json").exists():
         tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(load(name)))
         changes = [f"accuracy.across={mesh.across}", f"accuracy.tip_size={tip}", "save.frames=0"]

@@ -8,6 +8,7 @@ from fem_impact.cost import to_target
 from fem_impact.cost.judge import Judged, cpu_seconds
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.measure import measure
+from fem_impact.cost.own_ladder import OwnLadder
 from fem_impact.cost.settings import placed
 from fem_impact.cost.to_target import NEARNESS, choose_setting, nearest, summarise
 from fem_impact.errors import SceneError
@@ -125,6 +126,15 @@ def test_a_scene_far_from_every_stored_one_is_refused(costs, changes, differs):
         choose_setting(replace(scene, "accuracy.target", "20 %"))
 
 
+def test_a_stored_setting_that_takes_longer_than_the_budget_gives_way_to_a_ladder_of_its_own(costs):
+    scene = asking(0.06)
+    enough = choose_setting(scene).expected_wall_s
+    assert to_target.settle(scene, budget_s=enough) == choose_setting(scene) == to_target.settle(scene)
+    chosen = to_target.settle(scene, budget_s=0.99 * enough)
+    assert isinstance(chosen, OwnLadder) and chosen.budget_s == 0.99 * enough
+    assert "mm extrapolated, measured on t5b, takes about" in chosen.sentence
+
+
 def test_a_scene_near_a_stored_one_is_taken(costs):
     near = asking(0.2, impact__angle="46 deg", projectile__length="82 mm")
     name, distance, _ = nearest(near)
@@ -137,7 +147,7 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     scene = asking(0.06)
     chosen = choose_setting(scene)
     outcome = to_target.simulate(scene, options=RunOptions(out=tmp_path))
-    assert chosen.setting.kind == "pair"
+    assert chosen.setting.kind == "extrapolated"
     assert outcome.validity.accuracy_target == 0.06
     assert outcome.validity.accuracy_setting == chosen.setting.name
     assert outcome.validity.expected_error == chosen.expected_error
@@ -183,7 +193,7 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
         assert scene.impact == load(name).impact
         kinds = {setting["kind"] for setting in cost["settings"]}
         assert {"rigid", "modal", "mesh"} <= kinds
-        assert ("pair" in kinds) == (not cost["failures"])  # a mesh that fails leaves no pair
+        assert ("extrapolated" in kinds) == (not cost["failures"])
     assert set(NEARNESS) == set(to_target._features(load("t2")))
 
 
@@ -203,7 +213,7 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
     outcome = to_target.simulate(asking(0.06), options=RunOptions(out=tmp_path))
-    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 6))]
+    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
     fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.06)).meshes)
     assert outcome.provenance.scene_digest == digest(fine[0])
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]

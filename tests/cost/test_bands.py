@@ -19,14 +19,14 @@ def test_the_band_holds_the_limit_of_every_order_from_the_lowest(ratio, order):
         outcome(tip_size_m=size, mu=0.5 + 0.1 * (size / h) ** order, e_edge=0.3 - 0.02 * (size / h) ** order)
         for size in (h, ratio * h)
     )
-    limits, bands = mesh_limits([fine] * 2, [coarse] * 2)
+    limits, bands = mesh_limits(([fine] * 2, [coarse] * 2))
     for key, limit in (("mu", 0.5), ("e_edge", 0.3)):
         assert abs(limits[key] - limit) <= bands[key] * (1 + 1e-9)
 
 
 def test_the_band_reaches_from_the_finer_mesh_to_the_lowest_order():
     fine, coarse = outcome(tip_size_m=3e-4, e_edge=0.30), outcome(tip_size_m=6e-4, e_edge=0.36)
-    limits, bands = mesh_limits([fine] * 2, [coarse] * 2)
+    limits, bands = mesh_limits(([fine] * 2, [coarse] * 2))
     assert limits["e_edge"] + bands["e_edge"] == pytest.approx(0.30)
     assert limits["e_edge"] - bands["e_edge"] == pytest.approx(0.30 - 0.06 / (2**LOWEST - 1))
     assert limits["e_edge"] == pytest.approx(0.256, abs=5e-4)
@@ -35,14 +35,14 @@ def test_the_band_reaches_from_the_finer_mesh_to_the_lowest_order():
 
 def test_one_run_on_each_mesh_has_a_wider_band_about_the_same_limit():
     fine, coarse = outcome(tip_size_m=3e-4, e_edge=0.30), outcome(tip_size_m=6e-4, e_edge=0.36)
-    (limits, bands), (means, narrow) = (mesh_limits([fine] * n, [coarse] * n) for n in (1, 2))
+    (limits, bands), (means, narrow) = (mesh_limits(([fine] * n, [coarse] * n)) for n in (1, 2))
     assert limits["e_edge"] == means["e_edge"]
     assert bands["e_edge"] == pytest.approx(ONE_RUN * narrow["e_edge"])
-    assert mesh_limits([fine] * 2, [coarse])[1]["e_edge"] == bands["e_edge"]
+    assert mesh_limits(([fine] * 2, [coarse]))[1]["e_edge"] == bands["e_edge"]
 
 
 def test_what_one_mesh_does_not_know_has_no_limit():
-    limits, bands = mesh_limits([outcome(e_paper=None)], [outcome(tip_size_m=8e-4)])
+    limits, bands = mesh_limits(([outcome(e_paper=None)], [outcome(tip_size_m=8e-4)]))
     assert "e_paper" not in limits
     assert set(limits) == set(bands) == {key.name for key in KEYS if key.banded} - {"e_paper"}
 
@@ -51,14 +51,14 @@ def test_shares_keep_their_sum_in_the_limit():
     """The rule is linear, so what adds up on both meshes adds up in the limit."""
     fine = outcome(E_r_over_E_0=0.7, W_friction_over_E_0=0.3)
     coarse = outcome(tip_size_m=8e-4, E_r_over_E_0=0.6, W_friction_over_E_0=0.4)
-    limits, _ = mesh_limits([fine], [coarse])
+    limits, _ = mesh_limits(([fine], [coarse]))
     assert limits["E_r_over_E_0"] + limits["W_friction_over_E_0"] == pytest.approx(1.0)
 
 
 def test_places_of_the_grid_widen_the_band_by_their_scatter():
     fine = [outcome(mu=mu) for mu in (0.50, 0.52)]
     coarse = [outcome(mu=0.56, tip_size_m=8e-4)] * 2
-    limits, bands = mesh_limits(fine, coarse)
+    limits, bands = mesh_limits((fine, coarse))
     limit, half = pair_limit(0.51, 0.56, 2.0, places=2)
     assert limits["mu"] == pytest.approx(limit)
     assert bands["mu"] > half

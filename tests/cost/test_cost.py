@@ -15,11 +15,11 @@ import fem_impact.run.simulate
 from fem_impact.cost.document import text_table, write_cost
 from fem_impact.cost.judge import (
     advice,
-    best_pair,
+    best_group,
     best_within,
     cheapest,
     front,
-    pair_sentence,
+    group_sentence,
     verdict,
     worst,
 )
@@ -60,27 +60,25 @@ def test_the_ladder_has_every_kind_of_setting():
     names = [setting.name for setting in ladder(SCENE)]
     assert len(set(names)) == len(names)
     assert names[:3] == ["rigid", "modal", "solid 0.594 mm"]
-    pairs = [setting.name for setting in ladder(SCENE) if setting.kind == "pair"]
-    assert pairs == ["solid 0.594 and 0.297 mm extrapolated"]
+    assert [setting.name for setting in ladder(SCENE) if setting.kind == "extrapolated"] == [
+        "solid 0.594 and 0.297 mm extrapolated",
+        "solid 0.594 and 0.148 mm extrapolated",
+        "solid 0.297 and 0.148 mm extrapolated",
+        "solid 0.594, 0.297 and 0.148 mm extrapolated",
+    ]
     for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening"):
         assert f"solid 0.594 mm without {effect}" in names
     assert "solid 0.594 mm with an elastic barrier" in names
     for setting in ladder(SCENE):
         assert len(setting.runs) == (len(setting.meshes) or 1)
         for mesh, jobs in zip(setting.meshes, setting.runs, strict=False):
-            size, below = (
-                0.019 / mesh.across / 2 ** (3 + mesh.tip),
-                0.019 / mesh.across / 2 ** (3 + mesh.barrier),
-            )
+            size = 0.019 / 8 / 2 ** (3 + mesh.finer)
             places = [job.scene.accuracy.grid_shift for job in jobs]
             few = [0.0] if setting.kind in ONE_PLACE else [0.0, 0.25, 0.5, 0.75]
             assert places == ([0.0, 0.5] if mesh == FAMILY[-1] else few)
-            assert [job.scene.accuracy.tip_size for job in jobs] == pytest.approx(
-                [size] * len(jobs), rel=1e-8
-            )
-            assert [job.scene.accuracy.barrier_size for job in jobs] == pytest.approx(
-                [below] * len(jobs), rel=1e-8
-            )
+            for key in ("tip_size", "barrier_size"):
+                sizes = [getattr(job.scene.accuracy, key) for job in jobs]
+                assert sizes == pytest.approx([size] * len(jobs), rel=1e-8)
             assert {job.scene.save.frames for job in jobs} == {0}
 
 
@@ -95,7 +93,7 @@ def test_elements_and_steps_are_rungs_of_their_own():
     (full,) = (setting.runs[0][0].scene for setting in ladder(SCENE) if setting.kind == "full")
     assert replace(SCENE.accuracy, mass_scaling=1.0, fine_zone="even") == full.accuracy
     rungs = {setting.name: setting.runs[0][0].scene.accuracy for setting in numerics}
-    plain = on_mesh(SCENE, Mesh(8, -1, 0)).accuracy
+    plain = on_mesh(SCENE, FAMILY[0]).accuracy
     assert rungs == {
         "solid 0.594 mm fully integrated": replace(plain, element="full"),
         "solid 0.594 mm mean dilatation": replace(plain, element="bbar"),
@@ -107,18 +105,18 @@ def test_limit_and_order_are_found(cost):
     for name, key in (("e", "e_edge"), ("mu", "mu"), ("E_vib", "E_vib_over_E_0")):
         assert cost.truth[name].value == pytest.approx(LIMIT[key], rel=1e-4)
         assert cost.truth[name].order == pytest.approx(1, abs=0.02)
-        finest = SLOPE[key] * (0.019 / 64 / TIP)
+        finest = SLOPE[key] * (0.019 / 128 / TIP)
         rest = cost.truth[name].uncertainty - cost.truth[name].scatter
         assert rest == pytest.approx(0.25 * abs(finest), rel=0.01)
     assert cost.truth["mu"].scatter == 0
-    assert EVEN[2] * WIGGLE * 0.019 / 64 / TIP < cost.truth["e"].scatter < 15 * EVEN[2] * WIGGLE
+    assert EVEN[2] * WIGGLE * 0.019 / 128 / TIP < cost.truth["e"].scatter < 15 * EVEN[2] * WIGGLE
 
 
 def test_errors_hold_distance_and_the_limits_own_uncertainty(cost):
     beyond = cost.truth["e"].uncertainty
     coarse = next(s for s in cost.settings if s.name == "solid 0.594 mm")
     away = SLOPE["e_edge"] * (0.019 / 32 / TIP)
-    finest = 0.3 + SLOPE["e_edge"] * (0.019 / 64 / TIP)
+    finest = 0.3 + SLOPE["e_edge"] * (0.019 / 128 / TIP)
     assert coarse.error["e"] == pytest.approx((away + beyond) / finest, rel=1e-3)
     modal = by_name(cost, "modal")
     assert modal.error["mu"] == pytest.approx((0.05 + cost.truth["mu"].uncertainty) / 0.5, rel=1e-3)
@@ -126,21 +124,21 @@ def test_errors_hold_distance_and_the_limits_own_uncertainty(cost):
 
 
 def test_a_mesh_is_the_mean_of_its_places_and_their_spread_its_scatter(cost):
-    h = 0.019 / 64 / TIP
-    two, four = (next(s for s in cost.settings if s.name == f"solid {mm} mm") for mm in (0.297, 0.396))
+    h = 0.019 / 128 / TIP
+    two, four = (next(s for s in cost.settings if s.name == f"solid {mm} mm") for mm in (0.148, 0.297))
     scale = cost.truth["e"].scale
     assert two.value["e"] == pytest.approx(LIMIT["e_edge"] + SLOPE["e_edge"] * h, rel=1e-9)
     assert two.scatter["e"] * scale == pytest.approx(EVEN[2] * WIGGLE * h, rel=1e-9)
     assert two.scatter["mu"] == 0
-    assert four.value["e"] == pytest.approx(LIMIT["e_edge"] + SLOPE["e_edge"] * 4 / 3 * h, rel=1e-9)
-    assert four.scatter["e"] * scale == pytest.approx(EVEN[4] * WIGGLE * 4 / 3 * h / 6**0.5, rel=1e-9)
+    assert four.value["e"] == pytest.approx(LIMIT["e_edge"] + SLOPE["e_edge"] * 2 * h, rel=1e-9)
+    assert four.scatter["e"] * scale == pytest.approx(EVEN[4] * WIGGLE * 2 * h / 6**0.5, rel=1e-9)
     assert two.cpu_s == pytest.approx(2 * two.two_cores_s)
     assert four.cpu_s == pytest.approx(2 * four.two_cores_s)
     assert by_name(cost, "modal").scatter == {}
 
 
-def test_a_pair_costs_both_meshes_and_is_extrapolated(cost):
-    pair = by_name(cost, "0.594 and 0.297 mm")
+def test_two_meshes_cost_both_and_are_extrapolated(cost):
+    pair = by_name(cost, "solid 0.594 and 0.297 mm")
     single = {s.name: s for s in cost.settings}
     fine, coarse = single["solid 0.297 mm"], single["solid 0.594 mm"]
     assert pair.wall_s == pytest.approx(fine.wall_s + coarse.wall_s)
@@ -167,28 +165,30 @@ def test_a_lower_order_falls_out_of_the_band_of_a_pair(ratio):
 
 def test_the_scatter_of_both_meshes_is_carried_into_the_band(cost):
     two, four = EVEN[2], EVEN[4] / 6**0.5
-    h, weight = 0.019 / 64 / TIP, 0.5 / (2**LOWEST - 1)
+    h, weight = 0.019 / 128 / TIP, 0.5 / (2**LOWEST - 1)
     scatter = WIGGLE * h * (((1 + weight) * two) ** 2 + (weight * 2 * four) ** 2) ** 0.5
-    pair, scale = by_name(cost, "0.594 and 0.297"), cost.truth["e"].scale
+    pair, scale = by_name(cost, "solid 0.297 and 0.148"), cost.truth["e"].scale
     assert pair.scatter["e"] * scale == pytest.approx(scatter, rel=1e-6)
     assert pair.band["e"] * scale == pytest.approx(weight * SLOPE["e_edge"] * h + scatter, rel=1e-6)
     beyond = abs(pair.value["e"] - cost.truth["e"].value) + cost.truth["e"].uncertainty
     assert pair.error["e"] == pytest.approx(min(pair.band["e"], beyond / scale))
-    assert all(bool(one.band) == (one.kind == "pair") for one in cost.settings)
+    assert all(bool(one.band) == (one.kind == "extrapolated") for one in cost.settings)
     assert any(one.error[name] == one.band[name] for one in cost.settings for name in one.band)
     assert any(one.error[name] < one.band[name] for one in cost.settings for name in one.band)
 
 
-def test_the_best_pair_is_the_quickest_that_meets_the_target_or_the_one_widest_apart(cost):
-    loose, strict = (best_pair(cost.settings, TARGETED, target) for target in (0.2, 0.02))
-    assert loose.name == strict.name == "solid 0.594 and 0.297 mm extrapolated"
-    words = "0.3059 ± 0.0171 (0.0008 of it scatter), reached: 5.3 %"
+def test_the_best_group_is_the_quickest_that_meets_the_target_or_else_the_finest_two(cost):
+    loose, strict, never = (best_group(cost.settings, TARGETED, target) for target in (0.2, 0.02, 1e-6))
+    assert loose.name == "solid 0.594 and 0.297 mm extrapolated"
+    assert strict.name == "solid 0.594, 0.297 and 0.148 mm extrapolated"
+    assert never.name == "solid 0.297 and 0.148 mm extrapolated"
+    words = "0.3059 ± 0.0166 (0.0002 of it scatter), reached: 5.3 %"
     assert verdict(loose, cost.quantities, "e", 0.2) == words
-    told = pair_sentence(cost.settings, cost.quantities, TARGETED, 0.02)
-    assert told.startswith("Two meshes against 2 %, solid 0.594 and 0.297 mm extrapolated: e 0.3059 ± ")
-    assert ", not reached: 5.3 %; " in told
-    assert best_pair([], TARGETED, 0.02) is None
-    assert pair_sentence([], {}, TARGETED, 0.02) == "No two meshes gave a result."
+    told = group_sentence(cost.settings, cost.quantities, TARGETED, 1e-6)
+    assert told.startswith("Several meshes against 0.0001 %, solid 0.297 and 0.148 mm extrapolated: e 0.3030")
+    assert ", not reached: 2.8 %; " in told
+    assert best_group([], TARGETED, 0.02) is None
+    assert group_sentence([], {}, TARGETED, 0.02) == "No two meshes gave a result."
 
 
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):
@@ -213,7 +213,7 @@ def test_front_and_choice(cost):
     assert best_within(cost.settings, TARGETED, 1.0).name == "modal"
     assert best_within(cost.settings, TARGETED, 1e-9) is None
     finer = cheapest(cost.settings, TARGETED, 0.09)
-    assert finer.kind in ("mesh", "pair")
+    assert finer.kind in ("mesh", "extrapolated")
     assert worst(finer, TARGETED) <= 0.09
     assert all(s.cpu_s >= finer.cpu_s for s in best if worst(s, TARGETED) <= 0.09)
 
@@ -232,10 +232,12 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
     measure(SCENE, tmp_path, NullMeter(), FAMILY[:2], first)
     assert len(set(first.names)) == len(first.names) > 5
     held = judge_stored(SCENE, tmp_path, NullMeter())
-    assert [one.name for one in held.settings if one.kind == "mesh"][-1] == "solid 0.396 mm"
-    assert not [one for one in held.settings if one.kind == "pair"]
+    assert [one.name for one in held.settings if one.kind == "mesh"][-1] == "solid 0.297 mm"
+    assert [one.name for one in held.settings if one.kind == "extrapolated"] == [
+        "solid 0.594 and 0.297 mm extrapolated"
+    ]
     found = measure(SCENE, tmp_path, NullMeter(), FAMILY, second)
-    assert second.names == [f"t5b: solid 0.297 mm, grid at {place}" for place in ("0", "0.5")]
+    assert second.names == [f"t5b: solid 0.148 mm, grid at {place}" for place in ("0", "0.5")]
     assert found.truth["e"].order is not None
 
 
@@ -245,7 +247,7 @@ def test_what_never_ran_cannot_be_judged(tmp_path):
 
 
 def test_two_meshes_assume_an_order_and_say_none():
-    found = truths([runs_on(Mesh(across, 0, 1)) for across in (8, 16)])["E_vib"]
+    found = truths([runs_on(Mesh(finer)) for finer in (0, 1)])["E_vib"]
     assert found.order is None
     assert abs(found.value - LIMIT["E_vib_over_E_0"]) <= found.uncertainty
     finest = SLOPE["E_vib_over_E_0"] * (0.019 / 128 / TIP)
@@ -279,17 +281,17 @@ def test_the_scatter_of_a_limit_is_that_of_its_means():
 
 def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
     def failing(scene, fidelity="solid", options=None):
-        if fidelity == "solid" and scene.accuracy.across > most:
+        if fidelity == "solid" and (scene.accuracy.tip_size or TIP) < least:
             raise RunError("out of patience.")
         return run(scene, fidelity)
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", failing)
-    most = 8
+    least = 0.2e-3
     found = measure(SCENE, tmp_path, NullMeter(), executor=Here())
-    names = {f"t5b: solid 0.396 mm, grid at {at}" for at in ("0", "0.25", "0.5", "0.75")}
+    names = {f"t5b: solid 0.148 mm, grid at {at}" for at in ("0", "0.5")}
     assert {failure["setting"] for failure in found.failures} == names
     assert {failure["reason"] for failure in found.failures} == {"out of patience."}
-    most = 5
+    least = 1.0
     other = replace(SCENE, id="other")
     with pytest.raises(RunError, match=r"other: no two meshes gave a result. out of patience"):
         measure(other, tmp_path, NullMeter(), executor=Here())

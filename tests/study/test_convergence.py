@@ -73,15 +73,15 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
     found = study(tmp_path)
     line = next(line for line in found.text.splitlines() if line.startswith("| t5b | e |"))
     cells = [cell.strip() for cell in line.strip("|").split("|")]
-    assert cells[2:6] == ["0.3406", "0.3604", "0.3703", "0.4"]
+    assert cells[2:6] == ["0.3406", "0.3703", "0.3852", "0.4"]
     assert float(cells[6]) == pytest.approx(1, abs=1e-3)
-    assert float(cells[7]) == pytest.approx(1.25 * 0.0297, rel=1e-2)
+    assert float(cells[7]) == pytest.approx(1.25 * 0.01484, rel=1e-2)
     assert float(cells[9]) == pytest.approx(0.02)
     assert (
-        "0.3703 ± 0.037 at 0.297 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
+        "0.3852 ± 0.019 at 0.148 mm, limit 0.4 (order 1.0); at 0.297 mm, the usual mesh, -0.03" in found.text
     )
     answer = next(line for line in found.text.splitlines() if line.startswith("- "))
-    assert "lies at most 0.03 from its limit" in answer and answer.endswith("reach ± 0.037.")
+    assert "lies at most 0.015 from its limit" in answer and answer.endswith("reach ± 0.019.")
     assert "Two meshes, extrapolated: 27 of 27 bands hold the limit of all." in found.text
     assert len((tmp_path / "convergence.csv").read_text().splitlines()) == 1 + len(QUANTITIES)
     assert (tmp_path / "figures" / "convergence.svg").stat().st_size > 1000

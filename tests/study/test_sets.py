@@ -41,7 +41,7 @@ def study(out, *ids, broken=(), quick=True):
 def test_a_set_is_two_meshes_and_a_table(tmp_path):
     found = study(tmp_path, "t5b")
     (row,) = found.document["rows"]
-    half = 0.5 * 100 * 0.59375e-3 / (2**LOWEST - 1)
+    half = 0.5 * 100 * 0.296875e-3 / (2**LOWEST - 1)
     assert row["mesh_band"]["e_paper"] == pytest.approx(ONE_RUN * half)
     assert row["mesh_limit"]["e_paper"] == pytest.approx(row["e_paper"] - half)
     assert json.loads((tmp_path / "study.json").read_text())["rows"] == [row]
