@@ -32,7 +32,8 @@ class Judged:
         several meshes their band where that is less; where an effect is left out, the change by that on the
         same mesh
     scatter : standard error of the value over the scale, of a solid setting with all effects
-    band : of several meshes, uncertainty of their extrapolation over the scale, scatter included
+    band : of several meshes, uncertainty of their extrapolation over the scale, scatter included; at least
+        the distance from the limit of the finest two
     wall_s, cpu_s : wall and processor time of all runs, each with its set-up, which an outcome states apart
         from its own ``wall_s`` and ``cpu_s`` (``setup_wall_s``, ``setup_cpu_s``)
     two_cores_s : ``cpu_s`` of the longer half when the runs are divided between two cores
@@ -63,12 +64,15 @@ def judge(
     setting: Setting,
     runs: Sequence[Placed],
     truth: Mapping[str, Truth],
+    finest: Mapping[str, Truth],
     whole: Placed | None = None,
 ) -> Judged:
     """Return a setting with its errors.
 
-    ``runs`` are those on each mesh, the finest first, or one of a reduced model. If the setting leaves an
-    effect out, ``whole`` are the runs with all effects on the same mesh, which are the reference then.
+    ``runs`` are those on each mesh, the finest first, or one of a reduced model. The band of several meshes
+    reaches at least to the limit of the ``finest`` two: that of coarse ones may be narrow by chance. If the
+    setting leaves an effect out, ``whole`` are the runs with all effects on the same mesh, which are the
+    reference then.
     """
     if whole is not None:
         truth = {
@@ -77,7 +81,10 @@ def judge(
             if q.name in truth
         }
     flat = [run for placed in runs for run in placed]
-    own = truths(runs) if len(runs) > 1 else {}
+    own = {
+        name: replace(one, uncertainty=max(one.uncertainty, abs(one.value - finest[name].value)))
+        for name, one in (truths(runs) if len(runs) > 1 else {}).items()
+    }
     value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
     scatter = {name: one.scatter for name, one in own.items()}
     if len(runs) == 1 and setting.meshes and whole is None:

@@ -188,11 +188,11 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> Cos
     if len(meshes) < 2:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    truth = truths(list(meshes.values()))
+    truth, finest = truths(list(meshes.values())), truths(list(meshes.values())[-2:])
     # an effect is left out at the first place of its mesh
     whole = {s.name: meshes.get(s.meshes[0], [])[:1] for s in settings if s.kind == "effect"}
     judged = [
-        judge(setting, runs[setting.name], truth, whole.get(setting.name))
+        judge(setting, runs[setting.name], truth, finest, whole.get(setting.name))
         for setting in settings
         if runs[setting.name] and whole.get(setting.name) != []
     ]

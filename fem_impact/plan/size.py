@@ -38,8 +38,8 @@ SPLIT = 7  # elements that a cell adds when it is split into eight
 # mean step of a run over that in which a wave crosses the finest edge: cells that flow are squeezed
 SMALLEST = {"rod": 0.52, "barrier": 0.54}
 UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
-BASE, PER_ELEMENT = 1.8e8, 4.0e3  # bytes: of the program, and of an element
-FILL = 2400.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
+BASE, PER_ELEMENT = 1.9e8, 4.0e3  # bytes: of the program, and of an element
+FILL = 1700.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
 # the same of a user's mesh, which has no slices; its factor takes OWN_FILL sqrt(min(n, PIECE w^3)) bytes an
 # element, w cells across: the largest resident memory (VmHWM) of processes that did nothing else, for half
 # boxes of 7 000 to 32 000 cells, as long as wide and five times longer (tests/benchmarks/own_mesh_memory.py)

@@ -20,6 +20,7 @@ from fem_impact.cost.judge import (
     cheapest,
     front,
     group_sentence,
+    judge,
     verdict,
     worst,
 )
@@ -189,6 +190,23 @@ def test_the_best_group_is_the_quickest_that_meets_the_target_or_else_the_finest
     assert ", not reached: 2.8 %; " in told
     assert best_group([], TARGETED, 0.02) is None
     assert group_sentence([], {}, TARGETED, 0.02) == "No two meshes gave a result."
+
+
+def test_the_band_of_coarse_meshes_that_agree_by_chance_reaches_to_the_limit_of_the_finest_two():
+    values = dict(zip(FAMILY, (0.010, 0.010, 0.013), strict=True))
+    on = {mesh: [altered(run, E_vib_over_E_0=E) for run in runs_on(mesh)] for mesh, E in values.items()}
+    truth, finest = (truths([on[mesh] for mesh in meshes]) for meshes in (FAMILY, FAMILY[1:]))
+    groups = {one.name: one for one in ladder(SCENE) if one.kind == "extrapolated"}
+    coarse, fine = (
+        judge(one, [on[mesh] for mesh in one.meshes], truth, finest)
+        for one in (
+            groups[f"solid {sizes} mm extrapolated"] for sizes in ("0.594 and 0.297", "0.297 and 0.148")
+        )
+    )
+    scale, limit = truth["E_vib"].scale, finest["E_vib"]
+    assert coarse.value["E_vib"] == pytest.approx(0.010)
+    assert coarse.band["E_vib"] * scale == pytest.approx(limit.value - 0.010)
+    assert fine.band["E_vib"] * scale == pytest.approx(limit.uncertainty)
 
 
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):

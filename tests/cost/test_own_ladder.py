@@ -42,7 +42,7 @@ def test_the_ladder_ends_where_the_band_is_narrow_enough(fake, tmp_path):
     assert stated.mesh_band["e_edge"] > 0
     assert (tmp_path / "outcome.json").exists()
     finer = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=1e9)
-    assert finer.validity.accuracy_setting.startswith(f"{len(FAMILY)} meshes")
+    assert finer.validity.accuracy_setting.startswith(f"{len(RUNGS)} meshes")
     assert finer.validity.achieved_error > 1e-5  # not reached, and said
 
 
