@@ -287,6 +287,13 @@ def _size_lines(planned: Plan) -> list[str]:
     return ["", "Size of a run with finite elements", *_wrapped(sentences)]
 
 
+# over the measured sets, means over places of the grid (`fem-impact cost paper`)
+WHICH_FLOWS = (
+    "How much of the plastic work is the rod's is known least: on the measured sets 5 cells over the radius "
+    "gave 60 to 85 % of what 10 cells gave, and what was missing went into the barrier"
+)
+
+
 def _cells_line(planned: Plan) -> str:
     """Return how fine the mesh is at the contact, and the tip size that the program advises."""
     from fem_impact.plan.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
@@ -297,7 +304,9 @@ def _cells_line(planned: Plan) -> str:
         f"about {cells:.2g} cells over the radius of the contact, {contact_radius(bodies) * 1e3:.2g} mm: "
         f"e and mu within some {100 * error / cells:.2g} %"
     )
-    return line if cells >= advised else f"{line}. {advice(bodies)} for {100 * error / advised:.2g} %"
+    if cells < advised:
+        line += f". {advice(bodies)} for {100 * error / advised:.2g} %"
+    return f"{line}. {WHICH_FLOWS}" if len(bodies.yielding) == 2 else line
 
 
 def _wrapped(sentences: Iterable[str]) -> list[str]:
