@@ -101,7 +101,7 @@ def test_check_tells_number_threshold_harm_and_time_of_each_effect(cli):
     assert "f: 0.57, threshold 0.005; leaving it out changes e by about 0.2, E_vib by " in about["friction"]
     assert about["friction"].endswith("it takes under 1 % of the run time")
     assert "run time" not in about["gravity"] and "leaving it out changes e" in about["gravity"]
-    assert "quick estimate, was off by up to 0.2 and 0.05 on 13 measured sets" in about["friction"]
+    assert "quick estimate, was off by up to 0.3 and 0.05 on 13 measured sets" in about["friction"]
     assert "not compared with finite elements" in about["gravity"]
     assert "changes e by" not in about["vibration"] and "fem-impact assess" in about["vibration"]
     # a barrier is one of three: those not taken are missing nothing
