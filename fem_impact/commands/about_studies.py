@@ -50,7 +50,7 @@ STUDIES = {
         "not, and shows where the energy went. A scene file that names your own tests (the key measured) is "
         "taken like a set.",
         "130 runs, some 10 min",
-        "three sets on coarse elements: 6 runs, under 1 min",
+        "three sets, one place of the grid: 6 runs, under 1 min",
         130,
         6,
         "all thirteen",
