@@ -57,8 +57,9 @@ def scaled_jacobians(mesh: HexMesh) -> FloatArray:
 def corner_jacobians(x: FloatArray) -> FloatArray:
     """(m, 8) scaled Jacobians of cells with corners x (m, 8, 3)."""
     arms = x[:, _NEIGHBOURS] - x[:, :, None, :]
-    arms /= np.linalg.norm(arms, axis=-1, keepdims=True)
-    return np.asarray(_SIGN * np.linalg.det(arms))
+    with np.errstate(invalid="ignore"):  # not a number where two corners are one, which whoever asks refuses
+        arms /= np.linalg.norm(arms, axis=-1, keepdims=True)
+        return np.asarray(_SIGN * np.linalg.det(arms))
 
 
 def edge_lengths(mesh: HexMesh, cells: IntArray | slice = slice(None)) -> FloatArray:
@@ -104,8 +105,8 @@ def require_positive(mesh: HexMesh) -> None:
     worst = np.minimum(scaled_jacobians(mesh).min(axis=1), np.linalg.det(jacobians(mesh)).min(axis=1))
     cell = int(np.argmin(worst))
     if not worst[cell] > 0.0:
-        where = mesh.points[mesh.cells[cell]].mean(axis=0).tolist()
+        where = ", ".join(f"{1e3 * x:.3g}" for x in mesh.points[mesh.cells[cell]].mean(axis=0))
         raise MeshError(
-            f"cell {cell} about {where} m is folded (Jacobian {worst[cell]:.3g}): "
+            f"cell {cell} about ({where}) mm is folded (Jacobian {worst[cell]:.3g}): "
             "change the size of the cells or the shape"
         )

@@ -44,14 +44,14 @@ class Mesh:
 
     def sizes(self, scene: Scene) -> tuple[float, float]:
         """Return the element sizes of rod and barrier at the contact, m."""
-        plain = replace(scene.accuracy, across=ACROSS, tip_size=None, barrier_size=None)
+        plain = replace(scene.accuracy, across=_across(scene), tip_size=None, barrier_size=None)
         plain_scene = replace(scene, accuracy=plain)
         levels, below = levels_of(bodies_of(resolved(plain_scene)))
         tip = rod_cell(plain_scene) / 2 ** (levels + self.finer)
         return tip, body_cell(plain_scene) / 2 ** (below + self.finer)
 
 
-ACROSS = 8  # cells over the diameter of a scene that states none
+ACROSS = 8  # cells over the diameter, of a scene that states no more
 RUNGS = tuple(Mesh(finer) for finer in (-1, 0, 1, 2))  # from coarse to fine, each with cells half as large
 FAMILY = RUNGS[:3]
 """The meshes of a scene of which all `RUNGS` can be made, see `family`."""
@@ -140,12 +140,16 @@ def ladder(scene: Scene, meshes: Sequence[Mesh] = ()) -> list[Setting]:
 def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
     """Return the scene on a mesh, the grid of the barrier at a place."""
     tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(scene))
-    changes: dict[str, Any] = {"across": ACROSS, "tip_size": tip, "grid_shift": place}
+    changes: dict[str, Any] = {"across": _across(scene), "tip_size": tip, "grid_shift": place}
     changes |= {"barrier_size": barrier} if "barrier-rigid" not in active(scene) else {}
     changes |= {"unresolved": "report"}  # an unresolved contact is an error of the setting, to be judged too
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
     return replace_all(scene, {f"accuracy.{key}": value for key, value in changes.items()})
+
+
+def _across(scene: Scene) -> int:
+    return max(scene.accuracy.across, ACROSS)
 
 
 def placed(scene: Scene, mesh: Mesh) -> list[Scene]:

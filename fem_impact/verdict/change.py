@@ -190,19 +190,24 @@ class Ladder:
         """Say whether a mesh fits into what is left of the budget."""
         return self.spent_s + self.expected_s(mesh) <= self.budget_s
 
-    def climb(self, mesh: Mesh) -> None:
-        """Run the twins on a mesh."""
+    def climb(self, mesh: Mesh) -> str:
+        """Run the twins on a mesh; return why they give no answer, and forget it then, else an empty string.
+
+        Raises
+        ------
+        SceneError
+            The mesh cannot be made.
+        """
         begun = perf_counter()
         scenes = [on_mesh(one, mesh) for one in twins(self.scene)]
         runs, _ = side_by_side(scenes, "solid", [RunOptions()] * 2, self.workers)
-        self.meshes.append(mesh)
-        self.pairs.append((runs[0], runs[1]))
         self.spent_s += perf_counter() - begun
-
-    def drop(self) -> None:
-        """Forget the last mesh, which gave no answer; its time stays spent."""
-        self.meshes.pop()
-        self.pairs.pop()
+        pair = runs[0], runs[1]
+        failed = unfinished(pair)
+        if not failed:
+            self.meshes.append(mesh)
+            self.pairs.append(pair)
+        return failed
 
     def change(self) -> Change:
         """Return what the meshes say: limit and band of two, or one with its known error."""

@@ -110,6 +110,13 @@ def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
     assert [len(placed(WIDE, mesh)) for mesh in family(WIDE)] == [4, 4, 2]
 
 
+@pytest.mark.parametrize(("stated", "taken"), [(6, 8), (8, 8), (12, 12)])
+def test_meshes_have_the_cells_across_that_a_scene_states_and_eight_at_least(stated, taken):
+    scene = replace(load("t5b"), "accuracy.across", stated)
+    assert {on_mesh(scene, mesh).accuracy.across for mesh in RUNGS} == {taken}
+    assert RUNGS[1].sizes(scene)[0] == pytest.approx(8 / taken * RUNGS[1].sizes(load("t5b"))[0], rel=0.35)
+
+
 def test_a_cost_study_has_no_setting_that_cannot_be_made(fake, tmp_path):
     study = measure(WIDE, tmp_path, NullMeter(), executor=Here())
     assert not study.failures

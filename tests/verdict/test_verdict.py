@@ -205,6 +205,17 @@ def test_a_mesh_without_an_answer_leaves_one_that_the_reduced_model_contradicts_
     assert found.here.value + found.here.band > 0 > found.here.value
 
 
+def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
+    def folded(*_):
+        raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
+
+    monkeypatch.setattr(change_module, "side_by_side", folded)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer) == ("modal", "undecided")
+    assert any("on the first mesh" in note and "cell 7 is folded" in note for note in found.notes)
+    assert assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5).fidelity == "modal"
+
+
 def test_a_mesh_that_cannot_be_made_is_passed_over(monkeypatch):
     ladder = Ladder.of(load("t5b"), 1.0, 2)
     assert ladder.following() == FAMILY[0]
