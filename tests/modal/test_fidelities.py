@@ -119,6 +119,7 @@ def test_arms_that_do_not_approach_have_no_restitution():
     assert not isinstance(found.edge.e, Unknown)
 
 
+@pytest.mark.slow
 def test_a_long_rod_is_followed_until_its_bending_cannot_bring_it_back():
     long = {"projectile.length": "1.5 m", "accuracy.max_time": "60 ms"}
     result = modal_solve(plan(replace_all(load("t3-machined"), long), "modal"))

@@ -197,6 +197,7 @@ def metal(name, E, nu, rho, yields, ultimate):
     return {"name": name, "E": f"{E} GPa", "nu": nu, "rho": f"{rho} kg/m3"} | strength
 
 
+@pytest.mark.slow
 def test_the_step_follows_the_contact_of_a_thin_rod_too():
     """On its wide contact the tip swings faster than its modes: steps for those missed 5e-3 of E_0."""
     changes = {

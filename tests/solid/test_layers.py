@@ -234,6 +234,7 @@ def test_a_hard_plate_on_a_soft_base_lies_between_both_and_is_balanced():
     assert durations[0] < durations[1] < durations[2]
 
 
+@pytest.mark.slow
 def test_a_soft_base_flows_under_a_thin_layer():
     outcome = simulate(scene([("1.2 mm", "steel-4340")], base="lead"))
     assert abs(outcome.energy.residual) < 1e-4

@@ -10,7 +10,7 @@ from fem_impact.verify.catalogue import verify
 VALUES = hardness_cone.PROBLEM.values({})
 
 
-@pytest.mark.parametrize("f", [0.0, 0.1])
+@pytest.mark.parametrize("f", [0.0, pytest.param(0.1, marks=pytest.mark.slow)])
 def test_both_codes_agree_on_cells_of_one_size(f):
     """Their errors by the cells are then alike: what is left is the hexahedra and their contact."""
     law = hardness_cone.flow_curve(VALUES)
