@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.common import changed_scene, checked_out, print_json, stated_budget
 from fem_impact.commands.options import Options
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
@@ -105,10 +105,10 @@ def _tolerance(options: Options) -> float:
 
 
 def _budget(options: Options) -> float:
-    from fem_impact.scene.units import option_quantity
     from fem_impact.verdict.assess import BUDGET
 
-    return option_quantity(options.budget, "time", "--budget") if options.budget else BUDGET
+    stated = stated_budget(options)
+    return BUDGET if stated is None else stated
 
 
 def _teller(options: Options) -> Callable[[str], object]:

@@ -154,6 +154,13 @@ def _cannot(out: Path, error: Exception) -> str:
     return f"{out}: cannot be written ({reason}). Choose another directory with --out."
 
 
+def stated_budget(options: Options) -> float | None:
+    """Return the time, s, of ``--budget``, None where it is not given."""
+    from fem_impact.scene.units import option_quantity
+
+    return option_quantity(options.budget, "time", "--budget") if options.budget else None
+
+
 def print_json(document: Any) -> None:
     """Print one JSON document; NaN and infinity raise ValueError."""
     sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")

@@ -10,7 +10,7 @@ from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.common import changed_scene, checked_out, print_json, stated_budget
 from fem_impact.commands.options import Options
 from fem_impact.commands.terminal import chosen_meter
 from fem_impact.errors import RunError, SceneError, UsageError
@@ -30,11 +30,10 @@ def cost(options: Options) -> int:
     """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
     from fem_impact.cost.quantities import chosen
     from fem_impact.plan.limits import require_turned
-    from fem_impact.scene.units import option_quantity
 
     asked = [name.strip() for name in options.of.split(",") if name.strip()]
     target = _share(options.target) if options.target else None
-    budget = option_quantity(options.budget, "time", "--budget") if options.budget else None
+    budget = stated_budget(options)
     if options.scene == PAPER and (target or budget):
         remedy = "Leave them out, or name one scene."
         raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)

@@ -15,6 +15,7 @@ from fem_impact.commands.common import (
     say_kept,
     shown_path,
     size_text,
+    stated_budget,
 )
 from fem_impact.commands.options import Options
 from fem_impact.commands.terminal import chosen_meter, print_table
@@ -116,7 +117,7 @@ def _setting(scene: Scene, options: Options) -> ChosenSetting | OwnLadder | None
         return None
     from fem_impact.cost.to_target import settle
 
-    return settle(scene, options.fidelity or None, cores(), _budget(options))
+    return settle(scene, options.fidelity or None, cores(), stated_budget(options))
 
 
 def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
@@ -124,13 +125,6 @@ def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
     sentence = chosen or ("" if options.fidelity in ("rigid", "modal") else _long_run(scene))
     if sentence and not options.quiet:
         sys.stderr.write(f"{sentence}\n")
-
-
-def _budget(options: Options) -> float | None:
-    """Return the wall time, s, of ``--budget``, for a scene that states the error it allows."""
-    from fem_impact.scene.units import option_quantity
-
-    return option_quantity(options.budget, "time", "--budget") if options.budget else None
 
 
 def _long_run(scene: Scene) -> str:
