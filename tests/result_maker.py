@@ -175,6 +175,7 @@ NUMBERS = {
     "V_t_m_per_s": -0.412, "Omega_rad_per_s": 5.1, "mu": 0.597, "mu_c": 0.665, "E_0_J": E_0,
     "E_r_over_E_0": 0.06, "E_vib_over_E_0": 0.0004, "E_vib_check_over_E_0": 0.00043,
     "E_vib_floor_over_E_0": 0.00002, "W_friction_over_E_0": 0.29, "W_skin_over_E_0": 0.41,
+    "W_skin_rod_over_E_0": 0.01, "W_skin_barrier_over_E_0": 0.11,
     "E_plastic_rod_over_E_0": 0.03,
     "E_plastic_barrier_over_E_0": 0.57, "E_locked_rod_over_E_0": 0.021, "E_locked_barrier_over_E_0": 0.0236,
     "W_radiated_over_E_0": 0.004, "W_closing_over_E_0": 0.001, "residual_over_E_0": 2e-6,

@@ -25,6 +25,8 @@ _BARRIER = (
     ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
 )
 _TURNED = (("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"),)
+HEATING = "friction + top 0.1 mm of both"
+"""Label of the work that can heat the contact."""
 _IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -47,12 +49,12 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]
     lines += [_share("not accounted for", outcome.energy.residual)]
-    lines += ["", _share("friction + plate's top 0.1 mm", outcome.energy.skin)]
+    lines += ["", _share(HEATING, outcome.energy.skin)]
     if or_none(outcome.energy.below_floor):
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy(outcome)
-    lines += _unknown({**listed, "friction + plate's top 0.1 mm": outcome.energy.skin})
+    lines += _unknown({**listed, HEATING: outcome.energy.skin})
     v = outcome.validity
     again = strikes_again(outcome.motion.V_n - outcome.barrier.V_bn).strip() if v.finished else ""
     notes = (*v.assumptions, *v.outside, *v.warnings, *([again] if again else []))

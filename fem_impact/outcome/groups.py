@@ -209,7 +209,16 @@ class Energy:
     skin: Num = key(
         "W_skin_over_E_0",
         "-",
-        "Friction work and plastic work of the barrier down to 0.1 mm below its surface" + SHARE,
+        "Friction work, and plastic work of rod and barrier down to 0.1 mm below their surfaces" + SHARE,
+        True,
+    )
+    skin_rod: Num = key(
+        "W_skin_rod_over_E_0", "-", "Plastic work of the rod down to 0.1 mm below its surface" + SHARE, True
+    )
+    skin_barrier: Num = key(
+        "W_skin_barrier_over_E_0",
+        "-",
+        "Plastic work of the barrier down to 0.1 mm below its surface" + SHARE,
         True,
     )
     plastic_rod: Num = key("E_plastic_rod_over_E_0", "-", "Plastic work in the rod" + SHARE, True)
@@ -302,6 +311,11 @@ class Contact:
 
     intervals: tuple[ContactInterval, ...] | Unknown = key(
         "contacts", "s, N s", "Each contact interval with its impulses on the rod."
+    )
+    strikes_again: bool | Unknown = key(
+        "strikes_again",
+        "",
+        "True when the mass centre still comes down after the last separation: the rod strikes once more.",
     )
     peak_force: Num = key("peak_force_N", "N", "Largest normal force on the rod, mean over 2 us.", True)
     markers: Markers

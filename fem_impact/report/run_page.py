@@ -52,6 +52,8 @@ HEATED = tuple(
     for name in (
         "W_friction_over_E_0",
         "W_skin_over_E_0",
+        "W_skin_rod_over_E_0",
+        "W_skin_barrier_over_E_0",
         "E_lt_edge_over_E_0",
         "E_lt_less_vibration_over_E_0",
     )

@@ -38,6 +38,7 @@ MASSIVE = Unknown("the barrier is massive")
 UPRIGHT = Unknown("the barrier does not turn")
 TURNING = Unknown("the barrier turns: rigid theory's arms are those of one that does not")
 UNBENT = Unknown("the plate-bending effect is off")
+CUT_OFF = Unknown("the run ended before the last separation was certain")
 HARDER = Unknown(
     "in this contact law the softer body alone yields; plastic work of the harder one is in its share"
 )
@@ -97,9 +98,14 @@ def validity(
     )
 
 
+def comes_down(V_n: float) -> bool:
+    """Return whether a mass centre with a normal velocity, m/s, does not leave the barrier."""
+    return not V_n > 0
+
+
 def strikes_again(V_n: float) -> str:
     """Return that a mass centre with a normal velocity, m/s, still comes down, nothing if it does not."""
-    if V_n > 0:
+    if not comes_down(V_n):
         return ""
     return f" The mass centre still comes down at {-V_n:.3g} m/s, so that the rod strikes again later."
 

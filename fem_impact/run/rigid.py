@@ -19,6 +19,7 @@ from fem_impact.physics.flash import closed_form
 from fem_impact.run.common import (
     MASSIVE,
     barrier_motion,
+    comes_down,
     heat,
     momentum_error,
     motion,
@@ -75,7 +76,10 @@ def rigid_outcome(plan: Plan) -> Outcome:
         restitution=coefficients,
         energy=energy,
         contact=Contact(
-            intervals=Unknown(UNKNOWN), peak_force=Unknown(UNKNOWN), markers=unknown(Markers, UNKNOWN)
+            intervals=Unknown(UNKNOWN),
+            strikes_again=comes_down(V_n),
+            peak_force=Unknown(UNKNOWN),
+            markers=unknown(Markers, UNKNOWN),
         ),
         heat=_heat(plan, known(energy.friction) * energy.E_0),
         cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),

@@ -10,6 +10,7 @@ import numpy as np
 import rigid
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import (
+    BarrierMotion,
     Contact,
     ContactInterval,
     EffectChoice,
@@ -24,10 +25,12 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import between, fall
 from fem_impact.physics.flash import flash, halves
 from fem_impact.run.common import (
+    CUT_OFF,
     MASSIVE,
     UNBENT,
     angular_momentum_error,
     barrier_motion,
+    comes_down,
     gravity_warning,
     heat,
     momentum_error,
@@ -84,7 +87,7 @@ def reduce(result: SolidResult) -> Outcome:
         barrier=struck,
         restitution=coefficients,
         energy=energy,
-        contact=_contact(result, moved),
+        contact=_contact(result, moved, struck),
         heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
         cost=_cost(result),
     )
@@ -157,6 +160,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     locked = a["strain_rod"] - (check[1] if check else result.flight.strain)
     locked += a["kinetic_rod"] - result.motion.kinetic if stiff else 0.0  # the nose rings a little
     held = a["strain_barrier"] + a["kinetic_barrier"] - given
+    sheared = {body: part * a[f"plastic_{body}"] for body, part in result.skin_shares.items()}
     bending = result.plan.slots.bending is not None  # then what the plate holds are its waves
 
     def share(energy: float) -> float:
@@ -170,7 +174,9 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         vibration_floor=STIFF if stiff else share(floor),
         below_floor=STIFF if stiff else bool(vibration < floor),
         friction=share(a["friction"]),
-        skin=share(a["friction"] + result.skin_share * a["plastic_barrier"]),
+        skin=share(a["friction"] + sheared["rod"] + sheared["barrier"]),
+        skin_rod=share(sheared["rod"]),
+        skin_barrier=share(sheared["barrier"]),
         plastic_rod=share(a["plastic_rod"]),
         plastic_barrier=share(a["plastic_barrier"]),
         locked_rod=share(locked),
@@ -194,7 +200,7 @@ def _if_on(effect: str, result: SolidResult, share: float) -> Num:
 def _unchecked(result: SolidResult) -> Unknown:
     if result.finished:
         return Unknown("the strain that the last forces release was not found")
-    return Unknown("the run ended before the last separation was certain")
+    return CUT_OFF
 
 
 def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
@@ -210,13 +216,14 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
     return heat(result.plan.bodies, found, *peaks, less)
 
 
-def _contact(result: SolidResult, moved: RodMotion) -> Contact:
+def _contact(result: SolidResult, moved: RodMotion, struck: BarrierMotion) -> Contact:
     intervals = (
         ContactInterval(start=i.start, end=i.end, impulse_n=float(i.impulse_n), impulse_t=float(i.impulse_t))
         for i in result.model.book.intervals
     )
     return Contact(
         intervals=tuple(intervals),
+        strikes_again=comes_down(moved.V_n - struck.V_bn) if result.finished else CUT_OFF,
         peak_force=result.peak_force,
         markers=replay(result, moved.V_n, moved.V_t),
     )

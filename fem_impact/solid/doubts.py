@@ -1,8 +1,8 @@
 """Warnings of a run (skin outside the contact, yielding at a zone's edge), plastic work at the surface.
 
-Plastic work in the uppermost layer of the barrier is hard to separate from friction: under a sticking tip the
-plate shears in a layer whose thickness follows from the mesh, as the material law has no length scale. Finer
-meshes move work from friction into plastic work right below the surface.
+Plastic work in the uppermost layer of a body is hard to separate from friction: under a sticking tip the
+softer body shears in a layer whose thickness follows from the mesh, as the material law has no length scale.
+Finer meshes move work from friction into plastic work right below the surface.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from fem_impact.arrays import Array
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
@@ -27,12 +28,34 @@ DEPTH = 0.1e-3  # m, thickness of the uppermost layer
 SHAPES = np.prod(1 + SIGNS[None] * CORNERS[:, None], axis=2) / 8  # (points, nodes)
 
 
-def skin_share(model: Model) -> float:
-    """Return the share of the barrier's plastic work done above `DEPTH`; 0 where it cannot yield."""
-    zones = [zone for zone in model.zones if zone.body == "barrier"]
-    above = sum(_work_above(zone, -model.start[0][zone.places()][:, :, 2]) for zone in zones)
-    whole = float(sum(zone.spent()[1].sum() for zone in zones))
-    return above / whole if whole else 0.0
+def skin_shares(model: Model) -> dict[str, float]:
+    """Return the share of the plastic work of ``rod`` and ``barrier`` done above `DEPTH`; 0 if none is."""
+    under, shares = depths(model), {}
+    for body in ("rod", "barrier"):
+        zones = [zone for zone in model.zones if zone.body == body]
+        above = sum(_work_above(zone, under[zone.places()[:, :, 2]]) for zone in zones)
+        whole = float(sum(zone.spent()[1].sum() for zone in zones))
+        shares[body] = above / whole if whole else 0.0
+    return shares
+
+
+def depths(model: Model) -> Array:
+    """Return how deep, m, each node lay under the surface of its body, at the place of its unknown along n.
+
+    Of the rod it is the distance from the tangential plane of its skin at the nearest node there.
+    """
+    x, places, mesh = model.start[0], model.layout.rod, model.geometry.rod.mesh
+    under, points = -x, x[places]
+    quads = mesh.faces_with(SKIN)
+    skin, normals = np.unique(quads), np.zeros((len(points), 3))
+    corners = points[quads]
+    across = np.cross(corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1])
+    np.add.at(normals, quads, across[:, None])
+    nearest = skin[KDTree(points[skin]).query(points)[1]]
+    length = np.maximum(np.linalg.norm(normals[nearest], axis=1), 1e-300)
+    away = ((points - points[nearest]) * normals[nearest]).sum(axis=1)
+    under[places[:, 2]] = np.abs(away) / length
+    return np.asarray(under)
 
 
 def _work_above(zone: YieldingZone, nodes: Array) -> float:

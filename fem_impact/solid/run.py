@@ -21,7 +21,7 @@ from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
-from fem_impact.solid.doubts import doubts, skin_share
+from fem_impact.solid.doubts import doubts, skin_shares
 from fem_impact.solid.frame import mass_centre
 from fem_impact.solid.march import Observer, advance, evaluate, march
 from fem_impact.solid.model import Model
@@ -75,7 +75,7 @@ class SolidResult:
     motion, flight : rigid and vibrating part of the motion after the last separation
     base : velocity (n, t), m/s, that a free barrier gained as a whole, that of its mass centre; else 0
     turned : how it turns, None of one that does not
-    skin_share : share of the barrier's plastic work done right under its surface
+    skin_shares : share of each body's plastic work done right under its surface, by ``rod`` and ``barrier``
     peak_force : largest normal force on the whole rod, N, mean over 2 us
     peak_nodes : nodes of the half model that were pressed at once then
     added_energy : largest kinetic energy of the mass that mass scaling added, J
@@ -96,7 +96,7 @@ class SolidResult:
     flight: FreeVibration
     base: tuple[float, float]
     turned: BarrierTurn | None
-    skin_share: float
+    skin_shares: dict[str, float]
     peak_force: float
     peak_nodes: int
     added_energy: float
@@ -200,7 +200,7 @@ def _result(
         flight=view.flight(state, model),
         base=_base(plan, model, state),
         turned=_turned(plan, model, state) if model.ground.turns else None,
-        skin_share=skin_share(model),
+        skin_shares=skin_shares(model),
         peak_force=watchers.peak.largest,
         peak_nodes=watchers.peak.nodes,
         added_energy=watchers.added.largest,

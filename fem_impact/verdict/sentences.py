@@ -106,7 +106,8 @@ def _heating(energy: Energy) -> str:
     """Return what can heat the contact."""
     skin, friction = energy.skin, or_none(energy.friction) or 0.0
     if not isinstance(skin, Unknown):
-        return f"{100 * skin:.0f} % can heat the contact (friction, and plastic work down to 0.1 mm)"
+        of = "friction, and plastic work of both bodies down to 0.1 mm"
+        return f"{100 * skin:.0f} % can heat the contact ({of})"
     plastic = or_none(energy.plastic) or 0.0
     return (
         f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "

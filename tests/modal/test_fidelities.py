@@ -226,12 +226,13 @@ def test_the_skin_and_the_dent_are_those_of_the_body_that_flows(changes, where):
     energy, told = outcome.energy, " ".join(outcome.validity.assumptions)
     assert f"the dent that the first one left in the {where}." in told
     if changes is None:
-        assert energy.skin > energy.friction
-    elif changes:
-        assert energy.skin == energy.friction
-        assert energy.plastic_barrier == 0.0
+        assert energy.skin == pytest.approx(energy.friction + energy.skin_barrier)
+        assert energy.skin_barrier > 0.0
+        assert "the softer body alone yields" in energy.skin_rod.reason
     else:
-        assert "the softer body alone yields" in energy.skin.reason
+        assert "softer than the barrier is known by finite elements alone" in energy.skin.reason
+        assert energy.skin_rod == energy.skin
+        assert (energy.skin_barrier == energy.plastic_barrier == 0.0) == bool(changes)
 
 
 def test_no_dent_where_nothing_yields():

@@ -305,10 +305,10 @@ def test_study_without_runs_or_comparison_still_reports(study):
     [
         ({"schema": "other/2"}, '"schema" = "other/2" is not'),
         ({"rows": "none"}, "rows must be array"),
-        ({"rows": [{"schema_version": 5}]}, r"rows\[0\]: key .* is missing"),
+        ({"rows": [{"schema_version": 6}]}, r"rows\[0\]: key .* is missing"),
         (
             {"rows": [{"schema_version": 3}]},
-            r"rows\[0\]: .* is not the version 5 .*; compute the run again",
+            r"rows\[0\]: .* is not the version 6 .*; compute the run again",
         ),
         ({"comparison": [{"set": "t2"}]}, r"comparison\[0\] must contain .*quantity"),
     ],
