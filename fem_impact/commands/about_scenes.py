@@ -87,6 +87,8 @@ def add_sweep(commands: Commands) -> None:
         "--vary", action="append", required=True, metavar="KEY=VALUES", default=[], help=values
     )
     parser.add_argument("--fidelity", choices=FIDELITIES, default="", help="of the runs (default: modal)")
+    columns = "numbers of the outcome to print and draw, such as e_edge,W_skin_over_E_0; sweep.csv holds all"
+    parser.add_argument("--columns", default="", metavar="NAMES", help=columns)
     add_out(parser, "below results")
     add_workers(parser)
     add_cluster(parser)

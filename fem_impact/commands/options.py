@@ -19,6 +19,7 @@ class Options(argparse.Namespace):
     scene: str = ""
     changes: Sequence[str] = ()
     vary: Sequence[str] = ()
+    columns: str = ""
     fidelity: str = ""
     ids: Sequence[str] = ()
     name: str = ""

@@ -21,10 +21,13 @@ if TYPE_CHECKING:
 def sweep(options: Options) -> int:
     """Compute all combinations, write table, figures and report, and print the findings."""
     from fem_impact.scene.write import digest
+    from fem_impact.study.results import require_columns
     from fem_impact.study.sweep import FIDELITY, publish_sweep
     from fem_impact.study.sweep import sweep as swept
     from fem_impact.study.vary import cases
 
+    columns = _columns(options)
+    require_columns(columns)
     scene, vary = changed_scene(options.scene, options.changes), _vary(options)
     cases(scene, vary)  # refuses what cannot run before a directory is made
     out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{digest(scene)[:8]}")
@@ -32,7 +35,7 @@ def sweep(options: Options) -> int:
     lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
     with closing(chosen_meter(options)) as meter, lent as executor:
         results = swept(scene, vary, fidelity, out, workers, meter, executor)
-    made = publish_sweep(results, scene.title, _line(options), out)
+    made = publish_sweep(results, scene.title, _line(options), out, columns)
     if options.json:
         print_json(_document(results, out))
     else:
@@ -52,11 +55,16 @@ def _vary(options: Options) -> dict[str, list[Any]]:
     return dict(pairs)
 
 
+def _columns(options: Options) -> list[str]:
+    return [name.strip() for name in options.columns.split(",")] if options.columns else []
+
+
 def _line(options: Options) -> str:
     words = ["fem-impact", "sweep", options.scene]
     words += [word for change in options.changes for word in ("--set", change)]
     words += [word for text in options.vary for word in ("--vary", text)]
-    return shlex.join([*words, *(["--fidelity", options.fidelity] if options.fidelity else [])])
+    words += ["--fidelity", options.fidelity] if options.fidelity else []
+    return shlex.join([*words, *(["--columns", options.columns] if options.columns else [])])
 
 
 def _document(results: Results, out: Path) -> dict[str, Any]:

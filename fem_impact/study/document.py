@@ -85,12 +85,18 @@ LEDGER = (
 
 @dataclass(frozen=True, slots=True)
 class Sheet:
-    """A table: written as CSV under its name; in the summary if ``shown``."""
+    """A table: written as CSV under its name; in the summary if ``shown``, or a part of it, ``brief``."""
 
     name: str
     caption: str
     table: Table
     shown: bool = True
+    brief: Table | None = None
+
+    @property
+    def told(self) -> Table:
+        """What the summary shows."""
+        return self.brief or self.table
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,8 +188,8 @@ def _document(report: StudyReport, request: Request, results: Results) -> dict[s
             {
                 "name": sheet.name,
                 "caption": sheet.caption,
-                "columns": [column.title for column in sheet.table.columns],
-                "rows": list(map(list, sheet.table.rows)) if sheet.shown else [],
+                "columns": [column.title for column in sheet.told.columns],
+                "rows": list(map(list, sheet.told.rows)) if sheet.shown else [],
             }
             for sheet in report.sheets
         ],
@@ -207,7 +213,7 @@ def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:
     parts += [f"![{p.caption}](figures/{p.name}.png)\n\n{p.caption}" for p in report.pictures]
     for sheet in report.sheets:
         parts += [f"{sheet.caption} (`{sheet.name}.csv`)"]
-        parts += [sheet.table.markdown()] if sheet.shown else []
+        parts += [sheet.told.markdown()] if sheet.shown else []
     parts += ["What it rests on:", _bullets(report.assumptions)] if report.assumptions else []
     parts += [f"failed: {f['scene_id']}: {f['error']}" for f in document["failures"]]
     return "\n\n".join(part for part in parts if part) + "\n"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import MissingLibraryError, UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
-from fem_impact.outcome.record import Outcome
-from fem_impact.study.document import LEDGER
+from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.study.vary import Case, in_unit, measure
 from fem_impact.tables.table import Cell, Table
 
@@ -19,9 +19,41 @@ if TYPE_CHECKING:
     from fem_impact.arrays import Array
 
 
-OUTCOME = (*("V_n_m_per_s", "V_t_m_per_s"), *(name for name in LEDGER if name not in ("run", "contacts")))
 STATE = ("finished", "reason")
 """Columns of how a run ended: whether it came to its end, and why not."""
+COLUMNS = tuple(
+    key.name
+    for key in KEYS
+    if key.kind in ("number", "count", "flag", "text", "entries")
+    and key.name not in ("schema_version", "effect_choices", "finished", "stopped_because")
+)
+"""Columns of an outcome: every number, count, flag and text of it by its key; of its contacts, how many."""
+UNIT = re.compile(r"_(over_E_0|rad_per_s|m_per_s|W_per_m2|[a-zA-Z]{1,2}2?)$")
+"""End of a column's name that states its unit."""
+SHORT = (
+    *("e_edge", "mu", "Omega_rad_per_s", "E_vib_over_E_0", "W_skin_over_E_0"),
+    *("flash_temperature_K", "contacts", "strikes_again"),
+)
+"""Columns that are shown unless others are chosen."""
+
+
+def require_columns(names: Sequence[str]) -> None:
+    """Refuse a name that is no column of an outcome.
+
+    Raises
+    ------
+    UsageError
+        With the nearest name, units left out.
+    """
+    from difflib import get_close_matches
+
+    without_unit = {UNIT.sub("", name).lower(): name for name in COLUMNS}
+    for name in names:
+        if name not in COLUMNS:
+            near = get_close_matches(UNIT.sub("", name).lower(), without_unit, 1)
+            meant = f"Did you mean {without_unit[near[0]]}? " if near else ""
+            remedy = f"{meant}`fem-impact schema` lists and explains them."
+            raise UsageError("is no column of an outcome.", key="columns", value=name, remedy=remedy)
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +101,7 @@ class Results(Sequence[Row]):
         return f"Results({len(self.rows)} cases of {', '.join(self.vary)}; {failed} failed)"
 
     def _repr_html_(self) -> str:
-        table = self.table()  # names stay as `numbers` and `to_dataframe` take them
+        table = self.table(SHORT)  # names stay as `numbers` and `to_dataframe` take them
         named = tuple(replace(column, label=f"`{column.name}`") for column in table.columns)
         return replace(table, columns=named).html(repr(self))
 
@@ -104,31 +136,41 @@ class Results(Sequence[Row]):
         """
         import numpy as np
 
-        names = [column.name for column in self.table().columns]
-        if name not in names:
+        table = self.table((name,) if name in COLUMNS else ())
+        if name not in table.names:
+            names = (*table.names, *COLUMNS)
             raise UsageError("is no column.", key=name, remedy=did_you_mean(name, names, f"{names}."))
-        column = (row[names.index(name)] for row in self.table().rows)
-        return np.array([float("nan") if cell is None else float(cell) for cell in column])  # type: ignore[arg-type]
+        cells = table.cells(name)
+        return np.array([float("nan") if cell is None else float(cell) for cell in cells])  # type: ignore[arg-type]
 
-    def table(self) -> Table:
-        """Return one row a case: values, unit in the header, how it ended, motion, shares of E_0."""
+    def table(self, columns: Sequence[str] = COLUMNS) -> Table:
+        """Return one row a case: values, unit in the header, how it ended, and columns of its outcome.
+
+        Raises
+        ------
+        UsageError
+            A name is no column of an outcome.
+        """
+        require_columns(columns)
         units = {key: measure(values[0])[1] for key, values in self.vary.items()}
         heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
         rows = [
             [
                 row.case.name,
                 *(in_unit(row.case.values[key], unit) for key, unit in units.items()),
-                *_ended(row),
+                *_ended(row, columns),
             ]
             for row in self.rows
         ]
-        return Table.of(("case", *heads, *STATE, *OUTCOME), rows)
+        return Table.of(("case", *heads, *STATE, *columns), rows)
 
-    def to_dataframe(self) -> pandas.DataFrame:
-        """Return the table as a data frame of pandas.
+    def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
+        """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.
 
         Raises
         ------
+        UsageError
+            A name is no column of an outcome.
         MissingLibraryError
             pandas is not installed.
         """
@@ -137,7 +179,7 @@ class Results(Sequence[Row]):
         except ImportError:
             problem = "A data frame needs pandas: pip install 'fem-impact[frames]'. The table needs nothing."
             raise MissingLibraryError(problem) from None
-        table = self.table()
+        table = self.table(columns)
         return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
 
 
@@ -150,12 +192,13 @@ def _same(stated: Any, wanted: Any) -> bool:
     return abs(a - b) <= 1e-9 * max(abs(a), abs(b))
 
 
-def _ended(row: Row) -> list[Cell]:
+def _ended(row: Row, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
-        return [False, row.reason, *([None] * len(OUTCOME))]
+        return [False, row.reason, *([None] * len(columns))]
     values, validity = row.outcome.to_dict(), row.outcome.validity
     reason = "" if validity.finished else validity.stopped_because
-    return [validity.finished, reason, *(values[name] for name in OUTCOME)]
+    cells = (values[name] for name in columns)
+    return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 
 
 def row_of(case: Case, result: Outcome | Failure | None) -> Row:

@@ -6,6 +6,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
+from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,10 +22,11 @@ from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import run_jobs
 from fem_impact.jobs.store import STORE
 from fem_impact.options import FIDELITIES
+from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.progress import NullMeter
 from fem_impact.scene.types import Scene
 from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
-from fem_impact.study.results import Results, Row, row_of
+from fem_impact.study.results import COLUMNS, SHORT, Results, Row, row_of
 from fem_impact.study.vary import cases, in_unit, measure
 
 if TYPE_CHECKING:
@@ -41,11 +43,12 @@ SHOWN = {
     "E_vib_over_E_0": "vibration over E_0",
 }
 """Columns that are drawn, with the labels of their axes."""
-COLUMNS = (
-    "In `sweep.csv` the varied keys come first; `e_edge` is e at the point of the tip that touches first; "
-    "`fem-impact schema` explains every other column."
+EXPLAINED = (
+    "`sweep.csv` holds every number of each outcome after the varied keys; `e_edge` is e at the point of the "
+    "tip that touches first; `fem-impact schema` explains every other column."
 )
-MOST_CURVES = 8
+MOST_CURVES, MOST_ROWS = 8, 50
+CELLS = ("tip_size_m", "barrier_size_m")
 
 
 def sweep(
@@ -100,16 +103,27 @@ def _engine(workers: int) -> Executor:
     return ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
 
 
-def publish_sweep(results: Results, title: str, line: str, out: Path) -> StudyResult:
-    """Write table, figures with their data, summary and study.json of a sweep; Parquet where it can be."""
+def publish_sweep(
+    results: Results, title: str, line: str, out: Path, columns: Sequence[str] = ()
+) -> StudyResult:
+    """Write table, figures with their data, summary and study.json of a sweep; Parquet where it can be.
+
+    The table has every column; the summary shows ``columns``, `SHORT` where none are named.
+
+    Raises
+    ------
+    UsageError
+        A name is no column of an outcome.
+    """
+    drawn = [name for name in columns if KEY_TABLE[name].kind == "number"] if columns else list(SHOWN)
     runs = {row.case.name: row.outcome or Failure(row.case.name, row.reason) for row in results}
     effects = {name for row in results if row.outcome for name in row.outcome.provenance.effects}
     report = StudyReport(
         "sweep",
         f"Sweep: {title}",
-        _findings(results),
-        pictures=_pictures(results),
-        sheets=[Sheet("sweep", "All cases", results.table(), shown=False)],
+        [*_findings(results, drawn), *_not_known(results, columns or SHORT), *_cells(results), EXPLAINED],
+        pictures=_pictures(results, drawn),
+        sheets=[_sheet(results, columns)],
         sources=sorted(effects),
     )
     made = publish(report, Request(out, line=line), runs)
@@ -118,17 +132,53 @@ def publish_sweep(results: Results, title: str, line: str, out: Path) -> StudyRe
     return made
 
 
-def _findings(results: Results) -> list[str]:
-    """Return how many cases failed, and where each shown quantity is smallest and largest."""
+def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
+    """Return the table of all columns; the summary shows the chosen ones, or those known of `SHORT`."""
+    whole = results.table()
+    names = columns or [name for name in SHORT if any(whole.texts(name))]
+    stopped = ["reason"] if any(whole.texts("reason")) else []
+    own = [name for name in whole.names if name not in (*COLUMNS, "reason")]
+    places = [whole.names.index(name) for name in (*own, *stopped, *names)]
+    rows = tuple(tuple(row[at] for at in places) for row in whole.rows[:MOST_ROWS])
+    brief = replace(whole, columns=tuple(whole.columns[at] for at in places), rows=rows)
+    caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
+    return Sheet("sweep", caption, whole, brief=brief)
+
+
+def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
+    """Return which columns no case knows, with the reason of the first."""
+    outcomes = [row.outcome.reasons for row in results if row.outcome]
+    missing = [name for name in columns if outcomes and all(name in reasons for reasons in outcomes)]
+    told = "; ".join(f"`{name}` ({outcomes[0][name].rstrip('.')})" for name in missing)
+    return [f"Not known in any case: {told}."] if missing else []
+
+
+def _cells(results: Results) -> list[str]:
+    """Return whether the cells of the meshes differ from case to case."""
+    ends = {}
+    for name in CELLS:
+        sizes = results.numbers(name)
+        if np.isfinite(sizes).any() and np.nanmax(sizes) > (1 + 1e-6) * np.nanmin(sizes):
+            ends[name] = f"`{name}` {1e3 * np.nanmin(sizes):.3g} to {1e3 * np.nanmax(sizes):.3g} mm"
+    if not ends:
+        return []
+    return [
+        f"The cells of the meshes differ between the cases ({', '.join(ends.values())}), as they follow the "
+        "scene: a part of each difference is the mesh's. State accuracy.tip_size for equal cells."
+    ]
+
+
+def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
+    """Return how many cases failed, and where each drawn quantity is smallest and largest."""
     failed = sum(row.outcome is None for row in results)
     sentences = [f"{len(results)} cases of {', '.join(results.vary)}; {failed} failed."]
-    for name, label in SHOWN.items():
-        values = results.numbers(name)
+    for name in drawn:
+        values, label = results.numbers(name), SHOWN.get(name, name)
         if np.isfinite(values).any():
             ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
             low, high = (f"{values[at]:.4g} ({_stated(results.rows[at])})" for at in ends)
-            sentences.append(f"{label[0].upper()}{label[1:]} (`{name}`): from {low} to {high}.")
-    sentences.append(COLUMNS)
+            titled = f"{label[0].upper()}{label[1:]} (`{name}`)" if name in SHOWN else f"`{name}`"
+            sentences.append(f"{titled}: from {low} to {high}.")
     return sentences
 
 
@@ -136,8 +186,8 @@ def _stated(row: Row, without: str = "") -> str:
     return ", ".join(f"{key} = {value}" for key, value in row.case.values.items() if key != without)
 
 
-def _pictures(results: Results) -> list[Picture]:
-    """Return each shown quantity over the key with most values, a curve for each choice of the others."""
+def _pictures(results: Results, drawn: Sequence[str]) -> list[Picture]:
+    """Return each drawn quantity over the key with most values, a curve for each choice of the others."""
     key = max(results.vary, key=lambda name: len(results.vary[name]))
     unit = measure(results.vary[key][0])[1]
     along = [in_unit(row.case.values[key], unit) for row in results]
@@ -147,10 +197,10 @@ def _pictures(results: Results) -> list[Picture]:
     for at, row in enumerate(results):
         curves.setdefault(_stated(row, key) or "all", []).append(at)
     label = f"{key}, {unit}" if unit else key
-    panels = [_panel(results, name, label, along, curves) for name in SHOWN]
-    drawn = tuple(panel for panel in panels if panel.series)
+    panels = [_panel(results, name, label, along, curves) for name in drawn]
+    told = tuple(panel for panel in panels if panel.series)
     left_out = "" if len(curves) <= MOST_CURVES else f" The first {MOST_CURVES} of {len(curves)} curves."
-    return [Picture("sweep", f"What changes with {key}.{left_out}", drawn)] if drawn else []
+    return [Picture("sweep", f"What changes with {key}.{left_out}", told)] if told else []
 
 
 def _panel(
@@ -161,4 +211,5 @@ def _panel(
         known = [at for at in places if np.isfinite(values[at])]
         if known:
             series.append(Series(title, [along[at] for at in known], values[known], "joined"))
-    return Panel(SHOWN[name], label, SHOWN[name], tuple(series))
+    title = SHOWN.get(name, name)
+    return Panel(title, label, title, tuple(series))

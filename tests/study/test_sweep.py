@@ -7,13 +7,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from outcome_maker import outcome
 
 import fem_impact
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
 from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
-from fem_impact.study.sweep import publish_sweep, sweep
-from fem_impact.study.vary import cases, in_unit, read_vary
+from fem_impact.study.results import COLUMNS, SHORT, Results, Row
+from fem_impact.study.sweep import MOST_ROWS, publish_sweep, sweep
+from fem_impact.study.vary import Case, cases, in_unit, read_vary
 from fem_impact.tables.table import read_csv
 
 
@@ -77,6 +79,96 @@ def swept(tmp_path_factory):
     out = tmp_path_factory.mktemp("swept")
     vary = {"surface.friction": [0.1, 0.5], "projectile.length": ["80 mm", "1 mm", "90 mm"]}
     return sweep(load("t5b"), vary, fidelity="rigid", out=out), out
+
+
+def test_the_table_holds_every_scalar_of_an_outcome_once(swept):
+    results, _ = swept
+    table, outcome = results.table(), results.rows[0].outcome.to_dict()
+    scalars = {name for name, value in outcome.items() if not isinstance(value, dict | list)}
+    assert len(set(table.names)) == len(table.names)
+    told_by_state = {
+        "schema_version",
+        "finished",
+        "stopped_because",
+        "mesh_limit",
+        "mesh_band",
+        "effect_choices",
+    }
+    assert scalars - told_by_state - {"effects"} <= set(table.names)
+    for name in (
+        "W_radiated_over_E_0",
+        "E_locked_rod_over_E_0",
+        "flash_temperature_K",
+        "tip_size_m",
+        "contacts",
+    ):
+        assert name in COLUMNS
+    assert results.table(["mu"]).names[-2:] == ("reason", "mu")
+    with pytest.raises(UsageError, match="Did you mean W_skin_over_E_0"):
+        results.table(["W_skn"])
+    with pytest.raises(UsageError, match="Did you mean Omega_rad_per_s"):
+        results.table(["omega"])
+
+
+def made_up(tips, **changed):
+    """Results of cases that differ in the size of their cells."""
+    rows = [
+        Row(
+            Case(f"case-{at}", {"projectile.diameter": f"{at} mm"}, None),
+            outcome(tip_size_m=tip, **changed),
+            "",
+        )
+        for at, tip in enumerate(tips, 1)
+    ]
+    return Results({"projectile.diameter": ["1 mm", "2 mm"]}, tuple(rows))
+
+
+@pytest.mark.parametrize(
+    ("tips", "told"), [((3e-4, 5e-4), True), ((3e-4, 3e-4), False), ((None, None), False)]
+)
+def test_cells_that_differ_between_the_cases_are_told_in_one_line(tips, told, tmp_path):
+    document = publish_sweep(made_up(tips), "t", "fem-impact sweep", tmp_path).document
+    lines = [line for line in document["findings"] if "cells of the meshes differ" in line]
+    assert len(lines) == told
+    assert not told or ("`tip_size_m` 0.3 to 0.5 mm" in lines[0] and "barrier_size_m" not in lines[0])
+
+
+def test_the_summary_shows_a_short_table_and_the_csv_all(tmp_path):
+    contacts = [{"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.1}] * 2
+    results = made_up((3e-4, 3e-4), contacts=contacts, flash_temperature_K=None)
+    made = publish_sweep(results, "t", "fem-impact sweep", tmp_path)
+    (sheet,) = made.document["sheets"]
+    known = [name for name in SHORT if name != "flash_temperature_K"]
+    assert sheet["columns"] == ["case", "projectile.diameter [mm]", "finished", *known]
+    assert dict(zip(sheet["columns"], sheet["rows"][0], strict=True))["contacts"] == 2
+    assert "Not known in any case: `flash_temperature_K` (not in the test)." in made.text
+    assert "| case-1 | 1 | yes |" in made.text
+    assert read_csv(tmp_path / "sweep.csv").names[-len(COLUMNS) :] == COLUMNS
+
+
+def test_chosen_columns_are_printed_and_drawn(tmp_path):
+    chosen = ["E_r_over_E_0", "strikes_again", "W_plate_over_E_0"]
+    results = made_up((3e-4, 5e-4), W_plate_over_E_0=None)
+    made = publish_sweep(results, "t", "fem-impact sweep", tmp_path, chosen)
+    assert made.document["sheets"][0]["columns"][-3:] == chosen
+    assert "`E_r_over_E_0`: from" in made.text and "e_edge`: from" not in made.text
+    assert "`W_plate_over_E_0` (not in the test)" in made.text
+
+
+def test_a_long_table_is_cut_in_the_summary_alone(tmp_path):
+    results = made_up([3e-4] * (MOST_ROWS + 1))
+    made = publish_sweep(replace_vary(results), "t", "fem-impact sweep", tmp_path)
+    (sheet,) = made.document["sheets"]
+    assert sheet["caption"] == f"The first {MOST_ROWS} of {MOST_ROWS + 1} cases"
+    assert len(sheet["rows"]) == MOST_ROWS
+    assert len(read_csv(tmp_path / "sweep.csv").rows) == MOST_ROWS + 1
+
+
+def replace_vary(results):
+    """The results with all their values named as varied."""
+    return Results(
+        {"projectile.diameter": [row.case.values["projectile.diameter"] for row in results]}, results.rows
+    )
 
 
 def test_each_row_is_the_run_of_its_scene(swept):
@@ -164,6 +256,8 @@ def test_a_data_frame_holds_the_table(swept):
     assert isinstance(frame, pandas.DataFrame)
     assert list(frame["projectile.length [mm]"]) == [80.0, 1.0, 90.0] * 2
     assert frame["mu"].notna().sum() == 4
+    assert "W_radiated_over_E_0" in frame
+    assert list(results.to_dataframe(["mu", "e_edge"]).columns)[-2:] == ["mu", "e_edge"]
 
 
 def test_without_pandas_the_error_says_what_to_install(swept, monkeypatch):
@@ -247,6 +341,18 @@ def test_an_executor_that_is_lent_stays_open():
     with ThreadPoolExecutor(1) as lent:
         sweep(load("t5b"), {"surface.friction": [0.2]}, fidelity="rigid", executor=lent)
         assert lent.submit(int, 3).result() == 3
+
+
+def test_a_wrong_column_is_answered_with_the_nearest_before_a_directory_is_made(cli):
+    line = ("sweep", "t5b", "--vary", "impact.angle=15,20deg")
+    code, out, err = cli(*line, "--columns", "mu,flash_temprature")
+    assert (code, out) == (2, "")
+    assert 'columns = "flash_temprature"' in err and "Did you mean flash_temperature_K?" in err
+    assert not Path("results").exists()
+    code, out, _ = cli(
+        *line, "--columns", "mu, E_r_over_E_0", "--fidelity", "rigid", "--workers", "1", "--quiet"
+    )
+    assert code == 0 and "| finished | mu | E_r_over_E_0 |" in out and "--columns 'mu, E_r_over_E_0'" in out
 
 
 @pytest.mark.parametrize(
