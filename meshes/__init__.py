@@ -9,7 +9,7 @@ from meshes.block import (
     with_thin_skin,
 )
 from meshes.cut import without_slices
-from meshes.errors import MeshError
+from meshes.errors import ClosedEndError, MeshError
 from meshes.files import MeshFile, read, write
 from meshes.hexmesh import OUTER, SKIN, SYMMETRY, HexMesh
 from meshes.moments import CellMoments, cell_moments
@@ -26,6 +26,7 @@ __all__ = [
     "SKIN",
     "SYMMETRY",
     "CellMoments",
+    "ClosedEndError",
     "HexMesh",
     "MeshError",
     "MeshFile",

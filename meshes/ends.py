@@ -1,16 +1,16 @@
 """The end of a body of revolution: how far its nose grid goes, chosen by the quality of its cells."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from meshes.arrays import FloatArray
-from meshes.errors import MeshError
+from meshes.errors import ClosedEndError, MeshError
 from meshes.meridian import Meridian
 from meshes.nose import NoseMesh, inner_corner, lay_nose
 from meshes.quality import corner_jacobians
 from meshes.rod import nose_cells
-from meshes.section import Section
+from meshes.section import Section, section
 from meshes.topology import EDGES
 
 __all__ = ["End", "end_of"]
@@ -52,6 +52,7 @@ def end_of(
     near: FloatArray | None = None,
     levels: int = 0,
     bore: FloatArray | None = None,
+    closed: float = np.inf,
 ) -> End:
     """Return the best nose grid of an end.
 
@@ -63,29 +64,36 @@ def end_of(
         Place (rho, z) that is to be the middle of a cell split `levels` times, if that folds no cell.
     bore : (j, 2) float64, m, optional
         Inner surface (rho, z) of an open end, from z = 0.
+    closed : float, m
+        Height at which the bore of a closed end begins.
 
     Raises
     ------
     MeshError
-        If the end is too sharp.
+        If the end is too sharp, or closed by a disc that is too thin.
     """
-    builder = _Builder(line, half, across, bore)
-    found = [pair for pair in map(builder.tried, _cuts(line)) if pair is not None]
-    score, cut = max(((builder.score(end), cut) for cut, end in found), default=((0.0, 0.0), 0))
-    if score[0] < POOR:
+    builder = _Builder(line, half, across, bore, closed)
+    score, cut, plain = builder.best()
+    if plain is None or not score >= POOR:
+        if np.isfinite(closed) and replace(builder, closed=np.inf).best()[0] >= POOR:
+            raise ClosedEndError(closed)
         if bore is not None:
             raise MeshError(
                 f"the wall at the open end, {bore[0, 0]:.6g} m and more from the axis, is too thin for the "
                 "rounding of its edge: give a smaller bore or a smaller radius of the edge"
             )
         radius = float(line[:, 0].max())
+        if half.bore and _Builder(line, section(across), across, None, np.inf).best()[0] >= POOR:
+            raise MeshError(
+                f"a wall of {1.0 - half.bore:.2g} of the outer radius is too thin beside {across} cells "
+                "across"
+            )
         raise MeshError(
             f"an end is too sharp for hexahedra: round it with a radius of {0.1 * radius:.2g} m or more, or "
             "cut it off flat"
         )
-    plain = dict(found)[cut]
     shifted = builder.tried(cut, near, levels) if near is not None else None
-    return shifted[1] if shifted and builder.score(shifted[1])[0] >= 0.8 * score[0] else plain
+    return shifted if shifted and builder.score(shifted)[0] >= 0.8 * score else plain
 
 
 def _cuts(line: FloatArray) -> list[int]:
@@ -113,8 +121,16 @@ class _Builder:
     half: Section
     across: int
     bore: FloatArray | None
+    closed: float
 
-    def tried(self, cut: int, near: FloatArray | None = None, levels: int = 0) -> tuple[int, End] | None:
+    def best(self) -> tuple[float, int, End | None]:
+        """Return the score of the best nose grid, the vertex of the line at which it ends, and the grid."""
+        cuts = [(cut, self.tried(cut)) for cut in _cuts(self.line)]
+        scored = [(self.score(end), cut, end) for cut, end in cuts if end is not None]
+        score, cut, end = max(scored, key=lambda one: one[:2], default=((0.0, 0.0), 0, None))
+        return score[0], cut, end
+
+    def tried(self, cut: int, near: FloatArray | None = None, levels: int = 0) -> End | None:
         """Return the nose grid that ends at a vertex of the line, or None where there is no room for it."""
         shape, line = Meridian(self.line[: cut + 1], self.line[cut:]), self.line
         pitch = 2.0 * shape.radius / self.across
@@ -122,13 +138,15 @@ class _Builder:
         split = shape.shoulder(near if on_nose else None, pitch / 2**levels)
         corner = inner_corner(shape, split, self.half.plug)
         start = max(shape.height + pitch, float(corner[1]) + 1.5 * pitch, 2.0 * shape.radius / 3.0)
+        disc = self.closed < start + 0.5 * pitch
+        start = self.closed if disc else start
         room = line[-1, 1] if line[-1, 0] > 0.0 else HALF * line[-1, 1]
         hole = self.hole(start)
-        if start >= room or corner[0] <= hole[0]:
+        if not max(shape.height, shape.at(np.array(split))[1]) <= start < room or corner[0] <= hole[0]:
             return None
-        grid = lay_nose(shape, start, split, self.half, pitch, hole)
+        grid = lay_nose(shape, start, split, self.half, pitch, hole, disc)
         top = float(np.interp(start, line[cut:, 1], line[cut:, 0]))
-        return cut, End(start, grid, shape.radius, top, self.bore is not None)
+        return End(start, grid, shape.radius, top, self.bore is not None)
 
     def hole(self, start: float) -> tuple[float, float]:
         """Return the radius of an open bore at the face and at a height, m; 0 where the end is closed."""

@@ -1,7 +1,24 @@
 """Errors of the mesh package."""
 
-__all__ = ["MeshError"]
+__all__ = ["ClosedEndError", "MeshError"]
 
 
 class MeshError(ValueError):
     """A mesh cannot be built or is not usable; the message names the place and the remedy."""
+
+
+class ClosedEndError(MeshError):
+    """A bore begins too near to an end for the cells between them.
+
+    Attributes
+    ----------
+    distance : float, m
+        From the end to the flat face that closes the bore.
+    """
+
+    def __init__(self, distance: float) -> None:
+        self.distance = distance
+        super().__init__(
+            f"the face that closes the bore lies {1e3 * distance:.4g} mm from the end, within the rounding "
+            "or slope of the end or too near for cells between them"
+        )

@@ -50,6 +50,7 @@ def lay_nose(
     half: Section,
     pitch: float,
     hole: tuple[float, float] = (0.0, 0.0),
+    disc: bool = False,
 ) -> NoseMesh:
     """Lay the nose grid.
 
@@ -66,6 +67,8 @@ def lay_nose(
         Wanted height of the rows.
     hole : (float, float), m
         Radius of an open bore at the face and where the body begins; nodes inside it are on its surface.
+    disc : bool
+        Whether a bore begins at `height`: then two layers of cells, as thin as need be, may fill the nose.
     """
     curve = meridian.extended(height)
     end = float(curve.line[-1, 0])  # radius where the body begins
@@ -74,37 +77,43 @@ def lay_nose(
         share = np.clip((share * half.plug - half.bore) / (half.plug - half.bore), 0.0, 1.0)
     layer = (1.0 - half.plug) * meridian.radius
     layer_above = (1.0 - half.plug) * end
-    corner = inner_corner(meridian, split, half.plug)
+    deepest = 0.5 * height if disc else np.inf
+    corner = inner_corner(meridian, split, half.plug, deepest)
     deep = corner - curve.at(np.array(split))
     length = curve.arc[-1] - split
-    rows = max(2, round(0.5 * (length + height - corner[1]) / pitch))
+    fewest = 1 + int((curve.corners() > split).sum()) if disc else 2
+    rows = max(fewest, round(0.5 * (length + height - corner[1]) / pitch))
     side = curve.at(_along(split, curve.arc[-1], rows, pitch, curve.corners()))
     inside = float(np.clip(1.0 - pitch / split, FURTHEST_IN, half.inner + LEAN))
     along = np.interp(share, [0.0, half.inner, 1.0], [0.0, inside, 1.0]) if hole[0] <= 0.0 else share
     face = curve.at(hole[0] + (split - hole[0]) * along)
-    pole = max(layer, float(corner[1]))
+    pole = min(max(layer, float(corner[1])), deepest)
     bottom = np.stack([hole[0] + (corner[0] - hole[0]) * share, pole + (corner[1] - pole) * share], axis=1)
     fade = np.linspace(0.0, 1.0, rows + 1)
     wall = side + np.outer(1.0 - fade, deep) + np.outer(fade, [-layer_above, 0.0])
     return NoseMesh(face, _filled(bottom, wall, share, height, hole), side)
 
 
-def inner_corner(meridian: Meridian, split: float, plug: float) -> FloatArray:
+def inner_corner(meridian: Meridian, split: float, plug: float, deepest: float = np.inf) -> FloatArray:
     """(2,) point C (rho, z), m, where plug, face layer and side layer meet.
 
-    `split` is the arc length of the turn, m; `plug` the radius of the plug over that of the rod.
+    `split` is the arc length of the turn, m; `plug` the radius of the plug over that of the rod; `deepest`
+    the largest z, m.
     """
     curve = meridian.extended(meridian.height + meridian.radius)
     layer = (1.0 - plug) * meridian.radius
     end = curve.at(np.array(split))
     rounding = float(np.hypot(meridian.radius - end[0], end[1]))  # 0 for a sharp edge
     depth = DEPTH * max(float(np.sqrt(2.0)) * layer - rounding, 0.8 * layer)
-    return np.asarray(end + depth * curve.inward(split, 0.5 * layer))
+    corner = np.asarray(end + depth * curve.inward(split, 0.5 * layer))
+    return np.array([corner[0], min(corner[1], deepest)])
 
 
 def _along(start: float, end: float, rows: int, pitch: float, corners: FloatArray) -> FloatArray:
     """(rows + 1,) arc lengths, m: one pitch, then equal steps; with edges, equal steps between them."""
     even = np.linspace(start, end, rows + 1)
+    if rows == 1:
+        return even
     inside = corners[(corners > start + 0.3 * (even[1] - start)) & (corners < end - 0.3 * (even[1] - start))]
     if not len(inside):
         first = min(pitch, 1.2 * (even[1] - start))

@@ -1,14 +1,14 @@
 """Half a body of revolution of any profile: a nose grid at each end, scaled sections between them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
-from meshes.arrays import FloatArray, IntArray
+from meshes.arrays import BoolArray, FloatArray, IntArray
 from meshes.ends import End, end_of
-from meshes.errors import MeshError
+from meshes.errors import ClosedEndError, MeshError
 from meshes.hexmesh import HexMesh, from_cells, half_body_tags
 from meshes.meridian import CORNER, closest_on
 from meshes.quality import require_positive, scaled_jacobians
@@ -21,6 +21,7 @@ __all__ = ["contact_radius", "turned"]
 
 STEEPEST = np.tan(np.deg2rad(75.0))  # of the radius over z between two sections
 WORST = 0.12  # least scaled Jacobian of a cell
+SLIVER = 0.02  # of a cell: fixed heights that lie nearer to each other are one
 SAME = 1e-9  # relative difference of radii and heights of slices that count as equal
 
 
@@ -32,16 +33,31 @@ class _Body:
     ----------
     line, bore : (k, 2) outer and inner surface, (rho, z), m; a body without a bore has no rows
     half : section; across : cells over the diameter
+    faceted : whether nodes of split cells stay on the flat faces along the bore
     """
 
     line: FloatArray
     bore: FloatArray
     half: Section
     across: int
+    faceted: bool = False
 
     @property
     def length(self) -> float:
         return float(self.line[-1, 1])
+
+    @property
+    def hollow(self) -> FloatArray:
+        """(j, 2) inner surface with the flat faces that close it, (rho, z), m."""
+        first, last = self.bored_from_to
+        front = [[0.0, first]] if first > 0.0 else []
+        rear = [[0.0, last]] if last < self.length else []
+        return np.array([*front, *self.bore, *rear])
+
+    @property
+    def bored_from_to(self) -> tuple[float, float]:
+        """Heights at which a bore begins and ends, m; without one, infinitely far from both ends."""
+        return (float(self.bore[0, 1]), float(self.bore[-1, 1])) if len(self.bore) else (np.inf, -np.inf)
 
     def radius(self, z: FloatArray) -> FloatArray:
         """(n,) outer radius at heights z (n,), m."""
@@ -62,23 +78,26 @@ class _Body:
         inside = np.interp(z, self.bore[:, 1], self.bore[:, 0])
         return np.where(z < first[1], share[0] * outer, np.where(z > last[1], share[1] * outer, inside))
 
-    def bored(self, low: FloatArray, high: FloatArray) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    def bored(self, low: FloatArray, high: FloatArray) -> BoolArray:
         """(n,) whether cells between these heights lie along the bore."""
         if not len(self.bore):
             return np.zeros(len(low), dtype=bool)
+        first, last = self.bored_from_to
         middle = 0.5 * (low + high)
-        return np.asarray((middle > self.bore[0, 1]) & (middle < self.bore[-1, 1]))
+        return np.asarray((middle > first) & (middle < last))
 
     def snap(self, points: FloatArray) -> FloatArray:
         """Closest points of the outer or inner surface, azimuth kept: (k, 3) m to (k, 3) m."""
         rho = np.hypot(points[:, 0], points[:, 1])
         place = np.stack([rho, points[:, 2]], axis=1)
         outer = np.concatenate([self.line, [[0.0, self.length]]]) if self.line[-1, 0] > 0.0 else self.line
+        if self.faceted and self.bored_from_to[0] <= 0.0:  # the face at the tip begins beside the hole
+            outer = np.concatenate([self.bore[:1], outer[1:]])
         target = closest_on(outer, place)
         if len(self.bore):
-            inner = closest_on(self.bore, place)
+            inner = closest_on(self.hollow, place)
             nearer = np.linalg.norm(inner - place, axis=1) < np.linalg.norm(target - place, axis=1)
-            target = np.where(nearer[:, None], inner, target)
+            target = np.where(nearer[:, None], place if self.faceted else inner, target)
         scale = np.where(rho > 0.0, target[:, 0] / np.where(rho > 0.0, rho, 1.0), 1.0)
         return np.stack([points[:, 0] * scale, points[:, 1] * scale, target[:, 1]], axis=1)
 
@@ -124,7 +143,7 @@ def turned(
     tip = _tip(body, near, len(zones))
     tail = None
     if body.line[-1, 0] <= 0.0:
-        tail = end_of(_mirrored(body.line), body.half, across)
+        tail = end_of(_mirrored(body.line), body.half, across, closed=body.length - body.bored_from_to[1])
     low, high = _reached(body, tip, zones, buffer)
     heights = _heights(body, tip.start, body.length - (tail.start if tail else 0.0), planes)
     tail_start = body.length - tail.start if tail else np.inf
@@ -148,10 +167,14 @@ def contact_radius(
 ) -> float:
     """Return the radius, m, over whose double `across` cells lie at a place (rho, z), m, of the surface.
 
-    It is that of the nose, or of the section at the height of the place.
+    It is that of the nose, or of the section at the height of the place; of a nose that a bore leaves no room
+    for cells, that without the bore.
     """
     body = _body(np.array(outline, np.float64), bore, across)
-    tip = _tip(body)
+    try:
+        tip = _tip(body)
+    except ClosedEndError:
+        tip = end_of(body.line, body.half, across)
     if contact[1] > tip.start:
         return float(body.radius(np.array(contact[1])))
     return tip.radius
@@ -159,8 +182,10 @@ def contact_radius(
 
 def _tip(body: _Body, near: FloatArray | None = None, levels: int = 0) -> End:
     """Return the end at the tip."""
-    is_open = len(body.bore) > 0 and body.bore[0, 1] <= 0.0
-    return end_of(body.line, body.half, body.across, near, levels, body.bore if is_open else None)
+    first, _ = body.bored_from_to
+    if first <= 0.0:
+        return end_of(body.line, body.half, body.across, near, levels, body.bore)
+    return end_of(body.line, body.half, body.across, near, levels, closed=first)
 
 
 def _body(line: FloatArray, bore: FloatArray | None, across: int) -> _Body:
@@ -180,7 +205,9 @@ def _body(line: FloatArray, bore: FloatArray | None, across: int) -> _Body:
     if bore is None:
         return _Body(line, np.zeros((0, 2)), section(across), across)
     front = np.interp(max(bore[0, 1], 1e-9 * line[-1, 1]), line[:, 1], line[:, 0])
-    return _Body(line, np.array(bore, np.float64), bored_section(across, float(bore[0, 0] / front)), across)
+    half = bored_section(across, float(bore[0, 0] / front))
+    # beside an edge to a closing face, a polygon in the mesh, cells along the round bore would be slivers
+    return _Body(line, np.array(bore, np.float64), half, across, faceted=bool(bore[0, 1] > 0.0))
 
 
 def _mirrored(line: FloatArray) -> FloatArray:
@@ -209,7 +236,7 @@ def _heights(body: _Body, start: float, end: float, planes: Sequence[float]) -> 
     turn = np.abs(np.diff(np.arctan2(*np.diff(body.line, axis=0).T)))
     edges = body.line[1:-1, 1][turn > CORNER]
     fixed = np.unique(np.concatenate([edges, body.bore[:, 1], np.asarray(planes, np.float64)]))
-    least = 1e-6 * body.length
+    least = max(1e-6 * body.length, SLIVER * float(body.pitch(np.array(start))))
     fixed = fixed[(fixed > start + least) & (fixed < end - least)]
     ends = [start, *fixed[np.diff(fixed, prepend=start) > least], end]
     parts = [np.array([start])]
@@ -286,13 +313,12 @@ def _finished(
     _require_fair(mesh)
     if zones:
         try:
-            mesh = refine(mesh, zones, body.snap, buffer=buffer, frozen=np.arange(len(cells)) < rest)
+            mesh = _refined(body, mesh, zones, buffer, np.arange(len(cells)) < rest)
         except MeshError:
             if high <= heights[-1]:
                 raise
             rest = 0  # of a stout body even the cells of the rounded tail are split
-            mesh = refine(mesh, zones, body.snap, buffer=buffer)
-        require_positive(mesh)
+            mesh = _refined(body, mesh, zones, buffer)
     section_nodes = place[: nodes * len(heights)].reshape(-1, nodes)
     interface = section_nodes[first] if rest else np.zeros(0, dtype=np.int64)
     start = float(heights[first]) if rest else body.length
@@ -305,6 +331,20 @@ def _finished(
     return RodMesh(
         mesh, body_nodes, body_cells, slab, start, interface[interface >= 0], np.arange(rest), exact
     )
+
+
+def _refined(
+    body: _Body, mesh: HexMesh, zones: Sequence[Zone], buffer: int, frozen: BoolArray | None = None
+) -> HexMesh:
+    """Refine; where that folds a cell beside the bore, whose facets are wider than it, keep these facets."""
+    fine = refine(mesh, zones, body.snap, buffer=buffer, frozen=frozen)
+    try:
+        require_positive(fine)
+    except MeshError:
+        if not len(body.bore) or body.faceted:
+            raise
+        return _refined(replace(body, faceted=True), mesh, zones, buffer, frozen)
+    return fine
 
 
 def _require_fair(mesh: HexMesh) -> None:

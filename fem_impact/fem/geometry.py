@@ -15,6 +15,7 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.cells import posture
 from fem_impact.plan.layers import block_of, moved_rows
+from fem_impact.plan.mesh import OTHERWISE
 from fem_impact.plan.size import no_rest
 from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
@@ -133,8 +134,7 @@ def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
         assert isinstance(body, Projectile), "a body with facets has a mesh of its own"
         return meshes.rod(body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER)
     except meshes.MeshError as error:
-        remedy = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
-        raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy) from None
+        raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=OTHERWISE) from None
 
 
 def _require_tip_first(points: Array, base: float) -> None:

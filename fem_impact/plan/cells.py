@@ -31,8 +31,8 @@ from math import log2, sqrt
 import numpy as np
 
 import meshes
-from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_estimate
+from fem_impact.plan.mesh import no_mesh
 from fem_impact.scene.fields import TIP_SIZE
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
@@ -102,7 +102,7 @@ def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
     try:
         return meshes.contact_radius(body.outline, place, across, body.bore)
     except meshes.MeshError as error:
-        raise SceneError(f"cannot be meshed: {error}.", key="projectile") from None
+        raise no_mesh(error, rod, across) from None
 
 
 def levels_of(bodies: ContactBodies) -> tuple[int, int]:

@@ -22,6 +22,7 @@ from fem_impact.plan.limits import (
     require_still,
     validity,
 )
+from fem_impact.plan.mesh import require_mesh
 from fem_impact.plan.metals import unknowns
 from fem_impact.plan.plates import is_thin, require_plate, require_plate_mesh
 from fem_impact.plan.size import RunSize, require_memory, require_rest, run_size
@@ -96,7 +97,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     SceneError
         If an effect is unknown, the rod does not come towards the barrier, or the solid
         fidelity cannot hold it: an indentation as deep as the rod, a tip without a fine zone, a mesh that
-        needs more memory than the machine has.
+        needs more memory than the machine has, a shape that cannot be meshed.
     """
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
@@ -118,6 +119,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     if fidelity == "solid":
         require_shallow(bodies)
         require_fine_zone(bodies)
+        require_mesh(scene)
         if through:
             require_plate_mesh(scene, zones.base, block_of(scene, zones))
         if not slots.vibrating:

@@ -1,0 +1,83 @@
+"""Whether a turned projectile can be meshed: found before any work, on a mesh without its fine zone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import lru_cache
+from math import ceil, floor, isclose
+
+import numpy as np
+
+import meshes
+from fem_impact.errors import SceneError
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Scene
+from rigid import Turned
+
+FINER = (8, 10, 12, 16, 20)  # cells over the diameter that are tried for a remedy
+THICKEST, TRIALS = 1.5, 12  # closed ends that are tried: up to so many diameters, and how many
+OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
+
+
+def require_mesh(scene: Scene) -> None:
+    """Refuse a turned projectile of which no mesh can be made (SceneError), with remedies that were tried."""
+    if not scene.projectile.is_rod and scene.projectile.own_mesh is None:
+        _require_mesh(scene.projectile, scene.accuracy.across)
+
+
+@lru_cache(maxsize=256)
+def _require_mesh(rod: ProjectileSpec, across: int) -> None:
+    try:
+        _make_mesh(rod, across)
+    except meshes.ClosedEndError as error:
+        number = 0 if isclose(rod.bore[0][0], error.distance, rel_tol=1e-9) else len(rod.bore) - 1
+        raise SceneError(
+            f"cannot be meshed: {error}.",
+            key=f"projectile.bore[{number + 1}]",
+            value=f"z = {1e3 * rod.bore[number][0]:.4g} mm",
+            remedy=_said([*_thicker(rod, across, number, error.distance), *_finer(rod, across)]),
+        ) from None
+    except meshes.MeshError as error:
+        raise no_mesh(error, rod, across) from None
+
+
+def no_mesh(error: meshes.MeshError, rod: ProjectileSpec, across: int) -> SceneError:
+    """Return the refusal of a projectile that cannot be meshed, with more cells across if that helps."""
+    return SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_said(_finer(rod, across)))
+
+
+def _make_mesh(rod: ProjectileSpec, across: int) -> None:
+    body = rod.body()
+    assert isinstance(body, Turned), "a mesh of its own is made already"
+    meshes.turned(body.outline, across, bore=body.bore, planes=[end for end, _ in body.density])
+
+
+def _works(rod: ProjectileSpec, across: int) -> bool:
+    try:
+        _make_mesh(rod, across)
+    except (meshes.MeshError, SceneError):  # no mesh, or no body
+        return False
+    return True
+
+
+def _finer(rod: ProjectileSpec, across: int) -> list[str]:
+    """Return the fewest cells over the diameter with which there is a mesh, as a remedy, if any."""
+    return next(([f"accuracy.across = {n}"] for n in FINER if n > across and _works(rod, n)), [])
+
+
+def _thicker(rod: ProjectileSpec, across: int, number: int, distance: float) -> list[str]:
+    """Return the place of a bore's first or last point with which there is a mesh, as a remedy, if any."""
+    for thickness in np.geomspace(distance, max(THICKEST * rod.diameter, 2.0 * distance), TRIALS)[1:]:
+        z = ceil(1e4 * thickness) / 1e4 if number == 0 else floor(1e4 * (rod.length - thickness)) / 1e4
+        points = [(z if row == number else place, r) for row, (place, r) in enumerate(rod.bore)]
+        try:
+            moved = replace(rod, bore=tuple(points))
+        except SceneError:  # the next point lies nearer
+            return []
+        if _works(moved, across):
+            return [f"z = {1e3 * z:.4g} mm there"]
+    return []
+
+
+def _said(remedies: list[str]) -> str:
+    return f"Give {' or '.join(remedies)}." if remedies else OTHERWISE
