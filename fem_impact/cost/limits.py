@@ -130,7 +130,7 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
         if any(mean(quantity, runs) is None for runs in meshes):
             continue
         values = [values_of(quantity, runs) for runs in meshes]
-        truth = _limit_of(sizes, values)
+        truth = limit_of(sizes, values)
         # the larger of limit and finest value, so that a limit near zero does not inflate the errors
         size = max(abs(truth.value), abs(fmean(values[finest])))
         limits[quantity.name] = replace(truth, scale=quantity.scale(size, meshes[finest][0]))
@@ -141,7 +141,7 @@ def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, f
     """Return limit and half-width of two meshes or more, by key, of every number that all their runs know."""
     sizes, values = _sizes(meshes), [_banded(runs) for runs in meshes]
     limits = {
-        name: _limit_of(sizes, [of_mesh[name] for of_mesh in values])
+        name: limit_of(sizes, [of_mesh[name] for of_mesh in values])
         for name in values[0]
         if all(name in of_mesh for of_mesh in values)
     }
@@ -166,8 +166,8 @@ def _sizes(meshes: Sequence[Placed]) -> list[float]:
     return [known(runs[0].cost.tip_size) for runs in meshes]
 
 
-def _limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Truth:
-    """Return the limit from the values of several runs on each mesh.
+def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Truth:
+    """Return the limit, with scale 1, from the values of several runs on each mesh; ``sizes`` in any unit.
 
     The standard error of the limit by the scatter of those values is the root mean square change of the
     limit when each mean is moved up or down by its standard error, in all combinations; for a pair exactly

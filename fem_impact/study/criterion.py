@@ -12,7 +12,7 @@ from fem_impact.jobs.run import Results
 from fem_impact.study import criterion_solid
 from fem_impact.study.criterion_measure import linear_rods, modal_restitution, rods_of
 from fem_impact.study.criterion_report import HERTZ, YIELDING, study_report
-from fem_impact.study.criterion_solid import restitution, solid_rods, without
+from fem_impact.study.criterion_solid import member, restitution, solid_rods, without
 from fem_impact.study.document import Request, StudyResult, publish
 from fem_impact.study.rods import BODY, PAPER_RODS, TIP, Drop, length_of
 
@@ -24,6 +24,7 @@ GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)
 QUICK_ANGLES = (1.0, 20.0, 45.0, 70.0)
 DIAMETERS, QUICK_DIAMETERS = (0.012, 0.019, 0.030), (0.012, 0.019)
+Values = float | list[float] | None  # at one place of the barrier's grid, or at each
 FRICTIONS = np.round(np.arange(0.0, 0.951, 0.05), 3)
 
 
@@ -83,10 +84,10 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
 def _ends(drop: Drop, quick: bool, results: Results) -> tuple[float | None, float | None]:
     """Return the change of e by vibration of an elastic drop by finite elements and by modes."""
     factor, stiff = (criterion_solid.QUICK if quick else criterion_solid.FULL).own, without(drop)
-    solid = (restitution(drop, factor, results), restitution(stiff, factor, results))
-    modal = (modal_restitution(drop, results), modal_restitution(stiff, results))
+    solid = [restitution(member(one, quick), factor, results) for one in (drop, stiff)]
+    modal = [modal_restitution(one, results) for one in (drop, stiff)]
     return _change(*solid), _change(*modal)
 
 
-def _change(e: float | None, e_rigid: float | None) -> float | None:
-    return None if e is None or e_rigid is None else e - e_rigid
+def _change(e: Values, e_rigid: Values) -> float | None:
+    return None if e is None or e_rigid is None else float(np.mean(e) - np.mean(e_rigid))

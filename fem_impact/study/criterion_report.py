@@ -49,8 +49,8 @@ Ends = Sequence[tuple[Drop, float | None, float | None]]
 ASSUMPTIONS = (
     *DROP_NOTES,
     MODAL_NOTE,
-    "Yielding, contaminated and machined: finite elements on two meshes; the band is that of the difference "
-    "of e with and without vibration. All other families: modes, without a band.",
+    "Yielding, contaminated and machined: finite elements on two meshes at two places; the band is that of "
+    "the difference of e with and without vibration. All other families: modes, without a band.",
     "Error of rigid theory: change of e, at the worst of the angles from 1 to 80 degrees, against a "
     "rod that cannot vibrate on the same contact. At 0 degrees a flat face has no one contact point.",
     "Linear spring: bending and stretching modes of the slender rod, one stiffness for all rods, as "

@@ -8,21 +8,21 @@ from itertools import groupby
 
 import numpy as np
 
-from fem_impact.cost.limits import pair_limit
+from fem_impact.cost.limits import limit_of
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.criterion_measure import Rod, Rods, whole_ratio
 from fem_impact.study.gamma_points import Member, Meshes
-from fem_impact.study.pairs import COARSER
+from fem_impact.study.pairs import COARSER, PLACES
 from fem_impact.study.rods import STATES, Drop, length_of
 from rigid import LIMIT
 
 GAMMAS, QUICK_GAMMAS = (10.0, 15.0, 20.0, LIMIT, 35.0, 50.0, 80.0), (15.0, 35.0)
 ANGLES, QUICK_ANGLES = (5.0, 20.0, 35.0, 45.0, 60.0, 75.0), (20.0, 45.0)  # degrees
 SURFACES, QUICK_SURFACES = ("contaminated", "machined"), ("machined",)
-FULL, QUICK = Meshes(1.0, COARSER, None), Meshes(COARSER, COARSER**2, None)
+FULL, QUICK = Meshes(1.0, COARSER), Meshes(COARSER, COARSER**2)
 ENDS = (10.0, 45.0)  # gammas of the elastic drops that confirm the modal fidelity
 QUICK_ENDS = (14.0,)
 
@@ -48,9 +48,9 @@ def elastic_ends(quick: bool) -> list[Drop]:
 def jobs(quick: bool) -> list[Job]:
     """Return the jobs of all rods, with and without vibration, on both meshes, and of the elastic ends."""
     meshes = QUICK if quick else FULL
-    ends = (member(d).jobs(meshes.own) for drop in elastic_ends(quick) for d in (drop, without(drop)))
+    ends = (member(d, quick).jobs(meshes.own) for drop in elastic_ends(quick) for d in (drop, without(drop)))
     pairs = (
-        member(d).jobs(factor)
+        member(d, quick).jobs(factor)
         for family in families(quick).values()
         for drop in family
         for d in (drop, without(drop))
@@ -59,9 +59,9 @@ def jobs(quick: bool) -> list[Job]:
     return [job for group in (*pairs, *ends) for job in group]
 
 
-def member(drop: Drop) -> Member:
-    """Return a drop as a point to compute."""
-    return Member(drop.name, drop.scene(), drop)
+def member(drop: Drop, quick: bool) -> Member:
+    """Return a drop as a point to compute, at one place of the barrier's grid if it is to be quick."""
+    return Member(drop.name, drop.scene(), drop, (0.0,) if quick else PLACES)
 
 
 def without(drop: Drop) -> Drop:
@@ -69,11 +69,12 @@ def without(drop: Drop) -> Drop:
     return replace(drop, vibrates=False)
 
 
-def restitution(drop: Drop, factor: float, results: Results) -> float | None:
-    """Return e of a drop on a mesh, None where that is not known."""
-    (job,) = member(drop).jobs(factor)
-    run = results.get(job.name)
-    return or_none(run.restitution.edge.e) if isinstance(run, Outcome) else None
+def restitution(one: Member, factor: float, results: Results) -> list[float] | None:
+    """Return e of a drop on a mesh at each place, None where one of them is not known."""
+    runs = [results.get(job.name) for job in one.jobs(factor)]
+    found = [or_none(run.restitution.edge.e) for run in runs if isinstance(run, Outcome)]
+    known = [e for e in found if e is not None]
+    return known if len(known) == len(runs) else None
 
 
 def solid_rods(drops: Iterable[Drop], quick: bool, results: Results) -> Rods:
@@ -84,7 +85,7 @@ def solid_rods(drops: Iterable[Drop], quick: bool, results: Results) -> Rods:
     """
     rods = []
     for _, same in groupby(drops, lambda drop: drop.length):
-        rows = [(drop, row) for drop in same if (row := _angle(drop, QUICK if quick else FULL, results))]
+        rows = [(drop, row) for drop in same if (row := _angle(drop, quick, results))]
         if rows:
             angles, (e, stiff, bands, groups) = [d.angle for d, _ in rows], np.array([r for _, r in rows]).T
             first = rows[0][0]
@@ -92,18 +93,15 @@ def solid_rods(drops: Iterable[Drop], quick: bool, results: Results) -> Rods:
     return rods
 
 
-def _angle(drop: Drop, meshes: Meshes, results: Results) -> Sequence[float] | None:
+def _angle(drop: Drop, quick: bool, results: Results) -> Sequence[float] | None:
     """Return limits of e with and without vibration, the band of their difference, and T1/tau."""
-    values = [
-        restitution(d, at, results) for d in (drop, without(drop)) for at in (meshes.own, meshes.second)
-    ]
-    (twin,) = member(without(drop)).jobs(meshes.own)
-    run = results.get(twin.name)
+    meshes, stiff = QUICK if quick else FULL, member(without(drop), quick)
+    sizes = [meshes.own, meshes.second]
+    both = [[restitution(one, at, results) for at in sizes] for one in (member(drop, quick), stiff)]
+    run = results.get(stiff.jobs(meshes.own)[0].name)
     touches = (or_none(run.contact.intervals) or ()) if isinstance(run, Outcome) else ()
-    if None in values or not touches:
+    if any(None in on_meshes for on_meshes in both) or not touches:
         return None
-    fine, coarse, stiff_fine, stiff_coarse = np.array(values, float)
-    e, _ = pair_limit(fine, coarse, COARSER)
-    stiff, _ = pair_limit(stiff_fine, stiff_coarse, COARSER)
-    _, band = pair_limit(fine - stiff_fine, coarse - stiff_coarse, COARSER)
-    return e, stiff, band, drop.first_period / touches[0].duration
+    e, e_rigid = (np.array(on_meshes, float) for on_meshes in both)
+    limit, rigid, change = (limit_of(sizes, values.tolist()) for values in (e, e_rigid, e - e_rigid))
+    return limit.value, rigid.value, change.uncertainty, drop.first_period / touches[0].duration

@@ -30,7 +30,7 @@ DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the
 ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
 QUICK_REDUCED = REDUCED[::11]
-FULL, QUICK = Meshes(1.0, COARSER, 0.5), Meshes(COARSER, COARSER**2, None)
+FULL, QUICK = Meshes(1.0, COARSER, (0.5, 0.25)), Meshes(COARSER, COARSER**2)
 MOST = 400.0  # s of processor time that a finer mesh may be expected to take
 
 
@@ -102,7 +102,7 @@ def plan(request: Request, results: Results) -> list[Job]:
 
 def _more(one: Member, meshes: Meshes, results: Results) -> list[Job]:
     """Return the jobs that the results of a point call for; measured sets keep the meshes of their study."""
-    only = replace(meshes, finer=None) if one.name in SETS else meshes
+    only = replace(meshes, finer=()) if one.name in SETS else meshes
     wanted = (job for job in more_jobs(one, only, results) if job.kind[1])  # a mesh that is not refused
     return [job for job in wanted if job.planned_s <= MOST]
 

@@ -27,12 +27,13 @@ class Meshes:
     """Sizes of the elements at the contact, over those that a scene gets by itself.
 
     Every point has ``own`` and ``second``, the coarser one of its band and the one of the rod that cannot
-    vibrate; ``finer`` is for points whose band of vibration is wider than wanted, None for never.
+    vibrate. Each of ``finer``, the largest first, is for points whose band of vibration is wider than wanted
+    on the meshes before it.
     """
 
     own: float
     second: float
-    finer: float | None
+    finer: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,17 +135,24 @@ def first_jobs(one: Member, meshes: Meshes) -> list[Job]:
 
 
 def more_jobs(one: Member, meshes: Meshes, results: Results) -> list[Job]:
-    """Return the jobs that the results of a point call for: a finer mesh, and one cut at a second contact."""
-    point = point_of(one, replace(meshes, finer=None), results)
-    finer = [] if meshes.finer is None or point.close else one.jobs(meshes.finer)
-    cut = [one.first(meshes.own, point.contacts[0].end)] if len(point.contacts) > 1 else []
-    return [*finer, *cut]
+    """Return the jobs that the results of a point call for: finer meshes, and one cut at a second contact."""
+    jobs = []
+    for level, factor in enumerate(meshes.finer):
+        if point_of(one, replace(meshes, finer=meshes.finer[:level]), results).close:
+            break
+        jobs += one.jobs(factor)
+        if any(job.name not in results for job in jobs):
+            break
+    contacts = point_of(one, replace(meshes, finer=()), results).contacts
+    cut = [one.first(meshes.own, contacts[0].end)] if len(contacts) > 1 else []
+    return [*jobs, *cut]
 
 
 def point_of(one: Member, meshes: Meshes, results: Results) -> Point:
     """Return a point from the results of its jobs."""
-    own, second = (_runs(one.jobs(factor), results) for factor in (meshes.own, meshes.second))
-    finer = [] if meshes.finer is None else _runs(one.jobs(meshes.finer), results)
+    second, own, *finer = (
+        _runs(one.jobs(factor), results) for factor in (meshes.second, meshes.own, *meshes.finer)
+    )
     twin = results.get(one.twin(meshes.second).name)
     touches = (or_none(twin.contact.intervals) or ()) if isinstance(twin, Outcome) else ()
     return Point(
@@ -158,13 +166,16 @@ def point_of(one: Member, meshes: Meshes, results: Results) -> Point:
     )
 
 
-def _limited(own: Sequence[Result], second: Sequence[Result], finer: Sequence[Result]) -> Result:
+def _limited(own: Sequence[Result], second: Sequence[Result], finer: Iterable[Sequence[Result]]) -> Result:
     """Return the run on the finest mesh that knows vibration, with limits; none without the own mesh."""
     if isinstance(own[0], Failure):
         return own[0]
-    if finer and all(_vibration(run) is not None for run in finer):
-        return with_limits(finer, own)
-    return with_limits(own, second)
+    fine, coarse = own, second
+    for runs in finer:
+        if any(_vibration(run) is None for run in runs):
+            break
+        fine, coarse = runs, fine
+    return with_limits(fine, coarse)
 
 
 def _runs(jobs: Sequence[Job], results: Results) -> list[Result]:

@@ -116,7 +116,7 @@ def test_the_whole_study_fits_its_time_and_begins_with_the_longest(tmp_path):
     times = [job.planned_s for job in plan(Request(tmp_path), {})]
     assert times == sorted(times, reverse=True)
     drawn = [one for one in members(False) if one.name not in SETS]
-    finer = [job.planned_s for one in drawn for job in one.jobs(FULL.finer) if job.planned_s <= MOST]
+    finer = [job.planned_s for one in drawn for job in one.jobs(FULL.finer[0]) if job.planned_s <= MOST]
     assert sum(times) + sum(finer) / 2 < HOURS * 3600 * CORES
 
 
@@ -151,18 +151,24 @@ def test_a_wide_band_asks_for_a_finer_mesh_and_a_second_contact_for_a_cut_run():
     assert cut.scene.accuracy.max_time == TOUCH["end_s"] + SLACK
     apart = same | {second.name: outcome(E_vib_over_E_0=0.04, contacts=[TOUCH], tip_size_m=2e-4)}
     assert [job.name for job in more_jobs(one, FULL, apart)] == ["long-x0.5", cut.name]
+    still = apart | {"long-x0.5": outcome(E_vib_over_E_0=0.06, contacts=[TOUCH], tip_size_m=5e-5)}
+    assert [job.name for job in more_jobs(one, FULL, still)] == ["long-x0.5", "long-x0.25", cut.name]
+    settled = still | {"long-x0.5": outcome(E_vib_over_E_0=0.05, contacts=[TOUCH], tip_size_m=5e-5)}
+    assert [job.name for job in more_jobs(one, FULL, settled)] == ["long-x0.5", cut.name]
 
 
 def test_the_band_of_a_point_is_that_of_its_two_finest_meshes():
     one = Member("long", Drop(0.24).scene(), Drop(0.24))
     runs = {
         factor: outcome(E_vib_over_E_0=0.05 - 0.01 * factor, contacts=[TOUCH], tip_size_m=factor * 1e-4)
-        for factor in (0.5, 1.0, 2.0)
+        for factor in (0.25, 0.5, 1.0, 2.0)
     }
     results = {f"long-x{factor:g}": run for factor, run in runs.items()}
     point = point_of(one, FULL, results)
-    assert point.run == with_limits([runs[0.5]], [runs[1.0]])
+    assert point.run == with_limits([runs[0.25]], [runs[0.5]])
     assert (point.own, point.gap) == (0.04, "")
+    lost = results | {"long-x0.25": Failure("x", "folded")}
+    assert point_of(one, FULL, lost).run == with_limits([runs[0.5]], [runs[1.0]])
     lost = results | {"long-x0.5": Failure("x", "folded")}
     assert point_of(one, FULL, lost).run == with_limits([runs[1.0]], [runs[2.0]])
     lost = results | {"long-x1": Failure("x", "folded")}
@@ -232,7 +238,7 @@ def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
 def test_a_point_by_finite_elements(tmp_path):
     """The smallest drop on two coarse meshes: a value with a band, a closed ledger, a contact time."""
     drop = Drop(length_of(10.0), friction=STATES["machined"], yields=True)
-    meshes = replace(FULL, own=2.0, second=4.0, finer=None)
+    meshes = replace(FULL, own=2.0, second=4.0, finer=())
     one = Member("short", drop.scene(), drop)
     results = {job.name: simulate(job.scene, "solid") for job in first_jobs(one, meshes)}
     point = point_of(one, meshes, results)
