@@ -184,7 +184,7 @@ def require_point(bodies: ContactBodies) -> None:
     scene, body = bodies.scene, projectile(bodies.scene)
     if isinstance(body, Projectile):
         return
-    segments, touch = scene.projectile.segments, touch_point(scene)[1]
+    segments, (rho, touch) = scene.projectile.segments, touch_point(scene)
     if segments and touch > segments[0].to:
         raise SceneError(
             f"ends before the place that touches first, {touch * 1e3:.3g} mm from the tip.",
@@ -197,18 +197,24 @@ def require_point(bodies: ContactBodies) -> None:
         return
     size, (length, height) = contact_estimate(bodies), body.flank(scene.impact.angle)
     flat = FLAT * size.depth
-    if length > 2 * size.a_t and height < flat:
-        steeper = math.degrees(math.asin(min(1.0, flat / length)) - math.asin(height / length))
-        turned = f"Change it by {steeper:.2g} deg or more."
-        slower = (
-            f"Give a lower speed or stronger materials: the tip is pressed in by {size.depth * 1e3:.2g} mm."
-        )
+    if length <= 2 * size.a_t or height >= flat:
+        return
+    deep = f"{size.depth * 1e3:.2g} mm"
+    if rho == body.face == 0 and not body.tip_curvature(scene.impact.angle):
         raise SceneError(
-            f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
-            key="impact.angle",
-            value=f"{math.degrees(scene.impact.angle):.4g} deg",
-            remedy=turned if flat < length else slower,
+            f"ends in a point that would be pressed in by {deep}, as far as to its flanks.",
+            key="projectile",
+            remedy="Round the point, or cut it off flat.",
         )
+    steeper = math.degrees(math.asin(min(1.0, flat / length)) - math.asin(height / length))
+    turned = f"Change it by {steeper:.2g} deg or more."
+    slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep}."
+    raise SceneError(
+        f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
+        key="impact.angle",
+        value=f"{math.degrees(scene.impact.angle):.4g} deg",
+        remedy=turned if flat < length else slower,
+    )
 
 
 def require_turned(scene: Scene, asked: str) -> None:

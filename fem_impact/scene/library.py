@@ -55,9 +55,13 @@ def material(name: str) -> Material:
 
 
 def _nearest_material(name: str, known: Collection[str]) -> str:
-    """Return the shipped materials that a name is a part of, in either spelling, else the nearest name."""
+    """Return the shipped materials that a name is a part of, in either spelling, or that have a grade of it.
+
+    Where there are none, the nearest name.
+    """
     part = name.lower().replace("aluminum", "aluminium")
-    family = [one for one in known if part in one]
+    grades = {word for word in part.split("-") if word[-1:].isdigit()}
+    family = [one for one in known if part in one or grades & set(one.split("-"))]
     if family not in ([], [part]):
         return f"Some that are: {', '.join(family)}. {ALL_MATERIALS}"
     return did_you_mean(part, known, ALL_MATERIALS)

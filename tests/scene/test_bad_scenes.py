@@ -292,6 +292,7 @@ def test_a_material_of_ones_own_without_a_constant_is_told_which(key, words):
     ("name", "told", "not_told"),
     [
         ("aluminum", "aluminium-6061-t6, aluminium-2024-t3", "alumina"),
+        ("steel-304", "stainless-304", "4340"),
         ("Aluminium", "aluminium-6061-t6", "alumina"),
         ("6061-T6", "aluminium-6061-t6", "steel"),
         ("steel", "rod-steel, plate-steel", "alumina"),

@@ -213,6 +213,19 @@ def test_a_flank_that_is_pressed_in_whole_asks_for_a_lower_speed():
     assert "lower speed" in refused.value.remedy and "deg" not in refused.value.remedy
 
 
+@pytest.mark.parametrize("angle", [5, 35])
+def test_a_point_that_is_pressed_in_to_its_flanks_is_to_be_rounded(angle):
+    """Not the angle: none helps."""
+    spike = [["0 mm", "0 mm"], ["12 mm", "3 mm"], ["40 mm", "8 mm"], ["180 mm", "8 mm"]]
+    fast = scene({"profile": spike, "material": "copper"}, f"{angle} deg")
+    fast["impact"] |= {"v_n": "-3 m/s", "v_t": "-2 m/s"}
+    with pytest.raises(SceneError, match="ends in a point") as refused:
+        plan(read_dict(fast), "modal")
+    assert "Round the point" in refused.value.remedy
+    fast["projectile"]["profile"] = [["0 mm", "1 mm"], *spike[1:]]
+    assert plan(read_dict(fast), "modal")
+
+
 def test_the_radius_at_the_contact_is_that_of_the_point_that_touches():
     from fem_impact.physics.contact import principal_radii
 
