@@ -17,6 +17,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from fem_impact.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from fem_impact.cost.to_target import simulate
     from fem_impact.files.fields_read import read_fields

@@ -17,6 +17,7 @@ from fem_impact.commands.options import Options
 from fem_impact.commands.parser import build_parser, read_line
 from fem_impact.commands.terminal import printable_streams
 from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError
+from fem_impact.version import __version__
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -94,7 +95,5 @@ def _disk_message(error: OSError) -> str:
 
 
 def _version() -> int:
-    from importlib.metadata import version
-
-    sys.stdout.write(f"fem-impact {version('fem-impact')}\n")
+    sys.stdout.write(f"fem-impact {__version__}\n")
     return 0

@@ -30,8 +30,10 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Key, Num, Unknown, keys_of, or_none
 from fem_impact.plugins import providers
 from fem_impact.tables.table import Missing, Table
+from fem_impact.version import __version__
 
-PACKAGES = ("numpy", "scipy", "scikit-fem", "numba", "fem-impact")
+PACKAGES = ("numpy", "scipy", "scikit-fem", "numba")
+_version = cache(metadata.version)  # a file is read each time else
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -176,17 +178,10 @@ def utc_now() -> str:
 
 
 def installed_versions() -> dict[str, str]:
-    """Return the versions of Python and of the packages that shape a result, where they are installed."""
-    ours = {name: _version(name) for name in PACKAGES}
-    return {"python": platform.python_version(), **ours, **providers()}
-
-
-@cache
-def _version(name: str) -> str:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "not installed"
+    """Return the versions of Python, of this program and of the packages that shape a result."""
+    libraries = {name: _version(name) for name in PACKAGES}
+    own = {"fem-impact": __version__}
+    return {"python": platform.python_version(), **libraries, **own, **providers()}
 
 
 def _plain(key: Key, value: Any) -> Any:

@@ -2,7 +2,10 @@ import doctest
 import importlib
 import json
 import pickle
+import tomllib
 from dataclasses import FrozenInstanceError, replace
+from importlib import metadata
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +14,7 @@ from hypothesis import strategies as st
 from outcome_maker import altered
 from result_maker import values
 
+import fem_impact
 from fem_impact.errors import ResultError
 from fem_impact.outcome.groups import ARMS, Energy, Heat
 from fem_impact.outcome.keys import Unknown, known, markdown_table, or_none, unknown
@@ -264,6 +268,24 @@ def test_versions_name_python_and_packages():
     versions = installed_versions()
     assert versions["numpy"] == np.__version__
     assert set(versions) == {"python", "numpy", "scipy", "scikit-fem", "numba", "fem-impact"}
+
+
+def test_the_own_version_is_told_where_the_package_is_not_installed(monkeypatch):
+    """As in a copy of the sources that runs without pip; the citation names the same version."""
+    found = metadata.version
+
+    def installed(name):
+        if name == "fem-impact":
+            raise metadata.PackageNotFoundError(name)
+        return found(name)
+
+    monkeypatch.setattr(metadata, "version", installed)
+    root = Path(__file__).parents[2]
+    assert installed_versions()["fem-impact"] == fem_impact.__version__
+    assert f"version: {fem_impact.__version__}\n" in (root / "CITATION.cff").read_text(encoding="utf-8")
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))
+    assert "version" in project["project"]["dynamic"]
+    assert project["tool"]["hatch"]["version"]["path"] == "fem_impact/version.py"
 
 
 def test_a_notebook_shows_every_number_with_its_meaning(record):
