@@ -328,19 +328,25 @@ class Heat:
     patch: Num = key("contact_patch_m2", "m2", "Largest true contact patch, whole contact.")
     power: Num = key("friction_power_W", "W", "Highest friction power, whole contact.")
     flux: Num = key("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch.")
-    rise: Num = key("flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction.")
-    temperature: Num = key("flash_temperature_K", "K", "Highest mean temperature of the patch.")
+    rise: Num = key(
+        "flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction; null where it melts."
+    )
+    temperature: Num = key(
+        "flash_temperature_K", "K", "Highest mean temperature of the patch; null where a body melts."
+    )
     ignition: Num = key(
         "ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."
     )
     time_above_ignition: Num = key("time_above_ignition_s", "s", "How long the patch is hotter than that.")
     bound: Num = key(
-        "flash_bound_K", "K", "Temperature that no spot of the contact exceeds, under assumptions."
+        "flash_bound_K",
+        "K",
+        "Temperature that no spot of the contact exceeds, under assumptions; null if a body melts below it.",
     )
     less_vibration: Num = key(
         "E_lt_less_vibration_over_E_0",
         "-",
-        "E_lt with the edge's arms less E_vib: what can heat the contact" + SHARE,
+        "E_lt with the edge's arms less E_vib; not the heat of friction, as plastic work is in it" + SHARE,
     )
 
 

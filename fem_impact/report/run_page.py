@@ -123,7 +123,7 @@ def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | N
 
 def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
     """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
-    if isinstance(outcome.heat.bound, Unknown):
+    if isinstance(outcome.heat.power, Unknown):
         return Markup("")
     bound = paragraph("The bound for a safety case holds under these assumptions:")
     told = join([key_table(outcome, HEAT, rigid=rigid), bound, bullets(ASSUMPTIONS)])

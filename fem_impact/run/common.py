@@ -26,6 +26,7 @@ from fem_impact.physics.contact_law import softer
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.plan.plan import Plan
 from fem_impact.run.tests import tests_of
+from fem_impact.scene.inputs import melting
 from fem_impact.scene.write import digest
 
 if TYPE_CHECKING:
@@ -329,15 +330,26 @@ def heat(
 ) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
     ambient, ignition = bodies.scene.heating.ambient, bodies.scene.heating.ignition
-    bound = flash_bound(bodies)
+    bound, temperature = flash_bound(bodies), below_melting(bodies.scene, ambient + flash.peak)
     return Heat(
         patch=patch,
         power=power,
         flux=flux,
-        rise=flash.peak,
-        temperature=ambient + flash.peak,
+        rise=temperature if isinstance(temperature, Unknown) else flash.peak,
+        temperature=temperature,
         ignition=ignition,
         time_above_ignition=flash.time_above(ignition - ambient),
-        bound=ambient + bound if bound < inf else Unknown(HARD),
+        bound=below_melting(bodies.scene, ambient + bound) if bound < inf else Unknown(HARD),
         less_vibration=less_vibration,
+    )
+
+
+def below_melting(scene: Scene, temperature: float) -> Num:
+    """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out."""
+    lowest, name = min(((limit, name) for name, limit in melting(scene).values()), default=(inf, ""))
+    if temperature < lowest:
+        return temperature
+    return Unknown(
+        f"not resolved: conduction of heat alone gives {temperature:.0f} K, above {lowest:.0f} K, where "
+        f"{name} begins to melt; melting is left out"
     )

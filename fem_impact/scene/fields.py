@@ -289,6 +289,20 @@ HEATING = (
         for body in ("rod", "barrier")
         for key, quantity in (("conductivity", "conductivity"), ("heat_capacity", "heat capacity"))
     ),
+    *(
+        Parameter(
+            *(
+                f"{body}_melting",
+                f"temperature at which the {body} begins to melt",
+                "temperature",
+                200.0,
+                6000.0,
+            ),
+            derived=f"that of the {body}'s material, if it is a shipped one",
+            source="the shipped material's; without it a temperature is told however high it is",
+        )
+        for body in ("rod", "barrier")
+    ),
 )
 
 

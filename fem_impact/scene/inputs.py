@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from fem_impact.scene.library import source_of
+from fem_impact.scene.library import CHANGED, melting_of, source_of
 from fem_impact.scene.material import Material
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_dict
@@ -24,7 +24,18 @@ def inputs(scene: Scene) -> Table:
     rows = [row for name in ("projectile", "barrier", "impact") for row in _rows(name, tables[name])]
     friction = f"{surface.friction:g} ({surface.friction_low:g} to {surface.friction_high:g})"
     rows.append(("surface.friction", friction, surface.source))
+    for body, (name, limit) in melting(scene).items():
+        own = getattr(scene.heating, f"{body}_melting") is None
+        rows += [(f"heating.{body}_melting", f"{limit:g} K", source_of(name, "melting") if own else STATED)]
     return Table.of(("input", "value", "source"), rows, left=range(3))
+
+
+def melting(scene: Scene) -> dict[str, tuple[str, float]]:
+    """Return name and temperature, K, at which rod and barrier begin to melt, of those where it is known."""
+    metals = {"rod": scene.projectile.material.name, "barrier": scene.barrier.struck.name}
+    stated = {body: getattr(scene.heating, f"{body}_melting") for body in metals}
+    found = {body: stated[body] or melting_of(name) for body, name in metals.items()}
+    return {body: (metals[body].removesuffix(CHANGED), limit) for body, limit in found.items() if limit}
 
 
 def materials_of(scene: Scene) -> dict[str, Material]:

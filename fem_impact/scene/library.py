@@ -16,6 +16,8 @@ from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.types import MEASURED_SETS, Surface
 from fem_impact.scene.units import parse_quantity
 
+CHANGED = " (changed)"
+"""End of the name of a shipped material of which a scene changes a value."""
 _DATA = files("fem_impact.scene").joinpath("data")
 
 
@@ -85,6 +87,15 @@ def surface(state: str) -> Surface:
 def source_of(name: str, key: str) -> str:
     """Return where a value of a shipped material comes from."""
     return str(_table("materials.toml").get(name, {}).get("sources", {}).get(key, "stated in the scene"))
+
+
+def melting_of(name: str) -> float | None:
+    """Return the temperature, K, at which a shipped material begins to melt; None where none is known.
+
+    It stands beside the material and is no value of it: a changed strength leaves it as it is.
+    """
+    stated = _table("materials.toml").get(name.removesuffix(CHANGED), {}).get("melting")
+    return None if stated is None else parse_quantity(stated, "temperature", "melting")
 
 
 def intervals_of(name: str) -> dict[str, tuple[float, float]]:

@@ -12,7 +12,7 @@ from typing import Any
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
 from fem_impact.scene.impact import restated
-from fem_impact.scene.library import nearest_scene, shipped, stated
+from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shapes import BY_LENGTH, REPLACED
@@ -116,7 +116,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     _rename(table, path, last)
     if "material" in path and last != "name":
         metal = _section(data, path[: path.index("material") + 1], key)
-        metal["name"] = f"{metal['name'].removesuffix(' (changed)')} (changed)"
+        metal["name"] = f"{metal['name'].removesuffix(CHANGED)}{CHANGED}"
     if path == ["accuracy"]:
         _keep_one(table, last)
 

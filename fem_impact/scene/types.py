@@ -100,7 +100,7 @@ class Accuracy:
 
 @dataclass(frozen=True, slots=True)
 class Heating:
-    """What contact heating is judged by: K, W/(m K), J/(kg K); None: as the body's material states it."""
+    """What contact heating is judged by: K, W/(m K), J/(kg K); None: that of the body's material."""
 
     ignition: float = 703.15
     ambient: float = 293.15
@@ -108,6 +108,8 @@ class Heating:
     rod_heat_capacity: float | None = None
     barrier_conductivity: float | None = None
     barrier_heat_capacity: float | None = None
+    rod_melting: float | None = None
+    barrier_melting: float | None = None
 
     def __post_init__(self) -> None:
         check_numbers(self, fields.HEATING)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees, inf, isclose
 from typing import Any
 
@@ -13,13 +13,14 @@ from fem_impact.outcome.shares import SHARES
 from fem_impact.physics.contact import projectile
 from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.doubts import ROUND_OFF
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.shapes import NamedShape
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import digest, to_dict
 from fem_impact.tables.text import wrapped
 from fem_impact.verdict.assess import Verdict
-from fem_impact.verdict.change import Change
+from fem_impact.verdict.change import Answer, Change
 from fem_impact.verdict.screening import Screening
 
 SCHEMA = "fem-impact/verdict/1"
@@ -32,6 +33,11 @@ FIRST_ONLY = (
     "Supports and other bodies that the rod or the barrier may touch.",
 )
 
+THERE: Mapping[Answer, str] = {
+    "yes": "rigid theory may be used there",
+    "no": "rigid theory may not be used there",
+    "undecided": "whether rigid theory may be used there is undecided",
+}
 Line = tuple[str, str]
 
 
@@ -40,15 +46,15 @@ def box(v: Verdict) -> tuple[Line, Line, Line]:
     return (
         ("May rigid theory be used here?", _may(v)),
         ("Vibration takes", _vibration(v)),
-        ("The rest goes to", _rest(v.here)),
+        ("The rest goes to", _rest(v)),
     )
 
 
 def _may(v: Verdict) -> str:
     return (
-        f"{v.answer.upper()}: vibration changes e by {v.here.told}{doubt(v.here)} at this inclination, by "
-        f"{v.here.models} "
-        f"(allowed: {v.tolerance:g}). {_anywhere(v)}"
+        f"{v.answer.upper()}: at this inclination, {degrees(v.scene.impact.angle):.4g} degrees, vibration "
+        f"changes e by {v.here.told}{doubt(v.here)}, by {v.here.models} (allowed: {v.tolerance:g}). "
+        f"{_anywhere(v)}"
     )
 
 
@@ -64,14 +70,14 @@ def _anywhere(v: Verdict) -> str:
     """Say what holds for other inclinations of the same projectile at the same speed."""
     if v.worst is None:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
-    largest = f"the change is largest at {degrees(v.worst.angle):.0f} degrees, {v.worst.told}{doubt(v.worst)}"
-    if v.worst_answer == "yes":
-        return f"Rigid theory may be used at other inclinations too: {largest}."
-    if v.worst_answer == "undecided":
-        return f"Whether rigid theory may be used at other inclinations is undecided: {largest}."
-    here = v.answer == "no" and v.worst.answer(v.tolerance) != "no"
-    where = "this inclination" if here else f"{degrees(v.worst.angle):.0f} degrees"
-    return f"Rigid theory may not be used at {where}: {largest}."
+    by = " by the reduced model" if v.fidelity == "solid" else ""
+    everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
+    if isclose(v.worst.angle, v.scene.impact.angle):
+        return f"No other inclination has a larger change{doubt(v.worst)}{by}{everywhere}."
+    return (
+        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes e by {v.worst.told}"
+        f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
+    )
 
 
 def _vibration(v: Verdict) -> str:
@@ -83,16 +89,19 @@ def _vibration(v: Verdict) -> str:
     return f"{share} ({half}{here.error})"
 
 
-def _rest(here: Change) -> str:
+def _rest(v: Verdict) -> str:
+    here, plate = v.here, v.scene.barrier.bends
     energy = here.free.energy
     named = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
     listed = [
-        f"{share.label} {100 * part:.0f}{_half(here, share.key.path[-1])} %"
+        f"{share.label.replace('barrier', 'plate') if plate else share.label} "
+        f"{100 * part:.0f}{_half(here, share.key.path[-1])} %"
         for share, part in named
         if part > LEAST_SHARE
     ]
     kind = f"± {here.error}" if here.errors else f"by {here.model}"
-    return f"{', '.join(listed)} ({kind}); {_heating(energy)}"
+    thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
+    return f"{', '.join(listed)} ({kind}); {thick}{_heating(energy)}"
 
 
 def _half(here: Change, name: str) -> str:
@@ -106,8 +115,9 @@ def _heating(energy: Energy) -> str:
     """Return what can heat the contact."""
     skin, friction = energy.skin, or_none(energy.friction) or 0.0
     if not isinstance(skin, Unknown):
-        of = "friction, and plastic work of both bodies down to 0.1 mm"
-        return f"{100 * skin:.0f} % can heat the contact ({of})"
+        alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
+        of = "the softer body" if alone else "both bodies"
+        return f"{100 * skin:.0f} % can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
     plastic = or_none(energy.plastic) or 0.0
     return (
         f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
@@ -124,22 +134,50 @@ def basis(v: Verdict) -> tuple[Line, ...]:
         ("with vibration", _motion(free)),
         ("the same scene with a rod that cannot vibrate", _motion(stiff)),
         ("fidelity", f"{v.fidelity}. {v.here.source}"),
+        ("heat of the contact", _heat(free)),
         *_other_angles(v),
         _friction(v),
         *(("note", note) for note in v.notes),
     )
 
 
+def _heat(run: Outcome) -> str:
+    """Return how hot the contact becomes, or why that is not known."""
+    heat = run.heat
+    if isinstance(heat.power, Unknown):
+        elsewhere = " (--fidelity solid)" if run.provenance.fidelity == "modal" else ""
+        return f"not known: {heat.power.reason}{elsewhere}."
+    if isinstance(heat.temperature, Unknown):
+        return f"the mean temperature of the patch is {heat.temperature.reason}."
+    spot = (
+        f"what single spots reach is {heat.bound.reason}"
+        if isinstance(heat.bound, Unknown)
+        else f"no spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
+    )
+    return (
+        f"the patch reaches {heat.temperature:.0f} K in the mean (friction alone; conduction of heat into "
+        f"both bodies: Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035); {spot}."
+    )
+
+
 def case_sentence(scene: Scene) -> str:
     """Return the scene in one sentence: rod, material, barrier, impact."""
     rod, impact = scene.projectile, scene.impact
-    layers = "".join(f"{1e3 * one.thickness:g} mm of {one.material.name} on " for one in scene.barrier.layers)
     return (
         f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {_materials(rod)}, "
-        f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {layers}{scene.barrier.material.name}, "
+        f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {struck(scene.barrier)}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
     )
+
+
+def struck(barrier: Barrier) -> str:
+    """Return what is struck: layers and material, of a plate its thickness and support."""
+    layers = "".join(f"{1e3 * one.thickness:g} mm of {one.material.name} on " for one in barrier.layers)
+    if barrier.thickness is None:
+        return f"{layers}{barrier.material.name}"
+    support = "free underneath" if barrier.bends else "bonded to a base"
+    return f"{layers}a plate of {1e3 * barrier.thickness:g} mm of {barrier.material.name} ({support})"
 
 
 def _materials(rod: ProjectileSpec) -> str:

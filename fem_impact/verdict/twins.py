@@ -12,15 +12,15 @@ from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
 UNFELT = "contact-heating"
-"""It watches the motion, which does not feel it: a verdict has no need of it."""
+"""It watches the motion, which does not feel it: the twin has no need of it."""
 
 
 def twins(scene: Scene) -> tuple[Scene, Scene]:
     """Return the scene with a rod that vibrates, and the same scene with one that cannot.
 
     Both have the effects that the scene calls for; vibration is in the first one even where the scene would
-    leave it out as small, because its size is the question. No field and no flash temperature is kept of
-    either.
+    leave it out as small, because its size is the question. No field is kept of either, and the heat of the
+    contact is followed in the first one alone.
 
     Raises
     ------
@@ -28,9 +28,9 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
         A spin lifts the contact point off the barrier.
     """
     require_approach(scene)  # first: the numbers of the effects are those of an approach
-    on = {*active(scene), VIBRATION} - {UNFELT}
+    on = {*active(scene), VIBRATION}
     free = tuple(name for name in NAMES if name in on)
-    stiff = tuple(grounded([name for name in free if name != VIBRATION]))
+    stiff = tuple(grounded([name for name in free if name not in (VIBRATION, UNFELT)]))
     plain = replace(scene, measured=None, save=replace(scene.save, frames=0))
     return replace(plain, effects=free), replace(plain, effects=stiff)
 

@@ -139,6 +139,10 @@ DERIVED = {
         for body in ("rod", "barrier")
         for key in ("conductivity", "heat_capacity")
     },
+    **{
+        f"heating.{body}_melting": f"that of the {body}'s material, if it is a shipped one"
+        for body in ("rod", "barrier")
+    },
     "accuracy.max_time": "2.5 ms, or 2.8 times the bending period and the contact time where that is longer",
 }
 

@@ -12,7 +12,7 @@ from wide_contact import WIDE
 
 from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
-from fem_impact.outcome.keys import known
+from fem_impact.outcome.keys import Unknown, known
 from fem_impact.plan.cells import ERROR, expected_cells
 from fem_impact.plan.choose import active
 from fem_impact.plan.plan import plan
@@ -27,7 +27,7 @@ from fem_impact.verdict.change import Change, Ladder, modal_change, modal_pair
 from fem_impact.verdict.dropped import dropped
 from fem_impact.verdict.reliability import beside, known_error, stored
 from fem_impact.verdict.screening import screening
-from fem_impact.verdict.sentences import box, case_sentence, document, doubt
+from fem_impact.verdict.sentences import basis, box, case_sentence, document, doubt
 from fem_impact.verdict.twins import inclined, twins
 
 ALUMINIUM = {
@@ -56,13 +56,79 @@ def short():
 def test_twins_differ_by_vibration_alone_and_have_it_where_a_scene_would_leave_it_out():
     scene = replace_all(load("t5b"), {"effects": ["auto", "-vibration"]})
     free, stiff = twins(scene)
-    assert set(free.effects) - set(stiff.effects) == {"vibration"}
+    assert set(free.effects) - set(stiff.effects) == {"vibration", "contact-heating"}
     assert replace(free, effects=()) == replace(stiff, effects=())
 
 
-def test_the_twins_do_not_watch_what_the_motion_does_not_feel():
+def test_the_heat_of_the_contact_is_followed_in_the_run_that_vibrates_where_the_scene_has_it():
+    """The twin has no need of it: the motion does not feel it."""
     assert "contact-heating" in active(load("t5b"))
-    assert all("contact-heating" not in one.effects for one in twins(load("t5b")))
+    assert ["contact-heating" in one.effects for one in twins(load("t5b"))] == [True, False]
+    without = replace_all(load("t5b"), {"effects": ["auto", "-contact-heating"]})
+    assert all("contact-heating" not in one.effects for one in twins(without))
+
+
+def heated(short, **values):
+    """The verdict with other values of the heat of the contact in its run with vibration."""
+    heat = replace(short.here.free.heat, power=900.0, temperature=431.0, bound=1200.0)
+    free = replace(short.here.free, heat=replace(heat, **values))
+    return dict(basis(replace(short, here=replace(short.here, free=free))))["heat of the contact"]
+
+
+def test_the_verdict_tells_how_hot_the_contact_becomes(short):
+    told = dict(basis(short))["heat of the contact"]
+    assert told == "not known: heat is followed on the finite elements only (--fidelity solid)."
+    told = heated(short)
+    assert "431 K in the mean" in told and "no spot exceeds 1200 K" in told and "Tian & Kennedy" in told
+    assert heated(short, bound=Unknown("not resolved: why")).endswith(
+        "single spots reach is not resolved: why."
+    )
+    assert "is not resolved: why." in heated(short, temperature=Unknown("not resolved: why"))
+
+
+@pytest.mark.parametrize(
+    ("at", "value", "words"),
+    [
+        (
+            80.0,
+            0.2,
+            "At the worst inclination, 80 degrees, it changes e by +0.200 ± 0.010; rigid theory may not ",
+        ),
+        (80.0, 0.055, "± 0.010; whether rigid theory may be used there is undecided."),
+        (80.0, 0.02, "± 0.010; rigid theory may be used at every inclination."),
+        (
+            45.0,
+            0.02,
+            "No other inclination has a larger change; rigid theory may be used at every inclination.",
+        ),
+    ],
+)
+def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, words):
+    here = replace(short.here, value=0.01, band=0.01)
+    worst = replace(short.here, angle=math.radians(at), value=value, band=0.01)
+    may = box(replace(short, here=here, worst=worst, not_known=((), "")))[0][1]
+    assert may.startswith(
+        "YES: at this inclination, 45 degrees, vibration changes e by +0.010 ± 0.010, by the "
+    )
+    assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
+
+
+def test_the_share_that_can_heat_the_contact_names_the_bodies_that_it_counts(short):
+    told = "can heat the contact (friction, and plastic work of {} down to 0.1 mm)"
+    assert told.format("the softer body") in box(short)[2][1]
+    free = replace(short.here.free, energy=replace(short.here.free.energy, skin_rod=0.02))
+    assert told.format("both bodies") in box(replace(short, here=replace(short.here, free=free)))[2][1]
+
+
+def test_a_plate_is_called_a_plate_with_its_thickness(short):
+    plate = replace_all(load("t5b"), {"barrier.thickness": "10 mm", "barrier.support": "infinite"})
+    told = replace(short, scene=plate)
+    rest = box(told)[2][1]
+    assert "plastic plate 60" in rest and "the plate is 10 mm thick" in rest and "barrier" not in rest
+    assert "on a plate of 10 mm of plate-steel (free underneath), 45 degrees" in case_sentence(plate)
+    assert "plastic barrier 60" in box(short)[2][1] and "on plate-steel, 45 degrees" in case_sentence(
+        load("t5b")
+    )
 
 
 def test_an_inclined_scene_turns_rod_and_velocity_together():
@@ -289,8 +355,7 @@ def test_the_three_lines_and_the_document(short):
         "Vibration takes",
         "The rest goes to",
     ]
-    assert lines[0][1].startswith("YES: vibration changes e by +0.010")
-    assert "Rigid theory may" in lines[0][1] or "is undecided" in lines[0][1]
+    assert lines[0][1].startswith("YES: at this inclination, 45 degrees, vibration changes e by +0.010")
     assert "by the reduced model" in lines[0][1]
     found = document(short)
     assert found["answer"] == "yes"
