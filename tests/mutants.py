@@ -324,6 +324,27 @@ MUTANTS = (
         f"{HEATING}::test_a_short_flash_is_shared_by_effusivity",
     ),
     Mutant(
+        "flash temperature above the melting point of the other body",
+        "fem_impact/run/common.py",
+        "    lowest, name = min(",
+        "    lowest, name = max(",
+        f"{HEATING}::test_a_temperature_above_the_melting_point_is_not_resolved",
+    ),
+    Mutant(
+        "work that can heat the contact without the rod's surface",
+        "fem_impact/run/solid.py",
+        'a["friction"] + sheared["rod"] + sheared["barrier"]',
+        'a["friction"] + sheared["barrier"]',
+        "tests/solid/test_skinwork.py::test_the_work_of_a_projectile_that_is_softer_than_the_barrier_counts",
+    ),
+    Mutant(
+        "depth in the nose along the barrier's normal",
+        "fem_impact/solid/doubts.py",
+        "(points - points[nearest]) * normals[nearest]).sum(axis=1)",
+        "(points - points[nearest])[:, 2:] * normals[nearest][:, 2:]).sum(axis=1)",
+        "tests/solid/test_skinwork.py::test_the_depth_in_a_round_nose_is_that_under_its_outline",
+    ),
+    Mutant(
         "the impedance of a plate beside its mesh, which bends by itself",
         "fem_impact/plan/plan.py",
         "slots.plate, slots.bending = None, plate_waves(bodies)[0]",
