@@ -106,11 +106,16 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
         if options.out is not None:
             write_history(plan, result, options.out / "history.csv")
         return reduce_modal(plan, result)
+    from threadpoolctl import threadpool_limits
+
     from fem_impact.run.program import stamp
     from fem_impact.run.solid import reduce
     from fem_impact.solid.run import solve
 
-    return reduce(solve(plan, replace(options, stamp=stamp(plan.scene))))
+    # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
+    # run takes four times the processor time
+    with threadpool_limits(1, "blas"):
+        return reduce(solve(plan, replace(options, stamp=stamp(plan.scene))))
 
 
 def _write(outcome: Outcome, out: Path) -> None:

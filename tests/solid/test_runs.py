@@ -6,14 +6,18 @@ from math import pi
 import numpy as np
 import pytest
 import solid_scenes as scenes
+from threadpoolctl import threadpool_info, threadpool_limits
 
+from fem_impact.errors import RunError
 from fem_impact.fem import body
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.plan import plan
+from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
+from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import advance, evaluate, march
@@ -371,3 +375,17 @@ def test_nothing_but_the_fine_zone_comes_down_to_the_barrier(yielding):
         if state.step % 100 == 0:
             lowest = min(lowest, state.x[others].min())
     assert lowest > 0.0
+
+
+def test_a_run_takes_one_thread_of_linear_algebra(monkeypatch):
+    """Whatever the program that calls it has set: further ones wait for each other on a busy machine."""
+    found = []
+
+    def solved(plan, options):
+        found.extend(one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas")
+        raise RunError("stopped here")
+
+    monkeypatch.setattr("fem_impact.solid.run.solve", solved)
+    with threadpool_limits(2, "blas"), pytest.raises(RunError, match="stopped here"):
+        simulate(load("quick"), "solid")
+    assert found and set(found) == {1}
