@@ -168,6 +168,9 @@ def test_closed_form_of_the_rigid_fidelity():
     assert 5e-5 < power < 2e-4  # the contact time, s
     assert 100 < found.heat.rise < flash_bound(plan(stated, "rigid").bodies)
     assert found.heat.temperature == found.heat.rise + 293.15
+    assert any("Heat by closed form" in words for words in found.validity.assumptions)
+    off = simulate(changed(load("t5b"), "effects", ["auto", "-contact-heating"]), "rigid")
+    assert not any("Heat by closed form" in words for words in off.validity.assumptions)
     assert "above 1700 K, where plate-steel begins to melt" in found.heat.bound.reason
     assert 0.2 < expected_rise(plan(stated, "rigid").bodies) / found.heat.rise < 5
 
