@@ -146,11 +146,23 @@ def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
 
 
 def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
-    """Return which columns no case knows, with the reason of the first."""
-    outcomes = [row.outcome.reasons for row in results if row.outcome]
-    missing = [name for name in columns if outcomes and all(name in reasons for reasons in outcomes)]
-    told = "; ".join(f"`{name}` ({outcomes[0][name].rstrip('.')})" for name in missing)
-    return [f"Not known in any case: {told}."] if missing else []
+    """Return which columns are not known in which cases, with the reason in the first of them."""
+    reasons = {row.case.name: row.outcome.reasons for row in results if row.outcome}
+    groups: dict[tuple[tuple[str, ...], str], list[str]] = {}
+    for name in columns:
+        cases = tuple(case for case, why in reasons.items() if name in why)
+        if cases:
+            groups.setdefault((cases, reasons[cases[0]][name].rstrip(".")), []).append(f"`{name}`")
+    return [
+        f"Not known in {_share(cases, len(reasons))}: {', '.join(names)} ({why})."
+        for (cases, why), names in groups.items()
+    ]
+
+
+def _share(cases: Sequence[str], count: int) -> str:
+    if len(cases) == count:
+        return "any case"
+    return f"{len(cases)} of {count} cases, the first of them {cases[0]}"
 
 
 def _cells(results: Results) -> list[str]:

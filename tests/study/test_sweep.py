@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from outcome_maker import outcome
+from outcome_maker import altered, outcome
 
 import fem_impact
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
@@ -144,6 +144,16 @@ def test_the_summary_shows_a_short_table_and_the_csv_all(tmp_path):
     assert "Not known in any case: `flash_temperature_K` (not in the test)." in made.text
     assert "| case-1 | 1 | yes |" in made.text
     assert read_csv(tmp_path / "sweep.csv").names[-len(COLUMNS) :] == COLUMNS
+
+
+def test_what_is_not_known_in_some_cases_is_told_with_its_reason(tmp_path):
+    known, unknown = made_up((3e-4, 3e-4)).rows
+    lost = {"e_edge": "too coarse.", "mu": "too coarse."}
+    other = altered(unknown.outcome, **dict.fromkeys(lost), reasons=lost)
+    results = Results({"projectile.diameter": ["1 mm", "2 mm"]}, (known, Row(unknown.case, other, "")))
+    findings = publish_sweep(results, "t", "fem-impact sweep", tmp_path).document["findings"]
+    told = [line for line in findings if line.startswith("Not known")]
+    assert told == ["Not known in 1 of 2 cases, the first of them case-2: `e_edge`, `mu` (too coarse)."]
 
 
 def test_chosen_columns_are_printed_and_drawn(tmp_path):
