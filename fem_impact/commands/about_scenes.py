@@ -34,7 +34,8 @@ def add_run(commands: Commands) -> None:
         "--budget",
         default="",
         metavar="TIME",
-        help="wall time for a scene that states its error, if no similar scene was measured (default: 2 min)",
+        help="wall time on the cores used, one or two, for a scene that states its error, if no similar "
+        "scene was measured (default: 2 min)",
     )
     add_out(parser, "results/SCENE")
     parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
@@ -105,7 +106,8 @@ def add_cost(commands: Commands) -> None:
         (
             "--budget",
             "TIME",
-            "run no more than takes so much CPU time, such as '30 s', and name the best setting",
+            "run no more than fits into so much wall time, such as '30 s', and name the best setting within "
+            "it; here one run at a time on one core, where `run` uses two",
         ),
         ("--of", "NAMES", "quantities that count, as --of e,mu (default: e,E_vib)"),
         ("--finest", "SIZE", "smallest element at the tip, such as '0.25 mm' (default: three meshes)"),
@@ -133,7 +135,10 @@ def add_assess(commands: Commands) -> None:
     )
     parser.add_argument("--tolerance", default="", help="change of e that may be neglected (default: 0.05)")
     parser.add_argument(
-        "--budget", default="", metavar="TIME", help="wall time of the finite elements (default: 60 s)"
+        "--budget",
+        default="",
+        metavar="TIME",
+        help="wall time of the finite elements on the cores used, one or two (default: 60 s)",
     )
     add_workers(parser, "runs at a time, 1 or 2 (default: one a core)")
     carried = "also carry the measured tests over: losses, worst case, bound of the friction heat"

@@ -11,8 +11,8 @@ from typing import Any
 from fem_impact.cost.limits import Placed, Truth, mean, standard_error, truths, values_of
 from fem_impact.cost.quantities import QUANTITIES
 from fem_impact.cost.settings import ONE_PLACE, Setting
+from fem_impact.cost.times import cpu_seconds, longest_s, wall_seconds
 from fem_impact.outcome.keys import or_none
-from fem_impact.outcome.record import Outcome
 from fem_impact.tables.text import plain
 
 Quantities = Mapping[str, Mapping[str, float]]  # by name, each with its scale
@@ -36,7 +36,7 @@ class Judged:
         the distance from the limit of the finest two
     wall_s, cpu_s : wall and processor time of all runs, each with its set-up, which an outcome states apart
         from its own ``wall_s`` and ``cpu_s`` (``setup_wall_s``, ``setup_cpu_s``)
-    two_cores_s : ``cpu_s`` of the longer half when the runs are divided between two cores
+    two_cores_s : ``cpu_s`` of the core that is busy longer when every second run is done on another one
     element_steps : elements times time steps, None for a reduced model
     peak_memory_MB : of the largest run
     meshes : of a solid setting, the finest first
@@ -101,20 +101,10 @@ def judge(
         band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
         wall_s=sum(wall_seconds(run) for run in flat),
         cpu_s=sum(cpu_seconds(run) for run in flat),
-        two_cores_s=max(sum(cpu_seconds(run) for run in lane) for lane in (flat[0::2], flat[1::2])),
+        two_cores_s=longest_s([cpu_seconds(run) for run in flat], 2),
         element_steps=sum(or_none(run.cost.element_steps) or 0 for run in flat) or None,
         peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in flat), default=0.0) or None,
     )
-
-
-def wall_seconds(run: Outcome) -> float:
-    """Return the wall time of a run with that of its set-up, s."""
-    return run.cost.wall + (or_none(run.cost.setup_wall) or 0.0)
-
-
-def cpu_seconds(run: Outcome) -> float:
-    """Return the processor time of a run with that of its set-up, s."""
-    return run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)
 
 
 def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
@@ -175,9 +165,9 @@ def advice(
     if budget is not None:
         within = best_within(settings, names, budget)
         lines.append(
-            f"Best within {budget:.3g} s: {_sentence_of(within, names)}."
+            f"Best within {budget:.3g} s on one core: {_sentence_of(within, names)}."
             if within
-            else f"No setting takes only {budget:.3g} s."
+            else f"No setting takes only {budget:.3g} s on one core."
         )
     return lines
 

@@ -19,6 +19,7 @@ from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
+from fem_impact.cost.times import longest_s, wall_seconds
 from fem_impact.errors import SceneError
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
@@ -279,8 +280,8 @@ def _runs(
     groups = [placed(scene, mesh) for mesh in chosen.meshes] or [alone]
     scenes = list(chain.from_iterable(groups))
     own = [options, *(below(options, at) for at in range(1, len(scenes)))]
-    done, wall_s = side_by_side(scenes, chosen.setting.fidelity, own, workers)
-    runs = iter(done)
+    done = side_by_side(scenes, chosen.setting.fidelity, own, workers)
+    runs, wall_s = iter(done), longest_s([wall_seconds(run) for run in done], workers)
     return [list(islice(runs, len(group))) for group in groups], wall_s
 
 

@@ -8,8 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from fem_impact.cost.times import LONGER, about_s
 from fem_impact.errors import RunError, SceneError
 from fem_impact.plan.limits import not_reduced
+from fem_impact.tables.text import plain
 from fem_impact.verdict.change import (
     Answer,
     Change,
@@ -189,8 +191,8 @@ def _solid(
             told, more = _stopped(ladder, mesh, means[0])
             notes.append(told)
             break
-        tell(f"finite elements, {COUNT[len(ladder.pairs)]} mesh, about {ladder.expected_s(mesh):.0f} s ...")
         which = COUNT[len(ladder.pairs)]
+        tell(f"finite elements, {which} mesh, about {about_s(ladder.expected_s(mesh))} ...")
         try:
             failed = ladder.climb(mesh)
         except SceneError as error:  # a mesh that folds is found when it is made
@@ -239,18 +241,13 @@ def _stopped(ladder: Ladder, mesh: Mesh | None, budget_s: float) -> tuple[str, s
     if mesh is None:
         return "No finer mesh is tried: none of the family has finer cells at the contact.", ""
     more, left = ladder.expected_s(mesh), budget_s - ladder.spent_s
-    enough = _seconds(ladder.spent_s + 2 * more)
+    enough = about_s(ladder.spent_s + LONGER * more)
     told = (
         f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
-        f"{_seconds(more)} more, and {_seconds(left)} are left of the budget of {budget_s:g} s. For it "
-        f'give --budget "{enough}".'
+        f"{about_s(more)} more, and {plain(max(left, 0.0), 2)} s are left of the budget of {budget_s:g} s. "
+        f'For it give --budget "{enough}".'
     )
     return told, f'--budget "{enough}"'
-
-
-def _seconds(time: float) -> str:
-    """Return a time in whole seconds, two digits of them: 4 s, 17 s, 170 s."""
-    return f"{float(f'{max(time, 0.0):.2g}'):.0f} s"
 
 
 def _over_angles(scene: Scene) -> tuple[Change | None, tuple[tuple[float, ...], str]]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Literal
 from fem_impact.cost.lanes import side_by_side
 from fem_impact.cost.limits import ONE_RUN, pair_limit
 from fem_impact.cost.settings import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
+from fem_impact.cost.times import pace, planned_s
 from fem_impact.effects.slots import bodies_of
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known, or_none
@@ -18,7 +19,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import SHARES
 from fem_impact.plan.cells import ERROR, contact_edge, expected_cells, kind
 from fem_impact.plan.choose import resolved
-from fem_impact.plan.plan import plan
 from fem_impact.plan.plates import half_space_error, is_thin
 from fem_impact.run.simulate import simulate
 from fem_impact.verdict.reliability import known_error
@@ -157,6 +157,7 @@ class Ladder:
     workers : runs at a time, 1 or 2
     meshes, pairs : what has run so far
     spent_s : wall time of that, s
+    pace : wall time of the last runs over the planned one
     """
 
     scene: Scene
@@ -165,6 +166,7 @@ class Ladder:
     meshes: list[Mesh]
     pairs: list[Pair]
     spent_s: float = 0.0
+    pace: float = 1.0
 
     @classmethod
     def of(cls, scene: Scene, budget_s: float, workers: int) -> Ladder:
@@ -174,7 +176,7 @@ class Ladder:
     def require_mesh(self) -> None:
         """Raise the SceneError of a scene of which no mesh can be made."""
         if self.following() is None:
-            self._expected(FAMILY[-1])
+            planned_s(self._scenes(FAMILY[-1]), self.workers)
 
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""
@@ -182,9 +184,8 @@ class Ladder:
         return next((mesh for mesh in RUNGS if self._edge(mesh) < edge and self._made(mesh)), None)
 
     def expected_s(self, mesh: Mesh) -> float:
-        """Return the wall time, s, that a mesh is expected to take, scaled by what the others took."""
-        expected = self._expected(mesh)
-        return expected * self.spent_s / sum(map(self._expected, self.meshes)) if self.meshes else expected
+        """Return the wall time, s, that a mesh is expected to take, by what the last one took."""
+        return self.pace * planned_s(self._scenes(mesh), self.workers)
 
     def affords(self, mesh: Mesh) -> bool:
         """Say whether a mesh fits into what is left of the budget."""
@@ -198,10 +199,10 @@ class Ladder:
         SceneError
             The mesh cannot be made.
         """
-        begun = perf_counter()
-        scenes = [on_mesh(one, mesh) for one in twins(self.scene)]
-        runs, _ = side_by_side(scenes, "solid", [RunOptions()] * 2, self.workers)
+        begun, scenes = perf_counter(), self._scenes(mesh)
+        runs = side_by_side(scenes, "solid", [RunOptions()] * 2, self.workers)
         self.spent_s += perf_counter() - begun
+        self.pace = pace(scenes, runs, self.workers)
         pair = runs[0], runs[1]
         failed = unfinished(pair)
         if not failed:
@@ -277,12 +278,11 @@ class Ladder:
             _bands(coarse[0].energy, fine[0].energy, ratio),
         )
 
-    def _expected(self, mesh: Mesh) -> float:
-        each = [plan(on_mesh(one, mesh)).size.time for one in twins(self.scene)]
-        return max(each) if self.workers > 1 else sum(each)
+    def _scenes(self, mesh: Mesh) -> list[Scene]:
+        return [on_mesh(one, mesh) for one in twins(self.scene)]
 
     def _made(self, mesh: Mesh) -> bool:
-        return all(can_be_made(on_mesh(one, mesh)) for one in twins(self.scene))
+        return all(map(can_be_made, self._scenes(mesh)))
 
     def _edge(self, mesh: Mesh) -> float:
         """Return the size, m, of the cells that resolve the contact."""

@@ -30,6 +30,7 @@ def run(scene, fidelity="solid", options=None):
         values["mu"] += 0.5
     values |= {
         "tip_size_m": None if part else h,
+        "mass_scaling": None if part else scene.accuracy.mass_scaling,
         "element_steps": None if part else int(1e6 * (TIP / h) ** 4),
     }
     values["cpu_s"] = {"rigid": 1e-3, "modal": 1e-2}.get(fidelity, 8 * (TIP / h) ** 4)

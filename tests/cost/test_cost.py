@@ -239,10 +239,10 @@ def test_front_and_choice(cost):
 def test_advice_in_words(cost):
     good, quick = advice(cost.settings, TARGETED, 0.2, 1.0)
     assert good.startswith("Cheapest within 20 % of e and E_vib: modal, error ")
-    assert quick.startswith("Best within 1 s: modal")
+    assert quick.startswith("Best within 1 s on one core: modal")
     never, slow = advice(cost.settings, TARGETED, 1e-6, 1e-9)
     assert never.startswith("No setting brings e and E_vib within 0.0001 %; best: solid")
-    assert slow == "No setting takes only 1e-09 s."
+    assert slow == "No setting takes only 1e-09 s on one core."
 
 
 def test_what_is_stored_is_not_computed_again(fake, tmp_path):

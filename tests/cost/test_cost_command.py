@@ -23,7 +23,7 @@ def test_cost_prints_table_and_advice(cli, fake):
     code, out, err = cli("cost", "t5b", "--target", "20 %", "--budget", "400 s", "--of", "e", "--quiet")
     assert (code, err) == (0, "")
     assert "Cheapest within 20 % of e: rigid" in out
-    assert "Best within 400 s: solid 0.594 and 0.297 mm extrapolated" in out
+    assert "Best within 400 s on one core: solid 0.594 and 0.297 mm extrapolated" in out
     assert "results: results/cost/t5b" in out
     assert "page: results/cost/t5b/report.html" in out
     page = Path("results/cost/t5b/report.html").read_text()

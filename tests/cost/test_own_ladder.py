@@ -1,5 +1,7 @@
 """A target error for a scene whose like was not measured, and a cost study within a time."""
 
+import dataclasses
+
 import pytest
 from cost_fakes import Here, run
 from wide_contact import WIDE
@@ -9,6 +11,7 @@ from fem_impact.cost import own_ladder, to_target
 from fem_impact.cost.measure import affordable, measure
 from fem_impact.cost.own_ladder import ALONE, OwnLadder
 from fem_impact.cost.settings import FAMILY, RUNGS, family, ladder, on_mesh, placed
+from fem_impact.cost.times import LONGER
 from fem_impact.cost.to_target import settle
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.options import RunOptions
@@ -68,7 +71,14 @@ def asked(monkeypatch, budget_s, workers=1):
     return chosen, places, to_target.simulate(FAR, workers=1, chosen=chosen)
 
 
-def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(monkeypatch):
+@pytest.fixture
+def on_plan(monkeypatch):
+    """Let runs take what they are planned to take, and the clock stand still."""
+    monkeypatch.setattr(own_ladder, "pace", lambda *_: 1.0)
+    monkeypatch.setattr(own_ladder, "perf_counter", lambda: 0.0)
+
+
+def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan, monkeypatch):
     sizes = [mesh.sizes(FAR)[0] for mesh in FAMILY]
     one, both = (sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:n]) for n in (1, 2))
     chosen, places, outcome = asked(monkeypatch, 0.5 * one)
@@ -77,25 +87,74 @@ def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(monkeyp
     assert outcome.validity.expected_wall == chosen.least_s
     assert f"about {float(f'{one:.2g}'):.0f} s, which exceeds the budget" in chosen.sentence
     assert "error stays unknown" in chosen.sentence and '--budget "' in chosen.sentence
-    chosen, places, _ = asked(monkeypatch, 0.5 * (one + both))
+    chosen, places, outcome = asked(monkeypatch, 0.9 * (both - one))
     assert len(places) == 1 and "exceeds" not in chosen.sentence
+    assert outcome.validity.warnings[-1] == (
+        "The wanted 20 % is not reached: one mesh alone cannot estimate its own error. One mesh finer takes "
+        f'about {both - one:.0f} s more: for that give --budget "{LONGER * (both - one):.0f} s".'
+    )
+    assert len(asked(monkeypatch, LONGER * (both - one))[1]) > 1
 
 
-def test_a_budget_below_all_places_of_two_meshes_takes_one_place_each(monkeypatch):
+def test_a_budget_below_all_places_of_two_meshes_takes_one_place_each(on_plan, monkeypatch):
     both = sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:2])
     chosen, places, outcome = asked(monkeypatch, 1.5 * both)
     assert {place for _, place in places} == {0.0} and len(places) >= 2
     assert outcome.validity.achieved_error > 0
-    assert f"about {float(f'{both:.2g}'):.0f} s or more" in chosen.sentence
-    assert not [text for text in outcome.validity.warnings if "budget" in text]
+    assert f"planned to take {float(f'{both:.2g}'):.0f} s" in chosen.sentence
+    assert not [text for text in outcome.validity.warnings if "more than the budget" in text]
     assert asked(monkeypatch, 10 * both)[1][:4] == [(places[0][0], p) for p in (0.0, 0.25, 0.5, 0.75)]
+
+
+def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monkeypatch):
+    """A rod that leaves earlier than planned leaves time for all places, or for a finer mesh."""
+    whole = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh))
+    assert len(asked(monkeypatch, 0.5 * whole)[1]) < 8
+    monkeypatch.setattr(own_ladder, "pace", lambda *_: 0.4)
+    _, places, outcome = asked(monkeypatch, 0.5 * whole)
+    assert len(places) == 8
+    assert outcome.validity.achieved_error <= FAR.accuracy.target
+    assert not [text for text in outcome.validity.warnings if "not reached" in text]
+
+
+def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkeypatch):
+    """The budget that is advised lets the next mesh run."""
+    monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy", "0.001 %"))
+    two, three = (
+        sum(plan(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh)) for n in (2, 3)
+    )
+    outcome = asked(monkeypatch, 1.01 * two)[2]
+    (told,) = [text for text in outcome.validity.warnings if "not reached" in text]
+    assert "e and E_vib are known to" in told
+    assert f"One mesh finer takes about {float(f'{three - two:.2g}'):.0f} s more" in told
+    single = asked(monkeypatch, 0.9 * two)[2].validity
+    (told,) = [text for text in single.warnings if "not reached" in text]
+    assert f"These meshes and one finer at all places take about {float(f'{three:.2g}'):.0f} s" in told
+    assert f'give --budget "{float(f"{LONGER * three:.2g}"):.0f} s"' in told
+    assert single.accuracy_setting.startswith("2 meshes")
+    whole = asked(monkeypatch, 1e9)[2].validity
+    assert whole.warnings[-1].endswith("No finer mesh of this family can be made.")
+
+
+def test_a_finer_mesh_that_fails_leaves_what_the_coarser_ones_say(on_plan, monkeypatch):
+    finest = FAMILY[1].sizes(FAR)[0]
+
+    def cut(scene, *rest):
+        made = run(scene, *rest)
+        failed = dataclasses.replace(made.validity, finished=False, stopped_because="the tail.")
+        return made if scene.accuracy.tip_size > 1.1 * finest else dataclasses.replace(made, validity=failed)
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", cut)
+    stated = to_target.simulate(FAR, budget_s=1e9).validity
+    assert stated.accuracy_setting.startswith("1 mesh of its own")
+    assert "The next finer mesh gave no result: t5b: the tail." in stated.warnings[-1]
 
 
 def test_runs_that_exceed_the_budget_say_so(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
     monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
-    (said,) = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-1:]
-    assert said == "The runs for the wanted error took 120 s, more than the budget of 1 s."
+    over, _ = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-2:]
+    assert over == "The runs for the wanted error took 160 s, more than the budget of 1 s."
 
 
 def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):

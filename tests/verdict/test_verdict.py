@@ -221,7 +221,7 @@ def meshed(monkeypatch, shifts):
             cost = replace(run.cost, tip_size=scene.accuracy.tip_size)
             run = replace(run, restitution=replace(run.restitution, edge=edge), cost=cost)
             runs.append(run if moved is not None else cut_short(run))
-        return runs, 0.0
+        return runs
 
     monkeypatch.setattr(change_module, "side_by_side", stand_in)
     return asked
@@ -451,7 +451,7 @@ def solid_alone(monkeypatch, moved):
             edge = replace(run.restitution.edge, e=0.4 + by)
             energy = replace(run.energy, vibration=0.02)
             made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
-        return made, 0.0
+        return made
 
     monkeypatch.setattr(change_module, "side_by_side", stand_in)
     return asked
