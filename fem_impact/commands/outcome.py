@@ -41,11 +41,12 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     arms = ("tests'" if own_tests else "paper's", "e_paper") if known_by_tests else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
     barrier = outcome.barrier
-    moved = any((barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))
+    moved = any(or_none(v) != 0 for v in (barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))
     turned = or_none(barrier.Omega_b) is not None
     rows = (restitution, *_MOTION, *(_BARRIER if moved else ()), *(_TURNED if turned else ()))
     lines += [_motion(outcome, *row) for row in rows]
-    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J:"]
+    stop = "" if outcome.validity.finished else ", at the stop of this unfinished run"
+    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{stop}:"]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]
     lines += [_share("not accounted for", outcome.energy.residual)]
@@ -54,12 +55,20 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
         floor = _value(outcome.energy.vibration_floor)
         lines += [f"  vibration is below its numerical floor (fraction {floor})"]
     lines += _accuracy(outcome)
-    lines += _unknown({**listed, HEATING: outcome.energy.skin})
+    motion = {label: KEY_TABLE[name].of(outcome) for label, name, _ in rows}
+    lines += _unknown({**motion, **listed, HEATING: outcome.energy.skin})
     v = outcome.validity
-    again = strikes_again(outcome.motion.V_n - outcome.barrier.V_bn).strip() if v.finished else ""
-    notes = (*v.assumptions, *v.outside, *v.warnings, *([again] if again else []))
+    notes = (*v.assumptions, *v.outside, *v.warnings, *_again(outcome))
     lines += ["", *(line for sentence in notes for line in wrapped(f"note: {sentence}"))]
     sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
+
+
+def _again(outcome: Outcome) -> list[str]:
+    """Return that the rod strikes again later, of a finished run whose velocities are known."""
+    V_n, V_bn = or_none(outcome.motion.V_n), or_none(outcome.barrier.V_bn)
+    if V_n is None or V_bn is None or not outcome.validity.finished:
+        return []
+    return [told] if (told := strikes_again(V_n - V_bn).strip()) else []
 
 
 def _listed(outcome: Outcome) -> dict[str, Num]:
@@ -102,8 +111,8 @@ def _percent(value: Num) -> str:
 def _motion(outcome: Outcome, label: str, name: str, unit: str) -> str:
     value, band = outcome.estimate(KEY_TABLE[name])
     spread = f" +- {_number(band)}" if band is not None else ""
-    rest = "" if isinstance(value, Unknown) else f"{spread} {unit}"
-    return f"  {label:<30} {_value(value)}{rest}".rstrip()
+    told = "not known" if isinstance(value, Unknown) else f"{_number(value)}{spread} {unit}"
+    return f"  {label:<30} {told}".rstrip()
 
 
 def _share(label: str, share: Num) -> str:

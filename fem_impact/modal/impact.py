@@ -63,6 +63,7 @@ class ModalResult:
     contacts : (m, 4) start, end, s, impulses along n and t, N s
     force : largest normal force, N
     finished, reason : whether the impact is over, and why the march ended
+    separated : whether the tip had left the barrier for good, or until another point struck
     record : (m, 15) what moved over time, see `fem_impact.modal.motion`; no rows where none was wanted
     step, steps, wall, cpu : s, -, s, s
     """
@@ -89,6 +90,7 @@ class ModalResult:
     contacts: Array
     force: float
     finished: bool
+    separated: bool
     reason: str
     record: Array
     step: float
@@ -176,6 +178,7 @@ def _result(
         contacts=contacts[: end.touches],
         force=tally[HARDEST],
         finished=end.over,
+        separated=end.over or (end.struck != NOTHING and not any(end.held)),
         reason=_reason(rod, end, bounds),
         record=record[: end.rows],
         step=bounds.step,

@@ -107,11 +107,9 @@ class RodMotion:
     v_t: float = key(
         "v_t_m_per_s", "m/s", "Tangential velocity of the mass centre at first contact, up the slope."
     )
-    V_n: float = key("V_n_m_per_s", "m/s", "Normal velocity at the last separation, gravity removed.", True)
-    V_t: float = key(
-        "V_t_m_per_s", "m/s", "Tangential velocity at the last separation, gravity removed.", True
-    )
-    Omega: float = key(
+    V_n: Num = key("V_n_m_per_s", "m/s", "Normal velocity at the last separation, gravity removed.", True)
+    V_t: Num = key("V_t_m_per_s", "m/s", "Tangential velocity at the last separation, gravity removed.", True)
+    Omega: Num = key(
         "Omega_rad_per_s",
         "rad/s",
         "Rotation rate at the last separation, n turning towards t positive.",
@@ -126,8 +124,8 @@ class BarrierMotion:
     mass: Num = key("barrier_mass_kg", "kg", "Mass of a barrier that is free to move.")
     v_bn: float = key("v_bn_m_per_s", "m/s", "Normal velocity of the barrier at first contact.")
     v_bt: float = key("v_bt_m_per_s", "m/s", "Tangential velocity of the barrier at first contact.")
-    V_bn: float = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.")
-    V_bt: float = key("V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.")
+    V_bn: Num = key("V_bn_m_per_s", "m/s", "Normal velocity of the barrier after the last separation.")
+    V_bt: Num = key("V_bt_m_per_s", "m/s", "Tangential velocity of the barrier after the last separation.")
     Omega_b: Num = key(
         "barrier_Omega_rad_per_s", "rad/s", "Spin of a free barrier after the last separation, from n to t."
     )
@@ -174,7 +172,10 @@ class Restitution:
 
 @group
 class Energy:
-    """Where the energy at first contact is after the last separation: E_0 in J, the rest as shares of it."""
+    """Where the energy at first contact is after the last separation: E_0 in J, the rest as shares of it.
+
+    Of a run that did not finish they are the energies at its stop.
+    """
 
     E_0: float = key(
         "E_0_J",
@@ -184,13 +185,15 @@ class Energy:
     rigid: Num = key(
         "E_r_over_E_0",
         "-",
-        "Kinetic energy of the rigid motion after the last separation (Eq 26)" + SHARE,
+        "Kinetic energy of the rigid motion after the last separation (Eq 26), or at the stop of a run that "
+        "did not finish" + SHARE,
         True,
     )
     vibration: Num = key(
         "E_vib_over_E_0",
         "-",
-        "Vibration energy after the last separation, by modal projection" + SHARE,
+        "Vibration energy after the last separation, or at the stop of a run that did not finish, by modal "
+        "projection" + SHARE,
         True,
     )
     vibration_check: Num = key(

@@ -75,11 +75,12 @@ class Outcome:
         check_record(self.to_dict(), KEYS, "outcome")
 
     def __repr__(self) -> str:
-        numbers = self.restitution.edge.e, self.restitution.mu, self.energy.vibration
-        e, mu, vibration = ("not known" if isinstance(v, Unknown) else f"{v:.4g}" for v in numbers)
+        numbers = self.restitution.edge.e, self.restitution.mu, self.motion.Omega, self.energy.vibration
+        e, mu, Omega, vibration = ("not known" if isinstance(v, Unknown) else f"{v:.4g}" for v in numbers)
+        unit = "" if isinstance(self.motion.Omega, Unknown) else " rad/s"
         return (
             f"Outcome({self.provenance.scene_id!r}, {self.provenance.fidelity}: e={e}, "
-            f"mu={mu}, Omega={self.motion.Omega:.4g} rad/s, E_vib/E_0={vibration})"
+            f"mu={mu}, Omega={Omega}{unit}, E_vib/E_0={vibration})"
         )
 
     def _repr_html_(self) -> str:

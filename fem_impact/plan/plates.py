@@ -8,7 +8,7 @@ from fem_impact.arrays import Array
 from fem_impact.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, contact_estimate
-from fem_impact.physics.plate import contact_time, least_span
+from fem_impact.physics.plate import contact_time, least_span, zener_number
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.types import Scene
 
@@ -16,6 +16,7 @@ from fem_impact.scene.types import Scene
 THIN = 0.02
 ROWS = 2  # of cells through a plate at least: their lumped masses turn with 1.5 times the plate's inertia
 FLATTEST = 0.5  # least height of the rows of a plate over their width
+MOST_ZENER = 2.0  # up to it `contact_time` is no shorter than Zener's contact, see there
 MOST_CELLS = 3e5  # of a plate before refinement: about 1 GB
 LEAST_ACROSS = next(key.low for key in ACCURACY if key.key == "across")
 NONE = "No accuracy.across does: give a thicker plate or a blunter projectile."
@@ -67,11 +68,24 @@ def thin_plate(bodies: ContactBodies, meshed_through: bool) -> str:
     if meshed_through:
         return (
             f"idealised: {told}, so the plate is meshed through it and bends by itself: its impedance is not "
-            "added, which would count the bending twice"
+            f"added, which would count the bending twice{_hardly_left(bodies, h)}"
         )
     return (
         f"idealised: {told}, and taken as that of a half-space, which gives {100 * _deeper(bodies):.2g} % of "
         f"its way deeper than the plate is thick: e may be off by some {100 * error:.2g} %"
+    )
+
+
+def _hardly_left(bodies: ContactBodies, thickness: float) -> str:
+    """Tell where a plate takes nearly all the energy, so that the contact lasts until the time is up."""
+    number = zener_number(bodies)
+    if number <= MOST_ZENER:
+        return ""
+    enough = 1e3 * thickness * math.sqrt(number / MOST_ZENER)  # the impedance grows as its square
+    return (
+        f". Zener's lambda is {number:.2g}: beyond {MOST_ZENER:g} the rod hardly leaves the plate (by his "
+        "equation e is below 0.021), and the run may end without e, at max_time. A thickness of "
+        f"{enough:.2g} mm brings lambda down to {MOST_ZENER:g}"
     )
 
 

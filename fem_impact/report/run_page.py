@@ -79,7 +79,7 @@ def run_page(folder: Path) -> str:
         film_section(folder),
         notices([outcome], strangers(outcome, folder)),
         beside_tests(outcome, scene, folder),
-        section("Where the energy went", shares, _folded(outcome, "shares", ENERGY, rigid)),
+        section(f"Where the energy went{_stop(outcome)}", shares, _folded(outcome, "shares", ENERGY, rigid)),
         section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
         waves_section(folder),
         history_figures(outcome, folder),
@@ -114,6 +114,10 @@ def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
         return simulate(stated, "rigid")
     except (SceneError, RunError, ResultError):  # own tests that can no longer be read are told elsewhere
         return None
+
+
+def _stop(outcome: Outcome) -> str:
+    return "" if outcome.validity.finished else ": at the stop of this unfinished run"
 
 
 def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | None) -> Markup:

@@ -85,7 +85,7 @@ def _apart(a: Sequence[float], b: Sequence[float]) -> float:
 def _spin(row: Outcome) -> float:
     """Return I Omega^2/2 after the impact, fraction of E_0."""
     m = row.motion
-    return 0.5 * m.mass * m.k_squared * m.Omega**2 / row.energy.E_0
+    return 0.5 * m.mass * m.k_squared * known(m.Omega) ** 2 / row.energy.E_0
 
 
 def _moment(rows: Sequence[Outcome]) -> Verdict:

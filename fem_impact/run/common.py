@@ -19,7 +19,7 @@ from fem_impact.outcome.groups import (
     RodMotion,
     Validity,
 )
-from fem_impact.outcome.keys import Num, Unknown, unknown
+from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import installed_versions, utc_now
 from fem_impact.physics.contact import ContactBodies, approach, arms, fall, projectile
 from fem_impact.physics.contact_law import softer
@@ -167,6 +167,17 @@ def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: fl
     )
 
 
+def after(motion: RodMotion) -> tuple[float, float, float]:
+    """Return V_n and V_t, m/s, and Omega, rad/s, or raise ResultError where they are not known."""
+    return known(motion.V_n), known(motion.V_t), known(motion.Omega)
+
+
+def relative(motion: RodMotion, barrier: BarrierMotion) -> tuple[float, float, float]:
+    """Return V_n and V_t as seen from the barrier after the impact, m/s, and the rod's Omega, rad/s."""
+    V_n, V_t, Omega = after(motion)
+    return V_n - known(barrier.V_bn), V_t - known(barrier.V_bt), Omega
+
+
 def apart(scene: Scene) -> tuple[float, float]:
     """Return the rod's mass centre from that of a barrier that turns at first contact (n, t), m.
 
@@ -199,8 +210,9 @@ def momentum_error(
     ``fallen``, m/s, is what gravity gave the rod in flights between contacts, which is taken out.
     """
     before, alpha, M = scene.relative, scene.impact.angle, scene.barrier.mass or 0.0
-    gained_n = motion.mass * (motion.V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
-    gained_t = motion.mass * (motion.V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
+    V_n, V_t, _ = after(motion)
+    gained_n = motion.mass * (V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
+    gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
     return hypot(gained_n, gained_t) / (motion.mass * hypot(before.v_n, before.v_t))
 
 
@@ -220,9 +232,9 @@ def angular_momentum_error(
     before, struck, (start_n, start_t) = scene.relative, scene.barrier, start
     inertia, M = struck.inertia or 0.0, struck.mass or 0.0
     reduced_mass = motion.mass * M / (motion.mass + M)
-    V_n, V_t = motion.V_n - barrier.V_bn, motion.V_t - barrier.V_bt
+    V_n, V_t, Omega = relative(motion, barrier)
     orbit = reduced_mass * (away[0] * V_t - away[1] * V_n - start_n * before.v_t + start_t * before.v_n)
-    spun = motion.mass * motion.k_squared * (motion.Omega - before.omega) + inertia * Omega_b
+    spun = motion.mass * motion.k_squared * (Omega - before.omega) + inertia * Omega_b
     scale = motion.mass * hypot(before.v_n, before.v_t) * hypot(start_n, start_t)
     return abs(orbit + spun) / scale
 
@@ -230,14 +242,15 @@ def angular_momentum_error(
 def as_on_massive(scene: Scene, motion: RodMotion, barrier: BarrierMotion) -> RodMotion:
     """Return the motion relative to the barrier, of the mass and k^2 that a massive one would have met so."""
     share = 1.0 if scene.barrier.mass is None else 1 / (1 + motion.mass / scene.barrier.mass)
+    V_n, V_t, _ = relative(motion, barrier)
     return replace(
         motion,
         mass=motion.mass * share,
         k_squared=motion.k_squared / share,
         v_n=motion.v_n - barrier.v_bn,
         v_t=motion.v_t - barrier.v_bt,
-        V_n=motion.V_n - barrier.V_bn,
-        V_t=motion.V_t - barrier.V_bt,
+        V_n=V_n,
+        V_t=V_t,
     )
 
 
@@ -252,15 +265,15 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
     if not isinstance(barrier.Omega_b, Unknown):
         return _on_turning(scene, motion, barrier, barrier.Omega_b)
     (d_c, d_d), omega, m = arms(scene), scene.impact.omega, as_on_massive(scene, motion, barrier)
-    before = m.v_n, m.v_t
-    e = float(rigid.restitution(m.v_n, m.V_n, m.Omega, d_c, omega))
-    spin, alpha = m.k_squared * (m.Omega - omega), scene.impact.angle
-    centre = (spin + d_d * (m.V_t - m.v_t)) / (m.V_n - m.v_n)
+    before, (V_n, V_t, Omega) = (m.v_n, m.v_t), after(m)
+    e = float(rigid.restitution(m.v_n, V_n, Omega, d_c, omega))
+    spin, alpha = m.k_squared * (Omega - omega), scene.impact.angle
+    centre = (spin + d_d * (V_t - m.v_t)) / (V_n - m.v_n)
     tests = tests_of(scene)
     table = tests.arms if tests else None
     E_0 = float(rigid.kinetic_energy(m.v_n, m.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     return Restitution(
-        mu=float(rigid.impulse_ratio(*before, m.V_n + fallen * cos(alpha), m.V_t + fallen * sin(alpha))),
+        mu=float(rigid.impulse_ratio(*before, V_n + fallen * cos(alpha), V_t + fallen * sin(alpha))),
         mu_c=float(rigid.critical_ratio(*before, e=e, d_c=d_c, d_d=d_d, k2=m.k_squared, omega=omega)),
         paper=_with_arms(float(table.d_c), float(table.d_d), omega, m, E_0)
         if table
@@ -277,11 +290,12 @@ def _on_turning(scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b
     """
     (d_c, d_d), omega, struck = arms(scene), scene.impact.omega, scene.barrier
     depth, offset = struck.centre_depth or 0.0, struck.centre_offset
-    P_n, P_t = motion.mass * (motion.V_n - motion.v_n), motion.mass * (motion.V_t - motion.v_t)
+    V_n, V_t, Omega = after(motion)
+    P_n, P_t = motion.mass * (V_n - motion.v_n), motion.mass * (V_t - motion.v_t)
     before_n = motion.v_n - barrier.v_bn + d_c * omega
     before_t = motion.v_t - barrier.v_bt - d_d * omega
-    after_n = motion.V_n + d_c * motion.Omega - barrier.V_bn - Omega_b * offset
-    after_t = motion.V_t - d_d * motion.Omega - barrier.V_bt - Omega_b * depth
+    after_n = V_n + d_c * Omega - known(barrier.V_bn) - Omega_b * offset
+    after_t = V_t - d_d * Omega - known(barrier.V_bt) - Omega_b * depth
     seen = scene.relative
     E_0 = float(rigid.kinetic_energy(seen.v_n, seen.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     edge = ArmCoefficients(
@@ -298,15 +312,16 @@ def _on_turning(scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b
 
 def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -> ArmCoefficients:
     """Return coefficients and losses over E_0, J, with one set of arms, m."""
-    velocities = (m.v_n, m.v_t, m.V_n, m.V_t, m.Omega)
+    V_n, V_t, Omega = after(m)
+    velocities = (m.v_n, m.v_t, V_n, V_t, Omega)
     body = {"d_c": d_c, "d_d": d_d, "k2": m.k_squared, "omega": omega}
     lost = rigid.losses(*velocities, **body, mass=m.mass)
     e: Num = UNDETERMINED
     e_m: Num = UNDETERMINED
     if m.v_n + d_c * omega < 0:
         found = rigid.coefficients(*velocities, **body)
-        e, moment = float(found.e), d_c * (m.V_n - m.v_n) - d_d * (m.V_t - m.v_t) + m.k_squared * omega
-        if abs(moment) > ROUND_OFF * d_d * (m.V_n - m.v_n):
+        e, moment = float(found.e), d_c * (V_n - m.v_n) - d_d * (V_t - m.v_t) + m.k_squared * omega
+        if abs(moment) > ROUND_OFF * d_d * (V_n - m.v_n):
             e_m = float(found.e_m)
     return ArmCoefficients(
         d_c=d_c, d_d=d_d, e=e, e_m=e_m, E_ln=float(lost.E_ln) / E_0, E_lt=float(lost.E_lt) / E_0

@@ -36,6 +36,7 @@ from fem_impact.run.common import (
     validity,
 )
 from fem_impact.run.doubts import doubts
+from fem_impact.run.resolution import without_end
 from fem_impact.scene.types import Scene
 
 WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
@@ -62,7 +63,8 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
     coefficients, energy = restitution(scene, moved, struck, fallen), _energy(plan, result)
     origin = provenance(plan, CHOICES, WITHOUT)
     failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
-    return Outcome(
+    cut = failed or ("" if result.separated else result.reason)
+    outcome = Outcome(
         provenance=origin,
         validity=validity(
             plan,
@@ -77,7 +79,7 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
                 *beside_solid(scene),
             ),
             [
-                *doubts(origin, moved, coefficients, energy),
+                *([] if cut else doubts(origin, moved, coefficients, energy)),
                 *gravity_warning(plan, contacts),
                 *_tilted(result),
                 *plan.unknown,
@@ -91,6 +93,7 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
         heat=unknown(Heat, "heat is followed on the finite elements only"),
         cost=_cost(result),
     )
+    return without_end(outcome, cut) if cut else outcome
 
 
 def _tilted(result: ModalResult) -> list[str]:

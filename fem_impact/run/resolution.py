@@ -1,4 +1,4 @@
-"""Check of whether the mesh of a run resolved its contact; if not, coefficients and shares are unknown."""
+"""What a run did not resolve, its contact or its last separation, is unknown."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ from dataclasses import fields, replace
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from fem_impact.outcome.groups import ARMS
-from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.groups import ARMS, Markers
+from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.plan.cells import LEAST, advice, contact_edge, contact_radius, kind
 
@@ -23,6 +23,7 @@ NOT_RESOLVED = "the contact was not resolved:"
 LOST = (
     0.02  # of E_0, at most lost in closing: the measured sets lose 0.0001 to 0.0006, drawn scenes up to 0.004
 )
+AFTER, AFTER_BARRIER = ("V_n", "V_t", "Omega"), ("V_bn", "V_bt")
 LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without a resolved contact
 
 
@@ -66,6 +67,28 @@ def without(outcome: Outcome, reason: Unknown) -> Outcome:
         restitution=replace(outcome.restitution, mu=reason, **arms),
         energy=_blank(outcome.energy, reason, LEDGER),
         contact=replace(outcome.contact, peak_force=reason),
+    )
+
+
+def without_end(outcome: Outcome, why: str) -> Outcome:
+    """Return an outcome without what rests on the last separation, which a run did not reach, and ``why``.
+
+    These are the motion after the impact, coefficients, losses and impulse ratio; the energies stay, as those
+    at the stop.
+    """
+    reason = Unknown(f"the run did not finish: {why}")
+    arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
+    barrier, heat = outcome.barrier, outcome.heat
+    after: dict[str, Any] = dict.fromkeys(AFTER, reason)
+    free: dict[str, Any] = {} if isinstance(barrier.mass, Unknown) else dict.fromkeys(AFTER_BARRIER, reason)
+    less = heat.less_vibration if isinstance(heat.less_vibration, Unknown) else reason
+    return replace(
+        outcome,
+        motion=replace(outcome.motion, **after),
+        barrier=replace(barrier, **free),
+        restitution=replace(outcome.restitution, mu=reason, mu_c=reason, **arms),
+        contact=replace(outcome.contact, markers=unknown(Markers, reason.reason)),
+        heat=replace(heat, less_vibration=less),
     )
 
 

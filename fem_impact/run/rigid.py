@@ -18,6 +18,7 @@ from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
 from fem_impact.run.common import (
     MASSIVE,
+    after,
     barrier_motion,
     comes_down,
     heat,
@@ -139,7 +140,8 @@ def _energy(
 ) -> Energy:
     scene, before, body = bodies.scene, bodies.scene.relative, {"mass": m.mass, "k2": m.k_squared}
     start = rigid.kinetic_energy(before.v_n, before.v_t, before.omega, **body)
-    end = rigid.kinetic_energy(m.V_n - scene.barrier.v_n, m.V_t - scene.barrier.v_t, m.Omega, **body)
+    V_n, V_t, Omega = after(m)
+    end = rigid.kinetic_energy(V_n - scene.barrier.v_n, V_t - scene.barrier.v_t, Omega, **body)
     pushed = 0.5 * (scene.barrier.mass or 0.0) * (base[0] ** 2 + base[1] ** 2)
     mass = reduced(scene)[0]
     normal, tangential = (mass * sum(w) for w in (path.normal_work, path.tangential_work))

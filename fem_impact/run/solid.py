@@ -28,6 +28,7 @@ from fem_impact.run.common import (
     CUT_OFF,
     MASSIVE,
     UNBENT,
+    after,
     angular_momentum_error,
     barrier_motion,
     comes_down,
@@ -37,13 +38,14 @@ from fem_impact.run.common import (
     motion,
     open_ledger,
     provenance,
+    relative,
     restitution,
     too_slow,
     validity,
 )
 from fem_impact.run.doubts import doubts
 from fem_impact.run.markers import replay
-from fem_impact.run.resolution import unresolved, without
+from fem_impact.run.resolution import unresolved, without, without_end
 
 if TYPE_CHECKING:
     from fem_impact.solid.run import SolidResult
@@ -79,10 +81,12 @@ def reduce(result: SolidResult) -> Outcome:
     origin = provenance(plan, _choices(result))
     reason = unresolved(result)
     withheld = bool(reason) and plan.scene.accuracy.unresolved == "withhold"
-    doubted = [] if withheld else doubts(origin, moved, coefficients, energy)
+    failed = open_ledger(result.worst / result.E_0) or too_slow(plan, result.model.book.table[:, :2])
+    cut = failed or ("" if result.separated else result.reason)
+    doubted = [] if withheld or cut else doubts(origin, moved, coefficients, energy)
     outcome = Outcome(
         provenance=origin,
-        validity=_validity(result, moved.V_n - struck.V_bn, doubted),
+        validity=_validity(result, failed, relative(moved, struck)[0], doubted),
         motion=moved,
         barrier=struck,
         restitution=coefficients,
@@ -91,7 +95,8 @@ def reduce(result: SolidResult) -> Outcome:
         heat=_heat(result, coefficients.edge.E_lt, energy.vibration),
         cost=_cost(result),
     )
-    return without(outcome, Unknown(reason)) if withheld else outcome
+    outcome = without(outcome, Unknown(reason)) if withheld else outcome
+    return without_end(outcome, cut) if cut else outcome
 
 
 def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
@@ -99,9 +104,8 @@ def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
     return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in result.plan.choices)
 
 
-def _validity(result: SolidResult, V_n: float, doubts: list[str]) -> Validity:
+def _validity(result: SolidResult, failed: str, V_n: float, doubts: list[str]) -> Validity:
     plan, contacts = result.plan, result.model.book.table[:, :2]
-    failed = open_ledger(result.worst / result.E_0) or too_slow(plan, contacts)
     return validity(
         plan,
         result.finished and not failed,
@@ -151,8 +155,9 @@ def _motion(result: SolidResult) -> RodMotion:
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     a, E_0, barrier = result.accounts, result.E_0, result.plan.scene.barrier
-    V_n, V_t, k2 = moved.V_n - barrier.v_n, moved.V_t - barrier.v_t, moved.k_squared
-    kept = float(rigid.kinetic_energy(V_n, V_t, moved.Omega, mass=moved.mass, k2=k2))
+    V_n, V_t, Omega = after(moved)
+    seen, k2 = (V_n - barrier.v_n, V_t - barrier.v_t), moved.k_squared
+    kept = float(rigid.kinetic_energy(*seen, Omega, mass=moved.mass, k2=k2))
     given = 0.5 * (barrier.mass or 0.0) * (result.base[0] ** 2 + result.base[1] ** 2)
     given += 0.5 * (barrier.inertia or 0.0) * (result.turned.spin if result.turned else 0.0) ** 2
     stiff, vibration, floor = result.model.rod_stiffness is None, result.flight.energy, result.worst
@@ -223,9 +228,9 @@ def _contact(result: SolidResult, moved: RodMotion, struck: BarrierMotion) -> Co
     )
     return Contact(
         intervals=tuple(intervals),
-        strikes_again=comes_down(moved.V_n - struck.V_bn) if result.finished else CUT_OFF,
+        strikes_again=comes_down(relative(moved, struck)[0]) if result.finished else CUT_OFF,
         peak_force=result.peak_force,
-        markers=replay(result, moved.V_n, moved.V_t),
+        markers=replay(result, *after(moved)[:2]),
     )
 
 

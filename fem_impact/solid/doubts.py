@@ -10,9 +10,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from scipy.spatial import KDTree
+from scipy.interpolate import LinearNDInterpolator
+from scipy.spatial import Delaunay, KDTree
 
-from fem_impact.arrays import Array
+from fem_impact.arrays import Array, Ints
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.model import Model
@@ -75,6 +76,7 @@ def _work_above(zone: YieldingZone, nodes: Array) -> float:
 
 
 DEEP = 0.25  # depth over the tip size at which skin outside the contact stops the run
+LEVEL = 1e-9  # m, within which a node lies on the barrier's face
 PROOF_STRAIN = 0.002  # conventional proof strain: below it an element has hardly yielded
 
 
@@ -82,26 +84,27 @@ class SkinWatch:
     """Observer of the rod's skin outside the contact patch, which must not reach a meshed barrier.
 
     Skin a little below the barrier's plane, which sinks around the contact, gives a warning. More than `DEEP`
-    of the tip size stops the run: no contact force acts there.
+    of the tip size stops the run: no contact force acts there. A plate that is meshed through its thickness
+    gives way as a whole: there its deformed surface counts.
     """
 
     every = 100
     moving: ClassVar[tuple[str, ...]] = ("lowest",)
 
-    def __init__(self, model: Model) -> None:
+    def __init__(self, model: Model, bends: bool = False) -> None:
         contact, mesh = model.contact, model.geometry.rod.mesh
         skin = model.layout.rod[np.unique(mesh.faces_with(SKIN))]
         touching = contact.rod.places if isinstance(contact, SurfaceContact) else skin
         self.places = skin[~np.isin(skin[:, 2], touching[:, 2])]
         self.ground = model.ground
+        self.top = _top(model) if bends else None
         self.lowest = np.inf
         self.deepest = -DEEP * model.geometry.tip_size
         self.reason = ""
 
     def observe(self, state: State) -> bool:
         """Record the lowest height so far; stop the run when it is too deep."""
-        x, ground = state.x, self.ground
-        heights = ground.levelled(x[self.places[:, 0]], x[self.places[:, 2]], x) - ground.risen(x)
+        heights = self._heights(state.x)
         self.lowest = min(self.lowest, float(np.min(heights, initial=np.inf)))
         if self.lowest >= self.deepest:
             return False
@@ -112,6 +115,14 @@ class SkinWatch:
         )
         return True
 
+    def _heights(self, x: Array) -> Array:
+        """Return how high, m, the skin outside the contact patch stands over the barrier."""
+        t, b, n = x[self.places].T
+        if self.top is None:
+            return self.ground.levelled(t, n, x) - self.ground.risen(x)
+        nodes, cells = self.top
+        return np.asarray(n - LinearNDInterpolator(cells, x[nodes[:, 2]], fill_value=0.0)(t, np.abs(b)))
+
     def doubt(self) -> str:
         """Return a warning if skin went below the barrier's surface, else an empty string."""
         if self.lowest >= 0:
@@ -120,6 +131,13 @@ class SkinWatch:
             f"Skin of the rod outside its fine zone went {-self.lowest * 1e6:.0f} um below the barrier's "
             "surface without touching: the contact is wider than the fine zone."
         )
+
+
+def _top(model: Model) -> tuple[Ints, Delaunay]:
+    """Return the unknowns (k, 3) of the nodes on a meshed barrier's face, and triangles between them."""
+    x, places = model.start[0], model.layout.barrier
+    nodes = places[np.abs(x[places[:, 2]]) < LEVEL]
+    return nodes, Delaunay(x[nodes[:, :2]])
 
 
 def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:

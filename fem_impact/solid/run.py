@@ -102,6 +102,7 @@ class SolidResult:
     added_energy: float
     vibration_check: tuple[float, float] | None
     finished: bool
+    separated: bool
     reason: str
     cost: LoopCost
     warnings: tuple[str, ...]
@@ -206,6 +207,7 @@ def _result(
         added_energy=watchers.added.largest,
         vibration_check=check,
         finished=stop.finished,
+        separated=stop.separated,
         reason=watchers.reason,
         cost=cost,
         warnings=tuple(w for f in watchers.frames for w in f.writer.warnings) + doubts(model, watchers.skin),

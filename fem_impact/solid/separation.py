@@ -38,6 +38,7 @@ class Separation:
     tail: Array = field(default_factory=lambda: np.zeros((0, 3)))
     every: int = 100
     reason: str = ""
+    separated: bool = False
     finished: bool = False
 
     def observe(self, state: State) -> bool:
@@ -55,6 +56,7 @@ class Separation:
         ahead = min(self.horizon, self._tail_strikes(state, motion))
         if not self._stays_away(state, motion, max(ahead, SAMPLE)):
             return False
+        self.separated = True
         if ahead < self.horizon:
             self.reason = (
                 f"The rod's tail strikes {ahead * 1e6:.3g} us later, and only its tip can touch in this "

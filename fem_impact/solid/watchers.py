@@ -111,7 +111,11 @@ class Watchers:
         if out is not None and scene.save.strain_samples and _has_slices(model):
             strain = [StrainWatch.of(plan, model, out / "waves.h5")]
         stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
-        skin, peak, added = SkinWatch(model), PeakForce(model.book), AddedMass(model.added_mass)
+        skin, peak, added = (
+            SkinWatch(model, plan.slots.bending is not None),
+            PeakForce(model.book),
+            AddedMass(model.added_mass),
+        )
         heat = _heat_watch(model) if plan.slots.heat else None
         return cls(StepGuard(model), watch, history, frames, strain, skin, peak, added, heat, stop)
 

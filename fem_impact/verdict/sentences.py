@@ -196,7 +196,7 @@ def _form(rod: ProjectileSpec) -> str:
 def _motion(run: Outcome) -> str:
     return (
         f"e {known(run.restitution.edge.e):.3f}, mu {known(run.restitution.mu):.3f}, Omega "
-        f"{run.motion.Omega:.3g} rad/s, E_r {100 * known(run.energy.rigid):.3g} % of E_0."
+        f"{known(run.motion.Omega):.3g} rad/s, E_r {100 * known(run.energy.rigid):.3g} % of E_0."
     )
 
 

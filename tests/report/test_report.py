@@ -92,6 +92,7 @@ def test_run_report_warns_and_says_when_a_run_was_cut_off(run):
     result_maker.write_result(run, finished=False, stopped_because="The time limit came first.")
     words = read(write_report(run))[1]
     assert "t5b was cut off: The time limit came first." in words
+    assert "Where the energy went: at the stop of this unfinished run" in words
     assert "Yield stress is uncertain" in words
 
 

@@ -1,5 +1,7 @@
 """A plate that is meshed through its thickness: its mesh, its edges, and impacts on it."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -7,10 +9,12 @@ import meshes
 from fem_impact.errors import SceneError
 from fem_impact.fem.boundary import plate_edges
 from fem_impact.outcome.keys import or_none
+from fem_impact.physics.plate import zener_number
 from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
+from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.elastic import Dashpots
 from fem_impact.solid.footing import BendingPlate
 from meshes import OUTER, SKIN
@@ -97,3 +101,32 @@ def test_cells_are_split_down_to_the_underside_within_the_fine_zone():
     assert deepest == pytest.approx(-3.5e-3, abs=2e-3)
     with pytest.raises(SceneError, match="rows of cells"):
         plan(scene(**{"barrier.thickness": "1 mm"}))
+
+
+@pytest.mark.parametrize(
+    ("bends", "plate", "rod", "stops"),
+    [(True, -4e-3, -4e-3, False), (False, -4e-3, -4e-3, True), (True, 0.0, -4e-3, True)],
+)
+def test_skin_outside_the_contact_is_held_against_the_plate_where_it_has_gone(
+    model, bends, plate, rod, stops
+):
+    """A thin plate gives way under the rod by more than the run may let skin enter it."""
+    state, watch = model.initial_state(), SkinWatch(model, bends)
+    state.x[model.layout.rod[:, 2]] += rod
+    state.x[model.layout.barrier[:, 2]] += plate
+    assert watch.observe(state) == stops
+    assert bool(watch.doubt()) == stops
+    assert watch.reason.startswith("The rod came down on the barrier outside") == stops
+
+
+@pytest.mark.parametrize(("thickness", "told"), [("3.5 mm", True), ("6.5 mm", False)])
+def test_a_plate_that_takes_nearly_all_is_told_with_a_thickness_that_does_not(thickness, told):
+    """The impedance of a plate goes as the square of its thickness."""
+    soft = {"accuracy.across": 8, "barrier.material": "aluminium-6061-t6", "projectile.length": "60 mm"}
+    planned = plan(scene(**soft, **{"barrier.thickness": thickness}))
+    sentence = " ".join(planned.validity)
+    assert ("the rod hardly leaves the plate" in sentence) == told
+    if told:
+        enough = re.search(r"A thickness of (\S+ mm)", sentence)[1]
+        thicker = replace_all(planned.scene, {"barrier.thickness": enough})
+        assert zener_number(plan(thicker).bodies) == pytest.approx(2.0, rel=0.06)

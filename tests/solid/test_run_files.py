@@ -44,6 +44,29 @@ def test_the_run_says_that_it_was_cut_off(run):
     assert told[-1].contact.endswith("nodes touch") and abs(told[-1].energy_drift) < 1e-5
 
 
+NOT_REACHED = ("mu", "mu_c", "V_n_m_per_s", "V_t_m_per_s", "Omega_rad_per_s", "strikes_again")
+COEFFICIENTS = [f"{name}_edge{over}" for name, over in (("e", ""), ("e_m", ""), ("E_ln", "_over_E_0"))]
+MARKERS = ("marker_V_n_m_per_s", "marker_Omega_rad_per_s")
+
+
+def test_what_rests_on_the_last_separation_is_null_with_the_reason(run):
+    """The energies at the stop stay, and sum to what the rod brought."""
+    _, outcome, _ = run
+    stated = outcome.to_dict()
+    for name in (*NOT_REACHED, *COEFFICIENTS, "E_lt_edge_over_E_0", *MARKERS):
+        assert stated[name] is None
+        assert "before the last separation was certain" in stated["reasons"][name]
+    for name in ("mu", "Omega_rad_per_s", "e_edge"):
+        assert stated["reasons"][name].startswith("the run did not finish: Reached max_time = 0.1 ms")
+    assert outcome.restitution.edge.d_c > 0
+    energy = outcome.energy
+    parts = (energy.rigid, energy.vibration, energy.friction, energy.plastic_rod, energy.plastic_barrier)
+    more = (energy.locked_rod, energy.locked_barrier, energy.radiated, energy.closing, energy.residual)
+    assert sum((*parts, *more)) == pytest.approx(1.0, abs=1e-4)  # less what vibrates above the modes
+    assert not any(told.startswith(("e =", "mu =")) for told in outcome.validity.warnings)
+    assert "e=not known, mu=not known, Omega=not known" in repr(outcome)
+
+
 def test_what_gravity_adds_closes_the_sum():
     slow = {
         "impact.v_n": "-0.1 m/s",
