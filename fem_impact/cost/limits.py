@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 from fem_impact.arrays import Array
 from fem_impact.cost.quantities import QUANTITIES, TargetQuantity
 from fem_impact.errors import RunError
-from fem_impact.outcome.keys import Unknown, known
+from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import KEYS, Outcome
 
 # Lowest order of convergence in the band of two meshes. Over thirteen sets and nine quantities, 82 % of
@@ -149,6 +149,21 @@ def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, f
         {name: limit.value for name, limit in limits.items()},
         {name: limit.uncertainty for name, limit in limits.items()},
     )
+
+
+def vibration_floor(runs: Placed) -> float:
+    """Return the half-width, of E_0, below which no band of the vibration energy of these runs may be.
+
+    It is the distance of the two independent counts of that energy, by modes and without them, or the floor
+    of the energy balance if that is more; a mean over the runs. Meshes that agree by chance cannot know the
+    energy better than their own two counts do.
+    """
+    floors = []
+    for energy in (run.energy for run in runs):
+        vibration, check = or_none(energy.vibration), or_none(energy.vibration_check)
+        apart = 0.0 if vibration is None or check is None else abs(check - vibration)
+        floors.append(max(apart, or_none(energy.vibration_floor) or 0.0))
+    return fmean(floors)
 
 
 def mesh_means(runs: Placed) -> dict[str, float]:

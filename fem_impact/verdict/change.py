@@ -9,7 +9,7 @@ from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
 from fem_impact.cost.lanes import side_by_side
-from fem_impact.cost.limits import ONE_RUN, pair_limit
+from fem_impact.cost.limits import ONE_RUN, pair_limit, vibration_floor
 from fem_impact.cost.settings import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.cost.times import pace, planned_s
 from fem_impact.effects.slots import bodies_of
@@ -36,6 +36,11 @@ REDUCED, ONE_MESH, MESHES = "the reduced model", "one mesh of finite elements", 
 OWN_CELLS = (
     " All meshes have the cells of your file behind the contact, whose error they do not show: the {:.2g} by "
     "which such a mesh was off on the measured sets is added. A file of smaller cells shows it."
+)
+
+COUNTS = (
+    " The band of the vibration energy is at least {:.2g} % of E_0, by which its two independent counts (by "
+    "modes and without them) or the energy balance of the finer mesh are off."
 )
 
 THIN_PLATE = (
@@ -224,7 +229,7 @@ class Ladder:
             _difference(pair),
             error,
             E_vib,
-            share * E_vib,
+            max(share * E_vib, vibration_floor(pair[:1])),
             *pair,
             told,
             ONE_MESH,
@@ -246,6 +251,8 @@ class Ladder:
         E_vib, of_vibration = pair_limit(
             known(fine[0].energy.vibration), known(coarse[0].energy.vibration), ratio
         )
+        floor = vibration_floor(fine[:1])
+        of_vibration = max(of_vibration, floor)
         told = f"Finite elements on meshes of {self._size(0)} and {self._size(-1)} at the contact; "
         apart, expected = abs(_difference(fine) - _difference(coarse)), self._error(0)[1] + self._error(-1)[1]
         if apart > expected:
@@ -260,10 +267,12 @@ class Ladder:
                 f"the band is {ONE_RUN:g} times the range of the limits of all orders of convergence from "
                 "3/4 up, as each mesh runs once."
             )
+        told += COUNTS.format(100 * floor)
         if self.scene.projectile.own_mesh:
             share, error = self._error(-1)
             band, of_vibration = band + error, of_vibration + share * E_vib
             told += OWN_CELLS.format(error)
+        bands = _bands(coarse[0].energy, fine[0].energy, ratio)
         return Change(
             self.scene.impact.angle,
             value,
@@ -275,7 +284,7 @@ class Ladder:
             MESHES,
             MESHES,
             f"band of the {MESHES}",
-            _bands(coarse[0].energy, fine[0].energy, ratio),
+            {**bands, "vibration": max(bands["vibration"], floor)},
         )
 
     def _scenes(self, mesh: Mesh) -> list[Scene]:

@@ -437,7 +437,7 @@ def striker(tmp_path):
     return read_toml(tmp_path / "striker.toml")
 
 
-def solid_alone(monkeypatch, moved):
+def solid_alone(monkeypatch, moved, check=0.02):
     """Let simple outcomes stand for finite elements: e of the vibrating twin is moved on each mesh."""
     asked = []
 
@@ -449,7 +449,7 @@ def solid_alone(monkeypatch, moved):
         for effects, by in zip((scene.effects for scene in scenes), (shift, 0.0), strict=True):
             run = simulate(replace(plain, effects=effects), "modal")
             edge = replace(run.restitution.edge, e=0.4 + by)
-            energy = replace(run.energy, vibration=0.02)
+            energy = replace(run.energy, vibration=0.02, vibration_check=check, vibration_floor=1e-6)
             made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
         return made
 
@@ -466,6 +466,16 @@ def test_layers_are_decided_by_finite_elements_alone_on_two_meshes(monkeypatch):
     assert any("no reduced model of a barrier of layers" in note for note in found.notes)
     case = dict(document(found)["basis"])["case"]
     assert "tip A, 0.168 kg, on 2 mm of steel-4340 on aluminium-6061-t6" in case
+
+
+def test_vibration_is_not_known_better_than_its_two_counts_agree(monkeypatch):
+    """Both meshes give the same energy by chance; the counts by modes and without them differ."""
+    for check, floor in ((0.0215, 0.0015), (0.02, 1e-6)):
+        solid_alone(monkeypatch, [0.2, 0.19], check)
+        here = assess(load("layered"), budget_s=1e5).here
+        assert here.E_vib_band == pytest.approx(floor)
+        assert here.errors["vibration"] == pytest.approx(floor)
+        assert f"at least {100 * floor:.2g} % of E_0" in here.source
 
 
 def test_a_plate_thinner_than_its_contact_is_wide_is_decided_by_finite_elements_alone(monkeypatch):
