@@ -18,6 +18,8 @@ from fem_impact.tables.text import plain
 STUDY, FIGURE = "cost", "error-against-time"
 WANTED = 0.02
 """Error that is asked for where none is named, over the scale of the quantity."""
+ERRORS = (0.1, 0.05, WANTED, 0.01)
+"""Errors whose price the first table tells, over the scale of the quantity."""
 SHOWN = ("t5b", "t6-17", "t3-machined")
 """Sets of the figure over all sets: a short rod, the same less inclined, and a long one."""
 FRONT = "front: nothing is both quicker and more accurate; what ran at one place of the grid left out"
@@ -38,7 +40,8 @@ GUIDE = (
     "energy: 2 % of E_vib are then at least 1e-4 of E_0.",
     "A time is the processor time of all runs of a setting with their set-up, on one core; two free cores "
     "take half of it where a setting has several runs.",
-    "A mesh is run at several places of the barrier's grid (four, the finest at two), and their mean counts; "
+    "A mesh is run at several places of the barrier's grid (four, the third and finer ones at two), and "
+    "their mean counts; "
     "the default run, with its savings or without, and those with other elements or steps have one place: "
     "their error may be small by chance, so they are neither on the front nor chosen for a wanted error.",
     "Without savings no small elements are made heavier, but those of the thin rows at the surface "
@@ -113,7 +116,7 @@ def paper_report(costs: Mapping[str, CostStudy]) -> StudyReport:
         "What accuracy costs",
         [answer, *failed],
         [_picture(shown, TARGETED, panels)],
-        [_group_sheet(groups), _setting_sheet(costs)],
+        [_price_sheet(costs), _group_sheet(groups), _setting_sheet(costs)],
         GUIDE,
         conclusions=[(FIGURE, answer)],
     )
@@ -223,6 +226,27 @@ def _savings(costs: Mapping[str, CostStudy]) -> str:
     )
 
 
+def _price_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
+    """Return the table that says what an error costs: sets that reach it, median and worst of their times."""
+    listed = [cost for cost in costs.values() if any(one.band for one in cost.settings)]
+    rows: list[tuple[Cell, ...]] = []
+    for error in ERRORS:
+        cells: list[Cell] = []
+        for name in TARGETED:
+            best = [best_group(cost.settings, (name,), error) for cost in listed]
+            times = [one.two_cores_s for one in best if one and one.band[name] <= error]
+            cells += [plain(median(times)), plain(max(times))] if times else [None, None]
+            cells.append(f"{len(times)} of {len(listed)}")
+        rows.append((f"{100 * error:g}", *cells))
+    columns = ("median, s", "longest, s", "reached in")
+    head = ("error, %", *(f"{name}: {title}" for name in TARGETED for title in columns))
+    caption = (
+        "For x % of error expect y s: wall time on two free cores of the quickest several meshes whose band "
+        "is at most so wide, over the sets that reach it; of E_vib in % of itself, at least of 0.5 % of E_0"
+    )
+    return Sheet("price", caption, Table.of(head, rows, left=range(len(head))))
+
+
 def _group_sheet(groups: Mapping[str, Sequence[Group]]) -> Sheet:
     columns = ("value", "band, % (scatter)", "meshes, mm", "off", "s on two cores")
     head = ("set", *(f"{name}: {title}" for name in TARGETED for title in columns))
@@ -232,7 +256,7 @@ def _group_sheet(groups: Mapping[str, Sequence[Group]]) -> Sheet:
         "none, the finest two; off: distance from the limit of all meshes over the sum of both bands, above "
         "1 where they contradict each other"
     )
-    return Sheet("pairs", caption, Table.of(head, rows, left=range(len(head))))
+    return Sheet("meshes", caption, Table.of(head, rows, left=range(len(head))))
 
 
 def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:

@@ -127,6 +127,12 @@ def test_the_page_over_all_sets_counts_what_several_meshes_reach():
     )
     assert "One default run takes 4 to 4 s on one core" in answer
     assert [panel.title for panel in report.pictures[0].panels] == ["t5b: e", "t5b: E_vib"]
-    pairs, settings = (sheet.table for sheet in report.sheets)
-    assert pairs.cells("e: band, % (scatter)") == ["**1.5** (0.1)", "2.5 (0.1)"]
+    assert [sheet.name for sheet in report.sheets] == ["price", "meshes", "settings"]
+    price, meshes, settings = (sheet.table for sheet in report.sheets)
+    assert price.cells("error, %") == ["10", "5", "2", "1"]
+    for name in ("e", "E_vib"):
+        assert price.cells(f"{name}: reached in") == ["2 of 2", "2 of 2", "1 of 2", "0 of 2"]
+        assert price.cells(f"{name}: median, s")[:3] == ["35", "35", "30"]
+        assert price.cells(f"{name}: longest, s")[:3] == ["40", "40", "30"]
+    assert meshes.cells("e: band, % (scatter)") == ["**1.5** (0.1)", "2.5 (0.1)"]
     assert settings.cells("mesh") == ["4 ± 0.1 / 4 ± 0.1, 10 s"] * 2
