@@ -242,7 +242,8 @@ def _price_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     head = ("error, %", *(f"{name}: {title}" for name in TARGETED for title in columns))
     caption = (
         "For x % of error expect y s: wall time on two free cores of the quickest several meshes whose band "
-        "is at most so wide, over the sets that reach it; of E_vib in % of itself, at least of 0.5 % of E_0"
+        "is at most so wide, over the sets that reach it; of E_vib in % of itself, at least of 0.5 % of E_0; "
+        "e on this page is that by the tip's own arms"
     )
     return Sheet("price", caption, Table.of(head, rows, left=range(len(head))))
 

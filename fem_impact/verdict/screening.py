@@ -24,11 +24,13 @@ class Screening:
     ----------
     period, duration : first bending period T1 and contact time tau of the first contact, s
     gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
+    straight : whether the rod strikes along its axis
     """
 
     period: float
     duration: float
     gamma: float
+    straight: bool
 
     @property
     def ratio(self) -> float:
@@ -38,6 +40,8 @@ class Screening:
     @property
     def published(self) -> str:
         """What the published limit, gamma <= 26.45 m^-0.3815, says."""
+        if self.straight:  # it is about e that does not change with the inclination
+            return f"the published limit {LIMIT:g} is for inclined rods: it says nothing of a straight impact"
         rigid = bool(behaves_rigidly(self.gamma))
         said = "the rod rebounds as a rigid body" if rigid else "the rod does not rebound as a rigid body"
         return f"the published limit {LIMIT:g} says: {said}"
@@ -55,5 +59,8 @@ def screening(scene: Scene) -> Screening:
     """Return the closed-form estimates of a scene with the effects that it calls for."""
     bodies = bodies_of(resolved(scene))
     return Screening(
-        bending_period(scene), float(contact_estimate(bodies).duration), float(projectile(scene).gamma)
+        bending_period(scene),
+        float(contact_estimate(bodies).duration),
+        float(projectile(scene).gamma),
+        scene.impact.angle == 0,
     )

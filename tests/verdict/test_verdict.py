@@ -602,3 +602,9 @@ impact = {angle = "40 deg", height = "1.5 m"}
     said = case_sentence(read_toml(tmp_path / "lead.toml"))
     assert "rod of copper to 120 mm, lead to 150 mm, hemispherical nose, " in said
     assert "rod of rod-steel, tip B, " in case_sentence(load("t5b"))
+
+
+def test_the_published_limit_says_nothing_of_a_straight_impact():
+    straight = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
+    assert "nothing of a straight impact" in screening(straight).sentence
+    assert "rebounds as a rigid body" in screening(load("t5b")).sentence
