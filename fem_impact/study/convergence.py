@@ -114,8 +114,8 @@ def _answer(rows: Sequence[Row]) -> list[str]:
     away = max(abs(row["values"][-1] - row["fit"].value) for row in of_e)
     size, band = 1e3 * of_e[0]["tip_size_m"][-1], max(row["fit"].band for row in of_e)
     return [
-        f"On the finest mesh, {size:.3g} mm at the tip, e (paper's arms) of {len(of_e)} sets lies at most {away:.2g} from "
-        f"its limit for vanishing elements; the bands of the limits reach ± {band:.2g}."
+        f"On the finest mesh, {size:.3g} mm at the tip, e (paper's arms) of {len(of_e)} sets lies at most "
+        f"{away:.2g} from its limit for vanishing elements; the bands of the limits reach ± {band:.2g}."
     ]
 
 
