@@ -13,6 +13,7 @@ from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.study.gamma_points import CLOSE, LEAST, VIBRATION, Point, among
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop
+from fem_impact.tables.text import rounded_up
 from rigid import LIMIT
 
 PLAIN = {False: "frictionless", True: "machined"}
@@ -192,20 +193,24 @@ def beside_modes(curves: Curves, yields: bool) -> str:
 def how_sure(points: Sequence[Point]) -> str:
     """Return how many points have a band as narrow as wanted, and how many are gaps."""
     close, gaps = sum(p.close for p in points), sum(bool(p.gap) for p in points)
+    doubted = sum(p.close and p.doubted for p in points)
     residuals = [abs(p.run.energy.residual) for p in points if isinstance(p.run, Outcome)]
     return (
         f"Two meshes give vibration of {close} of {len(points)} points within {CLOSE:.0%} of itself or "
-        f"{LEAST:g} of E_0; {gaps} have no value or no band. The largest residual of their ledgers is "
+        f"{LEAST:g} of E_0; in {doubted} of them its two counts, by modes and without them, differ by more. "
+        f"{gaps} points have no value or no band. The largest residual of their ledgers is "
         f"{max(residuals, default=0.0):.1g} of E_0."
     )
 
 
 def share(point: Point) -> str:
-    """Return vibration of a point with its band, in per cent."""
+    """Return vibration of a point with its band, rounded up to 0.01, in per cent."""
     value, band = 100 * _value(point), point.band(VIBRATION)
-    if band is not None and value < 0.0:
+    if band is None:
+        return f"{value:.2g} %"
+    if value < 0.0:
         return f"less than {value + 100 * band:.2f} %"
-    return f"{value:.2g} %" if band is None else f"{value:.2f} ± {100 * band:.2f} %"
+    return f"{value:.2f} ± {rounded_up(100 * band, 2)} %"
 
 
 def _value(point: Point) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 
+from fem_impact.cost.limits import vibration_floor
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.groups import ContactInterval
@@ -86,10 +87,20 @@ class Point:
         return "" if self.band(VIBRATION) is not None else self.run.reasons["mesh_band"]
 
     @property
+    def wanted(self) -> float:
+        """Half-width of the band of vibration that is wanted, of E_0."""
+        return max(CLOSE * abs(self.value(VIBRATION) or 0.0), LEAST)
+
+    @property
     def close(self) -> bool:
         """Whether vibration has a band as narrow as wanted."""
-        value, band = self.value(VIBRATION), self.band(VIBRATION)
-        return value is not None and band is not None and band <= max(CLOSE * abs(value), LEAST)
+        band = self.band(VIBRATION)
+        return band is not None and band <= self.wanted
+
+    @property
+    def doubted(self) -> bool:
+        """Whether the run's two counts of vibration differ by more than the band that is wanted."""
+        return isinstance(self.run, Outcome) and vibration_floor([self.run]) > self.wanted
 
 
 @dataclass(frozen=True, slots=True)

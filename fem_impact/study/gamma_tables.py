@@ -11,6 +11,7 @@ from fem_impact.study.gamma_findings import Curves
 from fem_impact.study.gamma_points import FORCE, RESTITUTION, VIBRATION, Point, among
 from fem_impact.study.rods import PAPER_RODS, STATES, Drop
 from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.text import rounded_up
 
 KINDS = {False: "elastic", True: "yielding"}
 BANDED = (VIBRATION, RESTITUTION, "mu", "Omega_rad_per_s", FORCE)
@@ -56,7 +57,7 @@ def _with_band(point: Point, key: str, scale: float, places: int) -> str | None:
     value, band = point.value(key), point.band(key)
     if value is None:
         return None
-    return f"{scale * value:.{places}f}" + ("" if band is None else f" ± {scale * band:.{places}f}")
+    return f"{scale * value:.{places}f}" + ("" if band is None else f" ± {rounded_up(scale * band, places)}")
 
 
 def gap_table(points: Sequence[Point]) -> Table:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from decimal import Decimal
+from math import ceil
 
 WIDTH = 79
 
@@ -33,3 +34,14 @@ def plain(value: float, digits: int = 3) -> str:
     """
     rounded = f"{value:.{digits}g}"
     return f"{Decimal(rounded):f}" if 1e-5 <= abs(value) < 1e6 else rounded
+
+
+def rounded_up(value: float, places: int) -> str:
+    """Return a number with ``places`` after the point, never less than it is: the half-width of a band.
+
+    Examples
+    --------
+    >>> rounded_up(0.0034, 2), rounded_up(0.03, 2)
+    ('0.01', '0.03')
+    """
+    return f"{ceil(round(value * 10**places, 6)) / 10**places:.{places}f}"

@@ -17,7 +17,7 @@ from fem_impact.scene.types import Accuracy, Save
 from fem_impact.study import document
 from fem_impact.study.document import Request
 from fem_impact.study.gamma import ANGLES, FULL, MOST, SETS, conclude, line, members, others, plan, reduced
-from fem_impact.study.gamma_findings import Curves, other_inputs, share
+from fem_impact.study.gamma_findings import Curves, how_sure, other_inputs, share
 from fem_impact.study.gamma_points import (
     FIRST,
     SLACK,
@@ -186,7 +186,7 @@ def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
     assert "(0.24 m rod)" in found.text
     assert "largest at gamma 70" in found.text and "the longest rod" in found.text
     assert f"gamma <= {LIMIT} calls the 0.08 m rod rigid" in found.text
-    assert "0 have no value or no band" in found.text
+    assert "0 points have no value or no band" in found.text
     assert json.loads((tmp_path / "study.json").read_text())["runs"] == len(results)
     assert {"vibration", "later-contacts"} == drawn.keys()
     over_gamma = drawn["vibration"].panels[0].series
@@ -272,9 +272,30 @@ def test_other_inputs_are_told_beside_the_point_of_the_curve(monkeypatch):
     assert other_inputs(Curves(points[:1], points[1:], [], []), yields=False) == ""
 
 
+def test_points_whose_two_counts_of_vibration_differ_are_counted():
+    counts = {"E_vib_over_E_0": 0.05, "E_vib_floor_over_E_0": 1e-6, "contacts": [TOUCH], "tip_size_m": 1e-4}
+    meshes = replace(FULL, finer=())
+    points = []
+    for name, check in (("sure", 0.0501), ("apart", 0.0526)):
+        one = Member(name, Drop(0.24).scene(), Drop(0.24))
+        (own,), (second,) = (one.jobs(factor) for factor in (meshes.own, meshes.second))
+        runs = {own.name: outcome(**counts, E_vib_check_over_E_0=check), second.name: outcome(**counts)}
+        runs[second.name] = altered(runs[second.name], tip_size_m=2e-4)
+        points.append(point_of(one, meshes, runs))
+    assert [point.doubted for point in points] == [False, True]
+    assert "of 2 of 2 points within 5% of itself or 0.0002 of E_0; in 1 of them its two counts" in how_sure(
+        points
+    )
+
+
 def test_vibration_below_zero_is_told_as_a_bound(monkeypatch):
     point = Point("rod", Drop(0.08), Failure("rod", "none"), None, None, None, None)
-    for value, band, told in ((-8e-4, 6.1e-3, "less than 0.53 %"), (2.4e-3, 3e-4, "0.24 ± 0.03 %")):
+    cases = (
+        (-8e-4, 6.1e-3, "less than 0.53 %"),
+        (2.4e-3, 3e-4, "0.24 ± 0.03 %"),
+        (2.4e-3, 3.4e-6, "0.24 ± 0.01 %"),
+    )
+    for value, band, told in cases:
         monkeypatch.setattr(Point, "value", lambda self, name, v=value: v)
         monkeypatch.setattr(Point, "band", lambda self, name, b=band: b)
         assert share(point) == told
