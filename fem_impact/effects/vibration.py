@@ -33,9 +33,9 @@ EFFECT = Effect(
     "vibration",
     "The rod is elastic: longitudinal and bending waves take energy, which rigid theory leaves out.",
     "The rod is rigid behind its nose, which alone deforms.",
-    "T1/tau, longest period of the rod over contact time",
+    "longest period that the impact excites in the rod, over the contact time",
     0.1,
-    "a half-sine pulse leaves ((2 tau/T1)^2 - 1)^-2 of the energy that a blow gives, 1e-4 at T1/tau = 0.2; "
+    "a half-sine pulse leaves ((2 tau/T1)^2 - 1)^-2 of the energy that a blow gives, 1e-4 at 0.2; "
     "a yielding contact lets go in about half its time",
     number,
     fill,

@@ -50,8 +50,8 @@ class Screening:
     def sentence(self) -> str:
         """Both numbers in one sentence."""
         return (
-            f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, contact "
-            f"{plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
+            f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, estimated "
+            f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
         )
 
 
