@@ -195,9 +195,10 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
     rows = reduced_table()
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
-        f"Known error of the reduced model: its difference from finite elements over {len(rows)} yielding "
-        "scenes (the measured sets, and scenes drawn at random on coarser meshes), as the values that half "
-        f"of the scenes and nine tenths of them stay below: {', '.join(parts)}.",
+        "Known error of each number of the reduced model by itself, not of a change by vibration: its "
+        f"difference from finite elements over {len(rows)} yielding scenes (the measured sets, and scenes drawn "
+        "at random on coarser meshes), as the values that half of the scenes and nine tenths of them stay "
+        f"below: {', '.join(parts)}.",
     ]
     own = next((row for row in rows if row["name"] == scene.measured), None)
     if own:
