@@ -196,9 +196,9 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
     sentences = [
         "Known error of each number of the reduced model by itself, not of a change by vibration: its "
-        f"difference from finite elements over {len(rows)} yielding scenes (the measured sets, and scenes drawn "
-        "at random on coarser meshes), as the values that half of the scenes and nine tenths of them stay "
-        f"below: {', '.join(parts)}.",
+        f"difference from finite elements over {len(rows)} yielding scenes (the measured sets, and scenes "
+        "drawn at random on coarser meshes), as the values that half of the scenes and nine tenths of them "
+        f"stay below: {', '.join(parts)}.",
     ]
     own = next((row for row in rows if row["name"] == scene.measured), None)
     if own:
