@@ -75,7 +75,8 @@ class Turned:
         thin = np.flatnonzero(inner >= outer)
         if len(thin):
             place, r, R = z[thin[0]] * 1e3, inner[thin[0]] * 1e3, outer[thin[0]] * 1e3
-            raise ShapeError(f"the bore of {r:.3g} mm at {place:.3g} mm leaves no wall under {R:.3g} mm")
+            walls = f"radius {r:.3g} mm at {place:.3g} mm leaves no wall under radius {R:.3g} mm"
+            raise ShapeError(f"the bore of {walls}")
 
     def _check_density(self) -> None:
         ends = [0.0, *(end for end, _ in self.density)]

@@ -45,8 +45,10 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     turned = or_none(barrier.Omega_b) is not None
     rows = (restitution, *_MOTION, *(_BARRIER if moved else ()), *(_TURNED if turned else ()))
     lines += [_motion(outcome, *row) for row in rows]
-    stop = "" if outcome.validity.finished else ", at the stop of this unfinished run"
-    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{stop}:"]
+    of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", on the finest mesh"
+    if not outcome.validity.finished:
+        of = ", at the stop of this unfinished run"
+    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{of}:"]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]
     lines += [_share("not accounted for", outcome.energy.residual)]

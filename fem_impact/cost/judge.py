@@ -181,7 +181,10 @@ def default_sentence(settings: Sequence[Judged], names: Sequence[str]) -> str:
                 f"{plain(100 * error, 2)} % in {name}" for name, error in errors if error is not None
             )
             took = f"{plain(one.cpu_s, 2)} s of processor time"
-            return f"The default run takes {took}; its error is at most {told}."
+            return (
+                f"The default run takes {took}; its error is at most {told}. It ran at one place of the "
+                "grid, so that may be small by chance, and it is not compared with the others."
+            )
     return ""
 
 

@@ -332,10 +332,13 @@ class Heat:
     power: Num = key("friction_power_W", "W", "Highest friction power, whole contact.")
     flux: Num = key("friction_flux_W_per_m2", "W/m2", "Highest friction power over the true contact patch.")
     rise: Num = key(
-        "flash_rise_K", "K", "Highest mean rise of the patch's temperature by friction; null where it melts."
+        "flash_rise_K",
+        "K",
+        "Highest mean rise of the patch's temperature by friction; null where it melts.",
+        True,
     )
     temperature: Num = key(
-        "flash_temperature_K", "K", "Highest mean temperature of the patch; null where a body melts."
+        "flash_temperature_K", "K", "Highest mean temperature of the patch; null where a body melts.", True
     )
     ignition: Num = key(
         "ignition_temperature_K", "K", "Temperature that the contact must not reach, from the scene."

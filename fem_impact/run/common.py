@@ -345,7 +345,7 @@ def heat(
 ) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
     ambient, ignition = bodies.scene.heating.ambient, bodies.scene.heating.ignition
-    bound, temperature = flash_bound(bodies), below_melting(bodies.scene, ambient + flash.peak)
+    temperature = below_melting(bodies.scene, ambient + flash.peak)
     return Heat(
         patch=patch,
         power=power,
@@ -354,9 +354,23 @@ def heat(
         temperature=temperature,
         ignition=ignition,
         time_above_ignition=flash.time_above(ignition - ambient),
-        bound=below_melting(bodies.scene, ambient + bound) if bound < inf else Unknown(HARD),
+        bound=_bound(bodies, ambient),
         less_vibration=less_vibration,
     )
+
+
+def _bound(bodies: ContactBodies, ambient: float) -> Num:
+    """Return the temperature, K, that no spot exceeds; without both melting points none can be told."""
+    rise, known_of = flash_bound(bodies), melting(bodies.scene)
+    unstated = [f"heating.{body}_melting" for body in ("rod", "barrier") if body not in known_of]
+    if rise == inf:
+        return Unknown(HARD)
+    if unstated:
+        missing = " and ".join(unstated)
+        return Unknown(
+            f"not resolved: conduction of heat alone has no end where a body melts; state {missing}"
+        )
+    return below_melting(bodies.scene, ambient + rise)
 
 
 def below_melting(scene: Scene, temperature: float) -> Num:

@@ -6,7 +6,7 @@ from dataclasses import fields, replace
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from fem_impact.outcome.groups import ARMS, Markers
+from fem_impact.outcome.groups import ARMS, Heat, Markers
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.plan.cells import LEAST, advice, contact_edge, contact_radius, kind
@@ -60,13 +60,15 @@ def _too_narrow(result: SolidResult) -> str:
 
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:
-    """Return an outcome whose coefficients, impulse ratio, shares and peak force are not known."""
+    """Return an outcome whose coefficients, impulse ratio, shares, peak force and heat are not known."""
+    heat = unknown(Heat, reason.reason)
     arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
     return replace(
         outcome,
         restitution=replace(outcome.restitution, mu=reason, **arms),
         energy=_blank(outcome.energy, reason, LEDGER),
         contact=replace(outcome.contact, peak_force=reason),
+        heat=outcome.heat if isinstance(outcome.heat.power, Unknown) else heat,
     )
 
 

@@ -11,6 +11,10 @@ from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
 from fem_impact.scene.parameter import Parameter
 
+MOST_STRAIN = 0.1
+"""Elastic strain that no metal bears: a perfect crystal shears at G/(2 pi) (Frenkel 1926), in tension it
+yields at sqrt(3) G/(2 pi), a tenth of E."""
+
 
 @dataclass(frozen=True, slots=True)
 class JohnsonCookRate:
@@ -100,6 +104,14 @@ def _check_strengths(metal: Material) -> None:
     for key in ("ultimate_stress", "hardening", "rate"):
         if getattr(metal, key) not in (None, inf) and not metal.yields:
             raise SceneError("means nothing without yield_stress.", key=key, remedy="Leave it out.")
+    if metal.yields and metal.yield_stress > MOST_STRAIN * metal.E:
+        raise SceneError(
+            f"is too soft for a yield stress of {metal.yield_stress / 1e6:.4g} MPa: it would be stretched by "
+            f"{metal.yield_stress / metal.E:.2g} of its length, no metal by more than {MOST_STRAIN:g}.",
+            key="E",
+            value=f"{metal.E / 1e9:.4g} GPa",
+            remedy="Is its unit right? Metals have 10 to 400 GPa.",
+        )
     if metal.ultimate_stress < metal.yield_stress:
         raise SceneError(
             "is below the yield stress.",

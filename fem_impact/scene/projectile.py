@@ -157,7 +157,9 @@ def _check_tip(rod: ProjectileSpec) -> None:
             f'does not fit tip "{rod.tip}": a plain tip has radius 0, the others have a radius above 0.',
             key="tip_radius",
             value=f"{rod.tip_radius * 1e3:.3g} mm",
-            remedy='Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
+            remedy="Leave tip_radius out, or choose another tip."
+            if rod.tip == "plain"
+            else 'Change tip_radius, or choose tip = "plain" for a sharp-edged flat face.',
         )
 
 

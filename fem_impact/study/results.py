@@ -196,7 +196,7 @@ def _ended(row: Row, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(columns))]
     values, validity = row.outcome.to_dict(), row.outcome.validity
-    reason = "" if validity.finished else validity.stopped_because
+    reason = row.outcome.reasons.get("e_edge", "") if validity.finished else validity.stopped_because
     cells = (values[name] for name in columns)
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 

@@ -156,7 +156,8 @@ def _heat(run: Outcome) -> str:
     )
     return (
         f"the patch reaches {heat.temperature:.0f} K in the mean (friction alone; conduction of heat into "
-        f"both bodies: Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035); {spot}."
+        "both bodies: Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), by this mesh: its error is "
+        f"not known, and finer elements may give more; {spot}."
     )
 
 

@@ -57,7 +57,7 @@ def multiplied(metal, stiff, dense):
 
 def numbers(outcome):
     """Return e, mu and the known shares of E_0, but for the work above a depth that does not scale."""
-    names = {one.name for one in fields(outcome.energy)} - {"E_0", "skin"}
+    names = {one.name for one in fields(outcome.energy)} - {"E_0", "skin", "skin_rod", "skin_barrier"}
     shares = {name: or_none(getattr(outcome.energy, name)) for name in names}
     known = {name: value for name, value in shares.items() if isinstance(value, float)}
     return known | {"e": outcome.restitution.edge.e, "mu": outcome.restitution.mu}

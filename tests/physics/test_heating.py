@@ -129,8 +129,7 @@ def test_the_watch_finds_all_heat_and_the_patch(barrier, tip):
     assert heat == pytest.approx(pushed * 0.5 * (6.0 + last), rel=0.1)
     assert np.average(watch.speed, weights=watch.power) == pytest.approx(heat / pushed, rel=0.15)
     assert "begins to melt" in found.heat.temperature.reason  # an elastic steel tip is pressed hard
-    less = found.restitution.edge.E_lt - found.energy.vibration
-    assert found.heat.less_vibration == pytest.approx(less)
+    assert "did not finish" in found.heat.less_vibration.reason
 
 
 def test_round_off_is_no_sliding_speed():
@@ -220,6 +219,14 @@ def test_a_temperature_above_the_melting_point_is_not_resolved(melting, resolved
         assert f"gives {bound:.0f} K, above 700 K, where rod-steel begins to melt" in heat.bound.reason
     hot = simulate(changed(other, "heating.barrier_melting", "310 K"), "rigid").heat
     assert hot.rise == hot.temperature and "above 310 K, where plate-steel begins" in hot.rise.reason
+
+
+def test_without_both_melting_points_no_bound_is_told():
+    scene = replace_all(
+        load("t5b"), {"projectile.material": "stainless-304", "effects": ["auto", "contact-heating"]}
+    )
+    told = simulate(scene, "rigid").heat
+    assert told.temperature > 293.0 and told.bound.reason.endswith("state heating.rod_melting")
 
 
 def test_melting_points_stand_beside_shipped_materials_with_their_sources():

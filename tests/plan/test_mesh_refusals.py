@@ -53,7 +53,7 @@ def test_a_bore_that_begins_in_a_rounding_is_refused_with_what_works(fault):
     begun = process_time()
     with pytest.raises(SceneError, match=rf'bore\[{number}\] = "z = {z} mm": cannot be meshed') as refused:
         plan(scene(body))
-    assert process_time() - begun < 1.0
+    assert process_time() - begun < 3.0  # .02 to .2 s on a free core
     found = re.search(r"Give z = (\S+ mm) there", refused.value.remedy)
     points = [list(row) for row in body["bore"]]
     points[number - 1][0] = found[1]

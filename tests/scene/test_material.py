@@ -127,6 +127,7 @@ def test_a_mistake_is_named_with_key_value_and_remedy(key, value, words):
         ({"ultimate_stress": math.inf}, "is missing beside yield_stress"),
         ({"yield_stress": math.inf}, "ultimate_stress.*means nothing without yield_stress"),
         ({"ultimate_stress": 300e6}, "below the yield stress"),
+        ({"yield_stress": 22e9, "ultimate_stress": 23e9}, "too soft for a yield stress of 2.2e.04 MPa"),
         ({"yield_stress": math.inf, "ultimate_stress": math.inf, "hardening": 1e9}, "means nothing"),
     ],
 )

@@ -27,7 +27,7 @@ from fem_impact.solid.run import solve
 def result():
     """A gentle blow: one node of the 1.6 mm mesh is pressed; e, mu and Omega depend on its place."""
     short = {"length": 0.06, "v_n": -0.3, "v_t": -0.3, "tip": 1.6e-3, "max_time": 4e-4}
-    scene = scenes.scene("vibration", "friction", "barrier-elastic", **short)
+    scene = scenes.scene("vibration", "friction", "barrier-elastic", "contact-heating", **short)
     return solve(plan(shipped.replace(scene, "accuracy.unresolved", "withhold")))
 
 
@@ -37,6 +37,7 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
     withheld = {name for name, why in outcome.reasons.items() if "the contact was not resolved" in why}
     shares = ("E_r", "E_vib", "E_vib_check", "W_friction", "E_plastic_rod", "E_plastic_barrier", "W_closing")
     assert {f"{share}_over_E_0" for share in shares} <= withheld
+    assert {"friction_power_W", "flash_rise_K", "flash_temperature_K", "flash_bound_K"} <= withheld
     assert {"mu", "e_edge", "e_m_edge", "e_impulse", "E_ln_edge_over_E_0", "peak_force_N"} <= withheld
     assert outcome.energy.E_0 > 0 and outcome.energy.residual < 1e-4 and outcome.restitution.edge.d_c > 0
     assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
@@ -47,6 +48,7 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
 def test_the_scene_may_ask_for_the_numbers_all_the_same(result):
     asked = shipped.replace(result.plan.scene, "accuracy.unresolved", "report")
     outcome = reduce(replace(result, plan=plan(asked)))
+    assert outcome.heat.power > 0
     assert 0.0 < outcome.restitution.edge.e < 2.0 and 0.0 < outcome.energy.rigid < 2.0
     assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
 
