@@ -122,7 +122,7 @@ def assess(
     Raises
     ------
     SceneError
-        The scene, tolerance or budget cannot be used.
+        The scene, tolerance or budget cannot be used, or ``solid`` is asked of a scene that has no mesh.
     RunError
         No model gives a restitution at the scene's inclination.
     """
@@ -183,8 +183,10 @@ def _solid(
     budget. One mesh alone counts where the reduced model, ``quick``, bears it out.
     """
     ladder, notes, more = Ladder.of(scene, *means), list[str](), ""
-    if quick is None:
-        ladder.require_mesh()
+    if refused := ladder.refused():
+        if quick is None or least == LEAST_PAIRS:
+            raise refused
+        return None, [f"Finite elements have no answer here: {refused}"], ""
     while not _decided(ladder, tolerance, quick, least):
         mesh = ladder.following()
         if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):

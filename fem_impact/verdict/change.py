@@ -13,6 +13,7 @@ from fem_impact.cost.limits import ONE_RUN, pair_limit, vibration_floor
 from fem_impact.cost.settings import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.cost.times import pace, planned_s
 from fem_impact.effects.slots import bodies_of
+from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
@@ -178,10 +179,14 @@ class Ladder:
         """Return a ladder on which nothing has run."""
         return cls(_meshless(scene), budget_s, workers, [], [])
 
-    def require_mesh(self) -> None:
-        """Raise the SceneError of a scene of which no mesh can be made."""
+    def refused(self) -> SceneError | None:
+        """Return why no mesh of the scene can be made, None where one can."""
         if self.following() is None:
-            planned_s(self._scenes(FAMILY[-1]), self.workers)
+            try:
+                planned_s(self._scenes(FAMILY[-1]), self.workers)
+            except SceneError as error:
+                return error
+        return None
 
     def following(self) -> Mesh | None:
         """Return the mesh to run next, None where no finer one can be made."""

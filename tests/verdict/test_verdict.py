@@ -282,6 +282,17 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
     assert assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5).fidelity == "modal"
 
 
+def test_a_scene_without_a_mesh_is_left_to_the_reduced_model_or_refused(monkeypatch):
+    refused = SceneError("needs a mesh of 1.6e+06 cells.", key="barrier.thickness")
+    monkeypatch.setattr(change_module, "can_be_made", lambda scene: False)
+    monkeypatch.setattr(change_module, "planned_s", lambda *_: (_ for _ in ()).throw(refused))
+    found = assess(load("t5b"), tolerance=0.02)
+    assert (found.fidelity, found.more) == ("modal", "")
+    assert f"Finite elements have no answer here: {refused}" in found.notes
+    with pytest.raises(SceneError, match=r"1\.6e\+06 cells"):
+        assess(load("t5b"), "solid")
+
+
 def test_a_mesh_that_cannot_be_made_is_passed_over(monkeypatch):
     ladder = Ladder.of(load("t5b"), 1.0, 2)
     assert ladder.following() == FAMILY[0]
