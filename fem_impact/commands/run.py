@@ -113,11 +113,17 @@ def _say_screening(scene: Scene, options: Options) -> None:
 
 def _setting(scene: Scene, options: Options) -> ChosenSetting | OwnLadder | None:
     """Return what is run for the target error of a scene; None where the scene gives a mesh."""
+    budget = stated_budget(options)
     if scene.accuracy.target is None:
+        if budget is not None:
+            remedy = """Add --set 'accuracy="5 %"', or leave it out."""
+            raise UsageError(
+                "is for a wanted error, and the scene gives a mesh.", key="--budget", remedy=remedy
+            )
         return None
     from fem_impact.cost.to_target import settle
 
-    return settle(scene, options.fidelity or None, cores(), stated_budget(options))
+    return settle(scene, options.fidelity or None, cores(), budget)
 
 
 def _say_plan(scene: Scene, chosen: str, options: Options) -> None:

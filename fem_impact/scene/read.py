@@ -207,6 +207,7 @@ def _projectile(table: Table) -> ProjectileSpec:
     }
     known = {key: value for key, value in table.items() if key not in own}
     _refuse_length(known)
+    _refuse_hollow(known)
     if own["segments"]:
         if "material" in known:
             raise SceneError("stands beside segments, which have their own.", key="material")
@@ -235,6 +236,16 @@ def _refuse_length(table: Table) -> None:
         remedy = f"Leave it out, or change projectile.{instead} instead."
         problem = f"is not stated for a {kind}: its length is {own}."
         raise SceneError(problem, key=key, value=table[key], remedy=remedy)
+
+
+def _refuse_hollow(table: Table) -> None:
+    """Refuse other words for a bore, and say how it is stated."""
+    for key in table:
+        if any(word in key for word in ("inner", "wall", "hollow")):
+            points = (
+                'bore = [["0 mm", "7 mm"], ["80 mm", "7 mm"]], each its place from the tip and inner radius'
+            )
+            raise SceneError(UNKNOWN_KEY, key=key, value=table[key], remedy=f"State the bore: {points}.")
 
 
 def _of_profile(table: Table, own: dict[str, Any]) -> ProjectileSpec:

@@ -33,6 +33,8 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("cost", "paper", "--target", "5 %"), "are about one scene"),
         (("cost", "t5b", "--target", "2"), "--target"),
         (("cost", "t5b", "--budget", "30"), "has no unit"),
+        (("run", "t5b", "--budget", "30"), "has no unit"),
+        (("run", "t5b", "--budget", "30 s"), "is for a wanted error, and the scene gives a mesh"),
         (("cost", "t5b", "--of", "speed"), "is not a quantity of interest"),
         (("cost", "t5b", "--finest", "0.5 mm"), "Give at most"),
         (("verify", "nope"), "is no problem of the verification"),

@@ -184,6 +184,13 @@ def test_a_shape_does_not_repeat_a_measured_set():
         read_dict({**scene({**rod, "bore": [["20 mm", "4 mm"], ["80 mm", "4 mm"]]}), "measured": "t5b"})
 
 
+@pytest.mark.parametrize("key", ["inner_diameter", "wall_thickness"])
+def test_another_word_for_a_bore_is_answered_with_the_bore(key):
+    tube = {"tip": "plain", "length": "80 mm", "diameter": "19 mm", key: "14 mm"}
+    with pytest.raises(SceneError, match=rf"projectile\.{key} = .*is not a known key.*bore = .*inner radius"):
+        read_dict(scene(tube))
+
+
 def test_a_flank_that_lies_on_the_barrier_is_refused():
     chamfer = {"profile": [["0 mm", "5 mm"], ["2 mm", "7 mm"], ["80 mm", "8 mm"]]}
     with pytest.raises(SceneError, match=r"flank of 2\.83 mm along the barrier"):
