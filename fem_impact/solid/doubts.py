@@ -10,8 +10,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-from scipy.interpolate import LinearNDInterpolator
-from scipy.spatial import Delaunay, KDTree
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.hexmodes import CORNERS, SIGNS
@@ -22,6 +20,8 @@ from fem_impact.solid.stepguard import when_and_where
 from meshes import SKIN
 
 if TYPE_CHECKING:
+    from scipy.spatial import Delaunay
+
     from fem_impact.solid.yielding import YieldingZone
 
 
@@ -45,6 +45,8 @@ def depths(model: Model) -> Array:
 
     Of the rod it is the distance from the tangential plane of its skin at the nearest node there.
     """
+    from scipy.spatial import KDTree  # as the last of a run: none waits for it before its first step
+
     x, places, mesh = model.start[0], model.layout.rod, model.geometry.rod.mesh
     under, points = -x, x[places]
     quads = mesh.faces_with(SKIN)
@@ -120,6 +122,8 @@ class SkinWatch:
         t, b, n = x[self.places].T
         if self.top is None:
             return self.ground.levelled(t, n, x) - self.ground.risen(x)
+        from scipy.interpolate import LinearNDInterpolator  # .4 s, for plates alone
+
         nodes, cells = self.top
         return np.asarray(n - LinearNDInterpolator(cells, x[nodes[:, 2]], fill_value=0.0)(t, np.abs(b)))
 
@@ -135,6 +139,8 @@ class SkinWatch:
 
 def _top(model: Model) -> tuple[Ints, Delaunay]:
     """Return the unknowns (k, 3) of the nodes on a meshed barrier's face, and triangles between them."""
+    from scipy.spatial import Delaunay
+
     x, places = model.start[0], model.layout.barrier
     nodes = places[np.abs(x[places[:, 2]]) < LEVEL]
     return nodes, Delaunay(x[nodes[:, :2]])
