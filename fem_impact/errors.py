@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any, ClassVar
 
 
@@ -103,16 +103,20 @@ EXIT_CODES: dict[int, str] = {
 }
 
 
-def did_you_mean(name: str, known: Iterable[str], otherwise: str) -> str:
+def _bare(name: str) -> str:
+    return name.lower().lstrip("-")
+
+
+def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable[[str], str] = _bare) -> str:
     """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near.
 
-    Hyphens before a name do not make it nearer to another.
+    Hyphens before a name do not make it nearer to another; ``bare`` may leave out other parts of names.
     """
     from difflib import get_close_matches
 
-    by_lower = {candidate.lower().lstrip("-"): candidate for candidate in known}
-    near = get_close_matches(name.lower().lstrip("-"), by_lower, 1)
-    return f"Did you mean {by_lower[near[0]]}?" if near else otherwise
+    by_bare = {bare(candidate): candidate for candidate in known}
+    near = get_close_matches(bare(name), by_bare, 1)
+    return f"Did you mean {by_bare[near[0]]}?" if near else otherwise
 
 
 def printable(text: str) -> str:

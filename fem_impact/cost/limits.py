@@ -151,19 +151,17 @@ def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, f
     )
 
 
-def vibration_floor(runs: Placed) -> float:
-    """Return the half-width, of E_0, below which no band of the vibration energy of these runs may be.
+def vibration_floor(run: Outcome) -> float:
+    """Return the half-width, of E_0, below which no band of the vibration energy of a run may be.
 
     It is the distance of the two independent counts of that energy, by modes and without them, or the floor
-    of the energy balance if that is more; a mean over the runs. Meshes that agree by chance cannot know the
-    energy better than their own two counts do.
+    of the energy balance if that is more. Meshes that agree by chance cannot know the energy better than
+    their own two counts do.
     """
-    floors = []
-    for energy in (run.energy for run in runs):
-        vibration, check = or_none(energy.vibration), or_none(energy.vibration_check)
-        apart = 0.0 if vibration is None or check is None else abs(check - vibration)
-        floors.append(max(apart, or_none(energy.vibration_floor) or 0.0))
-    return fmean(floors)
+    energy = run.energy
+    vibration, check = or_none(energy.vibration), or_none(energy.vibration_check)
+    apart = 0.0 if vibration is None or check is None else abs(check - vibration)
+    return max(apart, or_none(energy.vibration_floor) or 0.0)
 
 
 def mesh_means(runs: Placed) -> dict[str, float]:

@@ -61,14 +61,13 @@ def _too_narrow(result: SolidResult) -> str:
 
 def without(outcome: Outcome, reason: Unknown) -> Outcome:
     """Return an outcome whose coefficients, impulse ratio, shares, peak force and heat are not known."""
-    heat = unknown(Heat, reason.reason)
     arms = {name: _blank(getattr(outcome.restitution, name), reason, ARM_LENGTHS) for name in ARMS}
     return replace(
         outcome,
         restitution=replace(outcome.restitution, mu=reason, **arms),
         energy=_blank(outcome.energy, reason, LEDGER),
         contact=replace(outcome.contact, peak_force=reason),
-        heat=outcome.heat if isinstance(outcome.heat.power, Unknown) else heat,
+        heat=outcome.heat if isinstance(outcome.heat.power, Unknown) else unknown(Heat, reason.reason),
     )
 
 

@@ -100,7 +100,7 @@ class Point:
     @property
     def doubted(self) -> bool:
         """Whether the run's two counts of vibration differ by more than the band that is wanted."""
-        return isinstance(self.run, Outcome) and vibration_floor([self.run]) > self.wanted
+        return isinstance(self.run, Outcome) and vibration_floor(self.run) > self.wanted
 
 
 @dataclass(frozen=True, slots=True)

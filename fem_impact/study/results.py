@@ -45,14 +45,10 @@ def require_columns(names: Sequence[str]) -> None:
     UsageError
         With the nearest name, units left out.
     """
-    from difflib import get_close_matches
-
-    without_unit = {UNIT.sub("", name).lower(): name for name in COLUMNS}
     for name in names:
         if name not in COLUMNS:
-            near = get_close_matches(UNIT.sub("", name).lower(), without_unit, 1)
-            meant = f"Did you mean {without_unit[near[0]]}? " if near else ""
-            remedy = f"{meant}`fem-impact schema` lists and explains them."
+            meant = did_you_mean(name, COLUMNS, "", lambda text: UNIT.sub("", text).lower())
+            remedy = f"{meant} `fem-impact schema` lists and explains them.".lstrip()
             raise UsageError("is no column of an outcome.", key="columns", value=name, remedy=remedy)
 
 

@@ -184,7 +184,7 @@ def _solid(
     """
     ladder, notes, more = Ladder.of(scene, *means), list[str](), ""
     if refused := ladder.refused():
-        if quick is None or least == LEAST_PAIRS:
+        if quick is None or least:
             raise refused
         return None, [f"Finite elements have no answer here: {refused}"], ""
     while not _decided(ladder, tolerance, quick, least):

@@ -234,7 +234,7 @@ class Ladder:
             _difference(pair),
             error,
             E_vib,
-            max(share * E_vib, vibration_floor(pair[:1])),
+            max(share * E_vib, vibration_floor(pair[0])),
             *pair,
             told,
             ONE_MESH,
@@ -256,7 +256,7 @@ class Ladder:
         E_vib, of_vibration = pair_limit(
             known(fine[0].energy.vibration), known(coarse[0].energy.vibration), ratio
         )
-        floor = vibration_floor(fine[:1])
+        floor = vibration_floor(fine[0])
         of_vibration = max(of_vibration, floor)
         told = f"Finite elements on meshes of {self._size(0)} and {self._size(-1)} at the contact; "
         apart, expected = abs(_difference(fine) - _difference(coarse)), self._error(0)[1] + self._error(-1)[1]
