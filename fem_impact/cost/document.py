@@ -15,7 +15,7 @@ from fem_impact.tables.table import Cell, Column, Table
 WIDE = 400
 """Characters of a line of cost.txt, enough that no cell of its tables is wrapped."""
 NAMES = tuple(quantity.name for quantity in QUANTITIES)
-SCALARS = ("name", "kind", "fidelity", "tip_size_m")
+SCALARS = ("name", "kind", "fidelity", "tip_size_m", "places")
 COSTS = ("wall_s", "cpu_s", "two_cores_s", "element_steps", "peak_memory_MB")
 NUMBERS = tuple(f"{kind}_{name}" for kind in ("value", "error", "scatter", "band") for name in NAMES)
 COLUMNS = (*SCALARS, *COSTS, *NUMBERS, "front")

@@ -40,6 +40,7 @@ class Judged:
     element_steps : elements times time steps, None for a reduced model
     peak_memory_MB : of the largest run
     meshes : of a solid setting, the finest first
+    places : most places of the barrier's grid that a mesh of it is run at
     front : names of the quantities on whose Pareto front the setting lies
     """
 
@@ -47,6 +48,7 @@ class Judged:
     kind: str
     fidelity: str
     meshes: list[dict[str, Any]]
+    places: int
     tip_size_m: float | None
     value: dict[str, float | None]
     error: dict[str, float | None]
@@ -94,6 +96,7 @@ def judge(
         kind=setting.kind,
         fidelity=setting.fidelity,
         meshes=[asdict(mesh) for mesh in setting.meshes],
+        places=setting.places,
         tip_size_m=or_none(flat[0].cost.tip_size),
         value=value,
         error={name: _error(number, truth.get(name), own.get(name)) for name, number in value.items()},
@@ -195,14 +198,14 @@ def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
 def best_group(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the several meshes whose bands meet the target most quickly on two cores.
 
-    If none do, the finest two: the smallest band may be small by chance.
+    If none do, the finest two at most places: the smallest band may be small by chance.
     """
     groups = [one for one in settings if one.band]
     good = [one for one in groups if all(one.band[name] <= target for name in names)]
     if good:
         return min(good, key=lambda one: one.two_cores_s)
     pairs = [one for one in groups if len(one.meshes) == 2]
-    return max(pairs, key=lambda one: [mesh["finer"] for mesh in one.meshes], default=None)
+    return max(pairs, key=lambda one: (*(mesh["finer"] for mesh in one.meshes), one.places), default=None)
 
 
 def group_sentence(

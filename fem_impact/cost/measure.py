@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-SCHEMA = "fem-impact/cost/4"
+SCHEMA = "fem-impact/cost/5"
 BRIEF = 5e-6  # s, end of the run that compiles the kernels: within the first contact
 
 

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from math import inf
-from time import perf_counter
+from math import inf, sqrt
 
-from fem_impact.cost.lanes import below, side_by_side
-from fem_impact.cost.limits import ONE_RUN, Placed, mesh_limits, truths
+from fem_impact.cost.lanes import Budget, below
+from fem_impact.cost.limits import EVEN, ONE_RUN, Placed, mesh_limits, truths
 from fem_impact.cost.quantities import TARGETED
-from fem_impact.cost.settings import placed, rungs
-from fem_impact.cost.times import LONGER, about_s, pace, planned_s
+from fem_impact.cost.settings import FEW, PLACES, placed, rungs
+from fem_impact.cost.times import LONGER, about_s, planned_s
 from fem_impact.errors import RunError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
@@ -21,6 +20,8 @@ from fem_impact.tables.text import plain
 
 ALONE = Unknown("one mesh alone cannot estimate its own error")
 NOT_MEASURED = Unknown("no scene near this one was measured")
+SETTLED = EVEN[len(PLACES)] / EVEN[FEW] * sqrt(FEW / len(PLACES))
+"""Share of the scatter at few places that is left at all of them."""
 OVER = "The runs for the wanted error took {:.3g} s, more than the budget of {:.3g} s."
 
 
@@ -28,15 +29,15 @@ OVER = "The runs for the wanted error took {:.3g} s, more than the budget of {:.
 class OwnLadder:
     """Meshes from coarse to fine until the target error is reached or the next would take too long.
 
-    The coarsest runs once in any case, and what it took forecasts the others (`pace`). Each mesh runs at its
-    places of the barrier's grid, or at one where two meshes at all places do not fit the budget. Where two
-    meshes do not fit at all, the one run tells no error.
+    The coarsest runs once in any case, and what it took forecasts the others. Each mesh runs at two places of
+    the barrier's grid, and at its other places where they alone bring the target; or at one where two meshes
+    at two places do not fit the budget. Where two meshes do not fit at all, the one run tells no error.
 
     Attributes
     ----------
     target : relative error; budget_s : wall time, s
     reason : why no stored setting is taken
-    meshes : scenes of each mesh, from coarse to fine, at its places
+    meshes : scenes of each mesh, from coarse to fine, at all of its places
     least_s, pair_s : planned wall times, s, of what runs in any case, and of two meshes at one place each
     """
 
@@ -79,7 +80,7 @@ class OwnLadder:
         RunError
             A run of the coarsest mesh did not finish.
         """
-        climb = Climb(self.meshes, self.budget_s, options, workers, perf_counter())
+        climb = Climb(self.meshes, Budget(self.budget_s, workers), options, self.target)
         climb.begin()
         ended = ""
         while not ended and climb.achieved > self.target:
@@ -91,7 +92,7 @@ class OwnLadder:
 
         ``ended`` says why the target is not reached and what more would cost, empty where it is.
         """
-        meshes, wall_s, options = climb.done, climb.spent_s, climb.options
+        meshes, wall_s, options = climb.done, climb.budget.spent_s, climb.options
         finest, pair = meshes[-1][0], len(meshes) > 1
         limits, bands = mesh_limits(meshes[-2:]) if pair else (ALONE, ALONE)
         over = [OVER.format(wall_s, self.budget_s)] if wall_s > self.budget_s else []
@@ -110,7 +111,7 @@ class OwnLadder:
         )
         outcome = replace(finest, validity=stated)
         if options.out is not None:
-            kept = below(options, sum(len(runs) for runs in meshes[:-1])).out
+            kept = below(options, climb.first).out
             for file in kept.glob("*") if kept else ():
                 file.replace(options.out / file.name)
             outcome.write(options.out / "outcome.json")
@@ -123,26 +124,20 @@ class Climb:
 
     Attributes
     ----------
-    meshes : scenes of each mesh, from coarse to fine, at its places
-    budget_s : wall time, s
-    options, workers : of the runs
-    begun : clock at the start, s
+    meshes : scenes of each mesh, from coarse to fine, at all of its places
+    budget : of all runs
+    options : of the runs
+    target : relative error
     done : outcomes on each mesh that ran
-    pace : wall time of the last runs over the planned one
+    first : number of the first run on the finest mesh
     """
 
     meshes: Sequence[Sequence[Scene]]
-    budget_s: float
+    budget: Budget
     options: RunOptions
-    workers: int
-    begun: float
+    target: float
     done: list[list[Outcome]] = field(default_factory=list)
-    pace: float = 1.0
-
-    @property
-    def spent_s(self) -> float:
-        """Return the wall time since the start, s."""
-        return perf_counter() - self.begun
+    first: int = 0
 
     @property
     def achieved(self) -> float:
@@ -157,74 +152,90 @@ class Climb:
         return f"{' and '.join(TARGETED)} are known to {plain(100 * self.achieved, 2)} %"
 
     def begin(self) -> None:
-        """Run the coarsest mesh once, and at its other places where the next fits at all of its own, too."""
+        """Run the coarsest mesh once, and at a second place where the next fits at two, too."""
         coarsest, *finer = self.meshes
         self.done.append(self._run(coarsest[:1]))
-        rest = coarsest[1:]
-        if rest and self._affords(rest, *finer[:1]):
-            self.done[0] += self._run(rest)
+        second = coarsest[1:FEW]
+        if second and self.budget.affords(second, *(scenes[:FEW] for scenes in finer[:1])):
+            self.done[0] += self._run(second)
 
     def up(self) -> str:
-        """Run the next mesh; return an empty string, or why none runs and what would let it."""
-        for scenes in filter(self._affords, self._choices()):
-            try:
+        """Run what brings the target nearest; return an empty string, or why nothing runs and what would."""
+        try:
+            more = self._more_places()
+            if more and self.budget.affords(*more):
+                for runs, scenes in zip(self.done[-2:], more, strict=True):
+                    runs += self._run(scenes)
+                return ""
+            for scenes in filter(self.budget.affords, self._choices()):
+                before = self._ran
                 self.done.append(self._run(scenes))
-            except RunError as error:
-                return f"The next finer mesh gave no result: {error}"
-            return ""
-        return self._more()
+                self.first = before
+                return ""
+        except RunError as error:
+            return f"Further runs gave no result: {error}"
+        return self._advice()
 
     @property
-    def _whole(self) -> bool:
-        """Say whether the coarsest mesh ran at all its places."""
-        return len(self.done[0]) == len(self.meshes[0])
+    def _ran(self) -> int:
+        """Return the number of runs so far."""
+        return sum(map(len, self.done))
+
+    @property
+    def _few(self) -> bool:
+        """Say whether the coarsest mesh ran at two places or more, or at the one it has."""
+        return len(self.done[0]) >= min(FEW, len(self.meshes[0]))
+
+    def _more_places(self) -> list[Sequence[Scene]]:
+        """Return the other places of the finest two meshes, where only their scatter is in the way."""
+        if len(self.done) == 1 or not self._few:
+            return []
+        pair = zip(self.meshes[: len(self.done)][-2:], self.done[-2:], strict=True)
+        more = [scenes[len(runs) :] for scenes, runs in pair]
+        return more if all(more) and achieved_error(self.done[-2:], SETTLED) <= self.target else []
 
     def _choices(self) -> list[Sequence[Scene]]:
         """Return the next mesh at the places at which it may run; a second one also at one alone."""
-        following = self.meshes[len(self.done) :][:1]
-        single = [scenes[:1] for scenes in following if len(self.done) == 1 or not self._whole]
-        return [*(following if self._whole else []), *single]
-
-    def _forecast_s(self, *batches: Sequence[Scene]) -> float:
-        """Return the wall time, s, that batches will take one after the other."""
-        return self.pace * sum(planned_s(scenes, self.workers) for scenes in batches)
-
-    def _affords(self, *batches: Sequence[Scene]) -> bool:
-        return self.spent_s + self._forecast_s(*batches) <= self.budget_s
+        following = [scenes[:FEW] for scenes in self.meshes[len(self.done) :][:1]]
+        single = [scenes[:1] for scenes in following if len(self.done) == 1 or not self._few]
+        return [*(following if self._few else []), *single]
 
     def _run(self, scenes: Sequence[Scene]) -> list[Outcome]:
-        count = sum(map(len, self.done))
-        own = [below(self.options, count + at) for at in range(len(scenes))]
-        runs = side_by_side(scenes, "solid", own, self.workers)
+        own = [below(self.options, self._ran + at) for at in range(len(scenes))]
+        runs = self.budget.run(scenes, own)
         for run in runs:
             if not run.validity.finished:
                 raise RunError(f"{scenes[0].id}: {run.validity.stopped_because}")
-        self.pace = pace(scenes, runs, self.workers)
         return runs
 
-    def _more(self) -> str:
+    def _advice(self) -> str:
         """Say what more than these runs would cost, and the budget that holds it."""
-        ran, finer = len(self.done), self.meshes[len(self.done) :]
-        if ran > 1 and not self._whole:
-            time = self._forecast_s(*self.meshes[: ran + 1])
+        ran, finer, spent_s = len(self.done), self.meshes[len(self.done) :], self.budget.spent_s
+        if ran > 1 and not self._few:
+            time = self.budget.forecast_s(*(scenes[:FEW] for scenes in self.meshes[: ran + 1]))
             return (
                 f"Each mesh ran at one place of the barrier's grid, which makes the band {ONE_RUN:g} times "
-                f"as wide. These meshes{' and one finer' * bool(finer)} at all places take about "
+                f"as wide. These meshes{' and one finer' * bool(finer)} at two places take about "
                 f'{about_s(time)}: for that give --budget "{about_s(LONGER * time)}".'
             )
         if not finer:
             return "No finer mesh of this family can be made."
-        time = self._forecast_s(finer[0] if ran > 1 else finer[0][:1])
+        time = self.budget.forecast_s(finer[0][: FEW if ran > 1 else 1])
         return (
             f"One mesh finer takes about {about_s(time)} more: for that give --budget "
-            f'"{about_s(self.spent_s + LONGER * time)}".'
+            f'"{about_s(spent_s + LONGER * time)}".'
         )
 
 
-def achieved_error(meshes: Sequence[Placed]) -> float:
-    """Return the largest relative uncertainty of the quantities that a target is about."""
+def achieved_error(meshes: Sequence[Placed], kept: float = 1.0) -> float:
+    """Return the largest relative uncertainty of the quantities that a target is about.
+
+    ``kept`` is the share of their scatter that counts.
+    """
     truth = truths(meshes)
-    return max(truth[name].uncertainty / truth[name].scale for name in TARGETED)
+    return max(
+        (truth[name].uncertainty - (1 - kept) * truth[name].scatter) / truth[name].scale for name in TARGETED
+    )
 
 
 def _edge(outcome: Outcome) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from itertools import combinations
+from itertools import combinations, product
 from typing import TYPE_CHECKING, Any, Literal
 
 from fem_impact.effects.registry import BARRIERS, grounded
@@ -55,9 +55,11 @@ ACROSS = 8  # cells over the diameter, of a scene that states no more
 RUNGS = tuple(Mesh(finer) for finer in (-1, 0, 1, 2))  # from coarse to fine, each with cells half as large
 FAMILY = RUNGS[:3]
 """The meshes of a scene of which all `RUNGS` can be made, see `family`."""
-# shifts of a meshed barrier's grid along t, in cells at the contact, at each of which a mesh is run; the
-# third mesh and finer ones, which scatter least and cost most, at fewer
-PLACES, FEWER_PLACES = (0.0, 0.25, 0.5, 0.75), (0.0, 0.5)
+# shifts of a meshed barrier's grid along t, in cells at the contact, at which a mesh is run: at all of them,
+# or at the first `FEW`, which are evenly spaced, too. The third mesh and finer ones, which scatter least and
+# cost most, are run at few
+PLACES = (0.0, 0.5, 0.25, 0.75)
+FEW = 2
 DEFAULT = "default run"  # one run as the scene states it
 FULL = "default run without savings"
 SAVINGS_OFF = {"accuracy.mass_scaling": 1, "accuracy.fine_zone": "even"}
@@ -79,6 +81,7 @@ class Setting:
     runs : for each mesh, the finest first, the runs at the places of the barrier's grid; their mean
         counts. A reduced model has one run
     meshes : those of a solid setting
+    places : most places that a mesh of it is run at
     """
 
     name: str
@@ -86,6 +89,7 @@ class Setting:
     fidelity: str
     runs: tuple[tuple[Job, ...], ...]
     meshes: tuple[Mesh, ...] = ()
+    places: int = len(PLACES)
 
 
 def can_be_made(scene: Scene) -> bool:
@@ -152,20 +156,24 @@ def _across(scene: Scene) -> int:
     return max(scene.accuracy.across, ACROSS)
 
 
-def placed(scene: Scene, mesh: Mesh) -> list[Scene]:
-    """Return the scene on a mesh at its places of the barrier's grid; a rigid barrier has one."""
-    places = FEWER_PLACES if mesh.finer >= family(scene)[-1].finer else PLACES
-    count = 1 if "barrier-rigid" in active(scene) else len(places)
-    return [on_mesh(scene, mesh, place) for place in places[:count]]
+def placed(scene: Scene, mesh: Mesh, most: int = len(PLACES)) -> list[Scene]:
+    """Return the scene on a mesh at its places of the barrier's grid, at ``most`` so many.
+
+    A rigid barrier has one.
+    """
+    own = FEW if mesh.finer >= family(scene)[-1].finer else len(PLACES)
+    count = 1 if "barrier-rigid" in active(scene) else min(own, most)
+    return [on_mesh(scene, mesh, place) for place in PLACES[:count]]
 
 
 def _job(scene: Scene, name: str, fidelity: str) -> Job:
     return Job(f"{scene.id}: {name}", scene, fidelity)
 
 
-def _jobs(scene: Scene, mesh: Mesh, name: str) -> tuple[Job, ...]:
+def _jobs(scene: Scene, mesh: Mesh, name: str, most: int = len(PLACES)) -> tuple[Job, ...]:
     return tuple(
-        _job(one, f"{name}, grid at {one.accuracy.grid_shift:g}", "solid") for one in placed(scene, mesh)
+        _job(one, f"{name}, grid at {one.accuracy.grid_shift:g}", "solid")
+        for one in placed(scene, mesh, most)
     )
 
 
@@ -181,16 +189,18 @@ def _solid(scene: Scene, mesh: Mesh, kind: Kind = "mesh", label: str = "") -> Se
 
 
 def _extrapolated(scene: Scene, meshes: Sequence[Mesh]) -> list[Setting]:
-    """Return all groups of two meshes or more."""
-    settings = []
+    """Return all groups of two meshes or more, with their runs at few places and with those at all."""
+    settings = {}
     for count in range(2, len(meshes) + 1):
-        for group in combinations(meshes, count):
+        for group, most in product(combinations(meshes, count), (FEW, len(PLACES))):
             *coarser, finest = (f"{mesh.sizes(scene)[0] * 1e3:.3g}" for mesh in group)
-            name = f"solid {', '.join(coarser)} and {finest} mm extrapolated"
             fine_first = group[::-1]
-            runs = tuple(_jobs(scene, mesh, _name(scene, mesh)) for mesh in fine_first)
-            settings.append(Setting(name, "extrapolated", "solid", runs, fine_first))
-    return settings
+            runs = tuple(_jobs(scene, mesh, _name(scene, mesh), most) for mesh in fine_first)
+            ran = len(runs[-1])  # of the coarsest mesh
+            at = f", {ran} places" if ran > 1 else ""
+            name = f"solid {', '.join(coarser)} and {finest} mm extrapolated{at}"
+            settings[name] = Setting(name, "extrapolated", "solid", runs, fine_first, ran)
+    return list(settings.values())
 
 
 def _without(scene: Scene, mesh: Mesh) -> list[Setting]:

@@ -34,7 +34,7 @@ from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
-SUMMARY = "fem-impact/cost-summary/4"
+SUMMARY = "fem-impact/cost-summary/5"
 
 STEEL = ("E", "rho", "yield", "ultimate over yield")
 # largest differences of a scene from one whose cost was measured; of ratios and sizes, of their logarithms
@@ -277,7 +277,7 @@ def _runs(
     The first run writes to ``options.out`` itself and reports its progress.
     """
     alone = [replace(scene, accuracy=replace(scene.accuracy, target=None))]  # a reduced model has no mesh
-    groups = [placed(scene, mesh) for mesh in chosen.meshes] or [alone]
+    groups = [placed(scene, mesh, chosen.setting.places) for mesh in chosen.meshes] or [alone]
     scenes = list(chain.from_iterable(groups))
     own = [options, *(below(options, at) for at in range(1, len(scenes)))]
     done = side_by_side(scenes, chosen.setting.fidelity, own, workers)

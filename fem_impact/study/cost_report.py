@@ -41,9 +41,10 @@ GUIDE = (
     "A time is the processor time of all runs of a setting with their set-up, on one core; two free cores "
     "take half of it where a setting has several runs.",
     "A mesh is run at several places of the barrier's grid (four, the third and finer ones at two), and "
-    "their mean counts; "
-    "the default run, with its savings or without, and those with other elements or steps have one place: "
-    "their error may be small by chance, so they are neither on the front nor chosen for a wanted error.",
+    "their mean counts; several meshes are also judged by two places of each, which take half the time and "
+    "scatter more; the default run, with its savings or without, and those with other elements or steps have "
+    "one place: their error may be small by chance, so they are neither on the front nor chosen for a wanted "
+    "error.",
     "Without savings no small elements are made heavier, but those of the thin rows at the surface "
     "(`accuracy.mass_scaling = 1`), and the finest cells fill all of the zone that may yield "
     '(`accuracy.fine_zone = "even"`).',
@@ -169,7 +170,7 @@ def _best(cost: CostStudy, name: str) -> Group:
     value = f"{group.value[name] or 0.0:.4f} ± {group.band[name] * truth.scale:.4f}"
     met = group.band[name] <= WANTED
     band = f"**{_percent(group.band[name])}**" if met else _percent(group.band[name])
-    sizes = group.name.removeprefix("solid ").removesuffix(" mm extrapolated")
+    sizes = group.name.removeprefix("solid ").replace(" mm extrapolated", "")
     shown = f"{band} ({_percent(group.scatter[name])})"
     return Group((value, shown, sizes, f"{off:.1f}", f"{group.two_cores_s:.3g}"), group.two_cores_s, met)
 

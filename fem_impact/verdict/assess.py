@@ -190,7 +190,7 @@ def _solid(
     while not _decided(ladder, tolerance, quick, least):
         mesh = ladder.following()
         if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):
-            told, more = _stopped(ladder, mesh, means[0])
+            told, more = _stopped(ladder, mesh)
             notes.append(told)
             break
         which = COUNT[len(ladder.pairs)]
@@ -238,15 +238,15 @@ def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[s
     return change.widened(quick)
 
 
-def _stopped(ladder: Ladder, mesh: Mesh | None, budget_s: float) -> tuple[str, str]:
+def _stopped(ladder: Ladder, mesh: Mesh | None) -> tuple[str, str]:
     """Return why no other mesh runs, and the options with which one would."""
     if mesh is None:
         return "No finer mesh is tried: none of the family has finer cells at the contact.", ""
-    more, left = ladder.expected_s(mesh), budget_s - ladder.spent_s
-    enough = about_s(ladder.spent_s + LONGER * more)
+    more, limit_s, spent_s = ladder.expected_s(mesh), ladder.budget.limit_s, ladder.budget.spent_s
+    left, enough = max(limit_s - spent_s, 0.0), about_s(spent_s + LONGER * more)
     told = (
         f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
-        f"{about_s(more)} more, and {plain(max(left, 0.0), 2)} s are left of the budget of {budget_s:g} s. "
+        f"{about_s(more)} more, and {plain(left, 2)} s are left of the budget of {limit_s:g} s. "
         f'For it give --budget "{enough}".'
     )
     return told, f'--budget "{enough}"'

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import inf
-from time import perf_counter
 from typing import TYPE_CHECKING, Literal
 
-from fem_impact.cost.lanes import side_by_side
+from fem_impact.cost.lanes import Budget
 from fem_impact.cost.limits import ONE_RUN, pair_limit, vibration_floor
 from fem_impact.cost.settings import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
-from fem_impact.cost.times import pace, planned_s
 from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
@@ -159,31 +157,25 @@ class Ladder:
     Attributes
     ----------
     scene : Scene
-    budget_s : wall time, s, that all meshes together may take
-    workers : runs at a time, 1 or 2
+    budget : of all meshes together
     meshes, pairs : what has run so far
-    spent_s : wall time of that, s
-    pace : wall time of the last runs over the planned one
     """
 
     scene: Scene
-    budget_s: float
-    workers: int
+    budget: Budget
     meshes: list[Mesh]
     pairs: list[Pair]
-    spent_s: float = 0.0
-    pace: float = 1.0
 
     @classmethod
     def of(cls, scene: Scene, budget_s: float, workers: int) -> Ladder:
         """Return a ladder on which nothing has run."""
-        return cls(_meshless(scene), budget_s, workers, [], [])
+        return cls(_meshless(scene), Budget(budget_s, workers), [], [])
 
     def refused(self) -> SceneError | None:
         """Return why no mesh of the scene can be made, None where one can."""
         if self.following() is None:
             try:
-                planned_s(self._scenes(FAMILY[-1]), self.workers)
+                self.expected_s(FAMILY[-1])
             except SceneError as error:
                 return error
         return None
@@ -195,11 +187,11 @@ class Ladder:
 
     def expected_s(self, mesh: Mesh) -> float:
         """Return the wall time, s, that a mesh is expected to take, by what the last one took."""
-        return self.pace * planned_s(self._scenes(mesh), self.workers)
+        return self.budget.forecast_s(self._scenes(mesh))
 
     def affords(self, mesh: Mesh) -> bool:
         """Say whether a mesh fits into what is left of the budget."""
-        return self.spent_s + self.expected_s(mesh) <= self.budget_s
+        return self.budget.affords(self._scenes(mesh))
 
     def climb(self, mesh: Mesh) -> str:
         """Run the twins on a mesh; return why they give no answer, and forget it then, else an empty string.
@@ -209,10 +201,7 @@ class Ladder:
         SceneError
             The mesh cannot be made.
         """
-        begun, scenes = perf_counter(), self._scenes(mesh)
-        runs = side_by_side(scenes, "solid", [RunOptions()] * 2, self.workers)
-        self.spent_s += perf_counter() - begun
-        self.pace = pace(scenes, runs, self.workers)
+        runs = self.budget.run(self._scenes(mesh), [RunOptions()] * 2)
         pair = runs[0], runs[1]
         failed = unfinished(pair)
         if not failed:
