@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.commands.about_scenes import ROD, add_rod
-from fem_impact.commands.command import add_command
+from fem_impact.commands.command import add_changes, add_command
 from fem_impact.commands.options import size
 
 if TYPE_CHECKING:
@@ -54,12 +54,20 @@ def add_coefficients(commands: Commands) -> None:
     """Add ``coefficients``."""
     summary = "work out e, mu and e_m of your own camera data, with intervals"
     handler = "fem_impact.commands.rigid:coefficients"
-    examples = (f"fem-impact coefficients tests.csv {ROD}",)
+    examples = (
+        f"fem-impact coefficients tests.csv {ROD}",
+        "fem-impact coefficients tests.csv --scene tube",
+    )
     parser = add_command(commands, "coefficients", summary, handler, examples)
     columns = "v_n_m_per_s, v_t_m_per_s, V_n_m_per_s, V_t_m_per_s, Omega_rad_per_s"
     parser.add_argument("file", type=Path, metavar="FILE.csv", help=f"one test a row; columns {columns}")
-    add_rod(parser)
-    parser.add_argument("--angle", required=True, help='rod axis to barrier normal, such as "45 deg"')
+    rod = parser.add_argument_group("a solid steel rod")
+    add_rod(rod)
+    rod.add_argument("--angle", help='rod axis to barrier normal, such as "45 deg"')
+    own = parser.add_argument_group("any other projectile, such as a tube, instead of that rod")
+    about = "scene whose projectile was tested at its inclination: id or path of a scene file"
+    own.add_argument("--scene", metavar="SCENE", default="", help=about)
+    add_changes(own)
     parser.add_argument("--d-c", metavar="LENGTH", help="arm along the slope (default: of the tip's shape)")
     parser.add_argument("--d-d", metavar="LENGTH", help="arm along the normal (default: of the tip's shape)")
 

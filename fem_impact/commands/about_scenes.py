@@ -147,17 +147,17 @@ def add_assess(commands: Commands) -> None:
         "--out", type=Path, metavar="DIR", help="write a page to print and sign, and verdict.json"
     )
     short = parser.add_argument_group("a dropped steel rod, instead of SCENE")
-    add_rod(short, required=False)
+    add_rod(short)
     short.add_argument("--height", help='drop height, such as "0.82 m"')
     short.add_argument("--angle", help='rod axis to barrier normal, such as "45 deg"')
     surfaces = ("machined", "contaminated", "cleaned")
     short.add_argument("--surface", choices=surfaces, help="state of tip and plate")
 
 
-def add_rod(parser: argparse._ActionsContainer, required: bool = True) -> None:
+def add_rod(parser: argparse._ActionsContainer) -> None:
     """Add the options that describe a steel rod."""
-    parser.add_argument("--length", required=required, help='of the rod, such as "240 mm"')
-    parser.add_argument("--diameter", required=required, help='such as "19 mm"')
+    parser.add_argument("--length", help='of the rod, such as "240 mm"')
+    parser.add_argument("--diameter", help='such as "19 mm"')
     tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
     parser.add_argument("--tip", default="", help=tips)
     radii = "default: 7 mm for A, 3 mm for B; an added tip needs it"

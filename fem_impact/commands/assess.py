@@ -7,8 +7,9 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, checked_out, print_json, stated_budget
+from fem_impact.commands.common import checked_out, print_json, stated_budget
 from fem_impact.commands.options import Options
+from fem_impact.commands.rigid import SHAPE, angle_of, named_scene, rod_of
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
 
@@ -16,8 +17,7 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 SHORT = ("length", "diameter", "height", "angle", "surface")
-"""Options that must be given where no scene is."""
-SHAPE = ("tip", "tip_radius")
+"""Options of a dropped steel rod that must be given where no scene is."""
 
 
 def assess(options: Options) -> int:
@@ -27,7 +27,7 @@ def assess(options: Options) -> int:
     from fem_impact.verdict.dropped import dropped
     from fem_impact.verdict.sentences import document
 
-    scene = _scene(options)
+    scene = named_scene(options, SHORT) or _short(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
     if out is not None:
@@ -64,24 +64,8 @@ def _command(options: Options) -> str:
     return shlex.join(["fem-impact", "assess", *given, *tolerance])
 
 
-def _scene(options: Options) -> Scene:
-    """Return the scene that is named, or that the options of a dropped steel rod state."""
-    given = [f"--{name.replace('_', '-')}" for name in (*SHORT, *SHAPE) if getattr(options, name, None)]
-    if options.scene:
-        if given:
-            remedy = "A scene states its rod and impact itself: change it with --set key=value."
-            raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
-        return changed_scene(options.scene, options.changes)
-    missing = [f"--{name}" for name in SHORT if not getattr(options, name, None)]
-    if options.changes or missing:
-        what = "no scene is given" if len(missing) == len(SHORT) else f"{', '.join(missing)} is missing"
-        remedy = "Name a scene (`fem-impact scenes` lists them), or state a dropped steel rod in full."
-        raise UsageError(f"{what}.", key="assess", remedy=remedy)
-    return _short(options)
-
-
 def _short(options: Options) -> Scene:
-    from fem_impact.commands.rigid import angle_of, rod_of
+    """Return the scene of the dropped steel rod that the options state."""
     from fem_impact.scene.units import option_quantity
     from fem_impact.verdict.drop import DroppedRod
     from fem_impact.verdict.dropped import scene_of

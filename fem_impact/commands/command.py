@@ -113,6 +113,11 @@ def add_scene(parser: CommandParser, optional: bool = False) -> None:
         parser.add_argument("scene", metavar="SCENE", nargs="?", default="", help=about)
     else:
         parser.add_argument("scene", metavar="SCENE", help=about)
+    add_changes(parser)
+
+
+def add_changes(parser: argparse._ActionsContainer) -> None:
+    """Add the changes of a scene's values."""
     parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=_SET)
 
 

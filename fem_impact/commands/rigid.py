@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import checked_file, print_json
+from fem_impact.commands.common import changed_scene, checked_file, print_json
 from fem_impact.commands.options import Options
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.atomic import write_text
@@ -17,10 +17,15 @@ from fem_impact.tables.text import wrapped
 if TYPE_CHECKING:
     from fem_impact.paper.drawn import Drawn
     from fem_impact.scene.camera import Camera
-    from rigid import Arms, Projectile
+    from fem_impact.scene.types import Scene
+    from rigid import Arms, Body, Projectile
 
 
 USUAL_TIP = "B"
+SHAPE = ("tip", "tip_radius")
+"""Options of a steel rod that have a default."""
+TESTED = ("length", "diameter", "angle")
+"""Options of a tested steel rod that must be given where no scene is."""
 
 
 def audit(options: Options) -> int:
@@ -37,17 +42,23 @@ def audit(options: Options) -> int:
 
 def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
+    from fem_impact.physics import contact
     from fem_impact.scene.camera import read_camera
     from fem_impact.verdict.own_data import own_coefficients
     from fem_impact.verdict.text import own_text
     from rigid import RigidError
 
-    rod, alpha = rod_of(options), angle_of(options)
+    if scene := named_scene(options, TESTED):
+        rod, alpha, own = contact.projectile(scene), scene.impact.angle, scene.projectile
+        tip = own.tip, own.tip_radius
+    else:
+        rod, alpha = rod_of(options), angle_of(options)
+        tip = rod.tip, rod.tip_radius
     stated = _stated_arms(options)
     camera = read_camera(options.file)
     arms, source = _arms(stated, rod, alpha, camera)
     try:
-        document = own_coefficients(camera, rod, alpha, arms, source)
+        document = own_coefficients(camera, rod, tip, alpha, arms, source)
     except RigidError as error:
         raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
     _print({"file": str(options.file), **document}, own_text, options)
@@ -66,8 +77,31 @@ def figure(options: Options) -> int:
     return 0
 
 
+def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
+    """Return the scene that is named, None where the options state a solid steel rod instead.
+
+    ``needed`` are the options that state it in full.
+    """
+    given = [f"--{name.replace('_', '-')}" for name in (*needed, *SHAPE) if getattr(options, name, None)]
+    if options.scene:
+        if given:
+            remedy = "A scene states its rod and impact itself: change it with --set key=value."
+            raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
+        return changed_scene(options.scene, options.changes)
+    missing = [f"--{name}" for name in needed if not getattr(options, name, None)]
+    if options.changes or missing:
+        what = (
+            "no scene is given"
+            if len(missing) == len(needed)
+            else f"{', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
+        )
+        remedy = "Name a scene (`fem-impact scenes` lists them), or state a solid steel rod in full."
+        raise UsageError(f"{what}.", key="SCENE", remedy=remedy)
+    return None
+
+
 def rod_of(options: Options) -> Projectile:
-    """Return the rod that the options describe."""
+    """Return the solid steel rod that the options describe."""
     from fem_impact.verdict.drop import rod_from_options
 
     return rod_from_options(
@@ -101,7 +135,7 @@ def _stated_arms(options: Options) -> Arms | None:
     return Arms(np.asarray(d_c), np.asarray(d_d))
 
 
-def _arms(stated: Arms | None, rod: Projectile, alpha: float, camera: Camera) -> tuple[Arms, str]:
+def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple[Arms, str]:
     """Return the arms, m, and their source: options, the file, or the shape of the tip."""
     import numpy as np
 

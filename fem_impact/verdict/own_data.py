@@ -9,13 +9,13 @@ import numpy as np
 
 from fem_impact.paper.audit import estimate_entry, finite, statistic_entry
 from fem_impact.scene.camera import Camera
-from rigid import Arms, Projectile, bootstrap, critical_ratio, first_order, impulse_centre
+from rigid import Arms, Body, bootstrap, critical_ratio, first_order, impulse_centre
 from rigid.arrays import Floats
 from rigid.experiments import derived_columns, statistic
 
 
 def own_coefficients(
-    camera: Camera, rod: Projectile, alpha: float, arms: Arms, source: str
+    camera: Camera, rod: Body, tip: tuple[str, float], alpha: float, arms: Arms, source: str
 ) -> dict[str, Any]:
     """Work out e, mu and e_m of a set of tests (Eq 16-18) with their uncertainty.
 
@@ -23,8 +23,10 @@ def own_coefficients(
     ----------
     camera : Camera
         Velocities of the tests, SI.
-    rod : Projectile
-        The rod: mass and k2 are used.
+    rod : Body
+        The projectile: mass and k2 are used.
+    tip : str and float
+        Its tip and the radius of that, m, for the report.
     alpha : float
         Inclination, rad.
     arms : Arms
@@ -43,10 +45,10 @@ def own_coefficients(
     mean = {name: values.mean() for name, values in camera.motion.items()}
     centre = impulse_centre(**mean, d_d=arms.d_d, k2=rod.k2)
     fall = float(mean["v_n"]), float(mean["v_t"])
-    sizes = {f"{name}_m": getattr(rod, name) for name in ("length", "diameter", "tip_radius")}
+    sizes = {"length_m": rod.length, "diameter_m": rod.diameter, "tip_radius_m": tip[1], "tip": tip[0]}
     document = {
         "tests": len(camera.tests),
-        "rod": {**sizes, "tip": rod.tip, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha},
+        "rod": {**sizes, "mass_kg": rod.mass, "k_squared_m2": rod.k2, "alpha_rad": alpha},
         "arms": {"d_c_m": body["d_c"], "d_d_m": body["d_d"], "source": source},
         "coefficients": _estimates(camera.motion, body),
         "scatter": {

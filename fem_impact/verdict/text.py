@@ -129,7 +129,7 @@ def _head(d: Document) -> Iterator[str]:
     rod, arms = d["rod"], d["arms"]
     size = f"{1e3 * rod['length_m']:g} mm x {1e3 * rod['diameter_m']:g} mm, tip {rod['tip']}"
     yield (
-        f"{d['tests']} tests of a rod {size}: {rod['mass_kg']:.4f} kg, k2 = "
+        f"{d['tests']} tests of a projectile {size}: {rod['mass_kg']:.4f} kg, k2 = "
         f"{1e6 * rod['k_squared_m2']:.1f} mm2"
     )
     yield from wrapped(

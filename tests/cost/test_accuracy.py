@@ -9,7 +9,7 @@ from fem_impact.cost.judge import Judged, cpu_seconds
 from fem_impact.cost.limits import pair_limit
 from fem_impact.cost.measure import measure
 from fem_impact.cost.own_ladder import OwnLadder
-from fem_impact.cost.settings import placed
+from fem_impact.cost.settings import FEW, placed
 from fem_impact.cost.to_target import NEARNESS, choose_setting, nearest, summarise
 from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
@@ -132,7 +132,7 @@ def test_a_stored_setting_that_takes_longer_than_the_budget_gives_way_to_a_ladde
     assert to_target.settle(scene, budget_s=enough) == choose_setting(scene) == to_target.settle(scene)
     chosen = to_target.settle(scene, budget_s=0.99 * enough)
     assert isinstance(chosen, OwnLadder) and chosen.budget_s == 0.99 * enough
-    assert "mm extrapolated, measured on t5b, takes about" in chosen.sentence
+    assert "mm extrapolated, 2 places, measured on t5b, takes about" in chosen.sentence
 
 
 def test_a_scene_near_a_stored_one_is_taken(costs):
@@ -213,8 +213,8 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
 
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
     outcome = to_target.simulate(asking(0.06), options=RunOptions(out=tmp_path))
-    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 8))]
-    fine, coarse = (placed(load("t5b"), mesh) for mesh in choose_setting(asking(0.06)).meshes)
+    assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 4))]
+    fine, coarse = (placed(load("t5b"), mesh, FEW) for mesh in choose_setting(asking(0.06)).meshes)
     assert outcome.provenance.scene_digest == digest(fine[0])
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
     means = [sum(values) / len(values) for values in every]

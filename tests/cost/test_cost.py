@@ -62,10 +62,9 @@ def test_the_ladder_has_every_kind_of_setting():
     assert len(set(names)) == len(names)
     assert names[:3] == ["rigid", "modal", "solid 0.594 mm"]
     assert [setting.name for setting in ladder(SCENE) if setting.kind == "extrapolated"] == [
-        "solid 0.594 and 0.297 mm extrapolated",
-        "solid 0.594 and 0.148 mm extrapolated",
-        "solid 0.297 and 0.148 mm extrapolated",
-        "solid 0.594, 0.297 and 0.148 mm extrapolated",
+        f"solid {sizes} mm extrapolated, {places} places"
+        for sizes in ("0.594 and 0.297", "0.594 and 0.148", "0.297 and 0.148", "0.594, 0.297 and 0.148")
+        for places in (2, 4)
     ]
     for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening"):
         assert f"solid 0.594 mm without {effect}" in names
@@ -75,8 +74,8 @@ def test_the_ladder_has_every_kind_of_setting():
         for mesh, jobs in zip(setting.meshes, setting.runs, strict=False):
             size = 0.019 / 8 / 2 ** (3 + mesh.finer)
             places = [job.scene.accuracy.grid_shift for job in jobs]
-            few = [0.0] if setting.kind in ONE_PLACE else [0.0, 0.25, 0.5, 0.75]
-            assert places == ([0.0, 0.5] if mesh == FAMILY[-1] else few)
+            most = [0.0] if setting.kind in ONE_PLACE else [0.0, 0.5, 0.25, 0.75][: setting.places]
+            assert places == ([0.0, 0.5] if mesh == FAMILY[-1] else most)
             for key in ("tip_size", "barrier_size"):
                 sizes = [getattr(job.scene.accuracy, key) for job in jobs]
                 assert sizes == pytest.approx([size] * len(jobs), rel=1e-8)
@@ -139,7 +138,7 @@ def test_a_mesh_is_the_mean_of_its_places_and_their_spread_its_scatter(cost):
 
 
 def test_two_meshes_cost_both_and_are_extrapolated(cost):
-    pair = by_name(cost, "solid 0.594 and 0.297 mm")
+    pair = by_name(cost, "solid 0.594 and 0.297 mm extrapolated, 4 places")
     single = {s.name: s for s in cost.settings}
     fine, coarse = single["solid 0.297 mm"], single["solid 0.594 mm"]
     assert pair.wall_s == pytest.approx(fine.wall_s + coarse.wall_s)
@@ -147,6 +146,13 @@ def test_two_meshes_cost_both_and_are_extrapolated(cost):
     assert pair.value["e"] == pytest.approx(pair_limit(fine.value["e"], coarse.value["e"], 2)[0])
     assert pair.value["e"] != fine.value["e"]
     assert pair.two_cores_s == pytest.approx(fine.two_cores_s + coarse.two_cores_s)
+
+
+def test_two_places_of_each_mesh_take_half_the_time_and_scatter_more(cost):
+    few, all_of_them = (by_name(cost, f"solid 0.594 and 0.297 mm extrapolated, {n} places") for n in (2, 4))
+    assert few.cpu_s == pytest.approx(0.5 * all_of_them.cpu_s)
+    assert few.scatter["e"] > 2 * all_of_them.scatter["e"] > 0
+    assert few.band["mu"] == pytest.approx(all_of_them.band["mu"])  # which does not scatter
 
 
 @pytest.mark.parametrize("ratio", [1.5, 2.0, 3.0])
@@ -168,7 +174,7 @@ def test_the_scatter_of_both_meshes_is_carried_into_the_band(cost):
     two, four = EVEN[2], EVEN[4] / 6**0.5
     h, weight = 0.019 / 128 / TIP, 0.5 / (2**LOWEST - 1)
     scatter = WIGGLE * h * (((1 + weight) * two) ** 2 + (weight * 2 * four) ** 2) ** 0.5
-    pair, scale = by_name(cost, "solid 0.297 and 0.148"), cost.truth["e"].scale
+    pair, scale = by_name(cost, "solid 0.297 and 0.148 mm extrapolated, 4"), cost.truth["e"].scale
     assert pair.scatter["e"] * scale == pytest.approx(scatter, rel=1e-6)
     assert pair.band["e"] * scale == pytest.approx(weight * SLOPE["e_edge"] * h + scatter, rel=1e-6)
     beyond = abs(pair.value["e"] - cost.truth["e"].value) + cost.truth["e"].uncertainty
@@ -180,13 +186,15 @@ def test_the_scatter_of_both_meshes_is_carried_into_the_band(cost):
 
 def test_the_best_group_is_the_quickest_that_meets_the_target_or_else_the_finest_two(cost):
     loose, strict, never = (best_group(cost.settings, TARGETED, target) for target in (0.2, 0.02, 1e-6))
-    assert loose.name == "solid 0.594 and 0.297 mm extrapolated"
-    assert strict.name == "solid 0.594, 0.297 and 0.148 mm extrapolated"
-    assert never.name == "solid 0.297 and 0.148 mm extrapolated"
-    words = "0.3059 ± 0.0166 (0.0002 of it scatter), reached: 5.3 %"
+    assert loose.name == "solid 0.594 and 0.297 mm extrapolated, 2 places"
+    assert strict.name == "solid 0.594, 0.297 and 0.148 mm extrapolated, 2 places"
+    assert never.name == "solid 0.297 and 0.148 mm extrapolated, 4 places"
+    words = "0.3059 ± 0.0173 (0.0010 of it scatter), reached: 5.6 %"
     assert verdict(loose, cost.quantities, "e", 0.2) == words
     told = group_sentence(cost.settings, cost.quantities, TARGETED, 1e-6)
-    assert told.startswith("Several meshes against 0.0001 %, solid 0.297 and 0.148 mm extrapolated: e 0.3030")
+    assert told.startswith(
+        "Several meshes against 0.0001 %, solid 0.297 and 0.148 mm extrapolated, 4 places: e 0.3030"
+    )
     assert ", not reached: 2.8 %; " in told
     assert best_group([], TARGETED, 0.02) is None
     assert group_sentence([], {}, TARGETED, 0.02) == "No two meshes gave a result."
@@ -200,7 +208,8 @@ def test_the_band_of_coarse_meshes_that_agree_by_chance_reaches_to_the_limit_of_
     coarse, fine = (
         judge(one, [on[mesh] for mesh in one.meshes], truth, finest)
         for one in (
-            groups[f"solid {sizes} mm extrapolated"] for sizes in ("0.594 and 0.297", "0.297 and 0.148")
+            groups[f"solid {sizes} mm extrapolated, 4 places"]
+            for sizes in ("0.594 and 0.297", "0.297 and 0.148")
         )
     )
     scale, limit = truth["E_vib"].scale, finest["E_vib"]
@@ -252,7 +261,7 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
     held = judge_stored(SCENE, tmp_path, NullMeter())
     assert [one.name for one in held.settings if one.kind == "mesh"][-1] == "solid 0.297 mm"
     assert [one.name for one in held.settings if one.kind == "extrapolated"] == [
-        "solid 0.594 and 0.297 mm extrapolated"
+        f"solid 0.594 and 0.297 mm extrapolated, {places} places" for places in (2, 4)
     ]
     found = measure(SCENE, tmp_path, NullMeter(), FAMILY, second)
     assert second.names == [f"t5b: solid 0.148 mm, grid at {place}" for place in ("0", "0.5")]

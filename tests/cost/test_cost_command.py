@@ -33,7 +33,9 @@ def test_cost_prints_table_and_advice(cli, fake):
     assert of_e == "Cheapest within 20 % of e: rigid, error 16 % in 0.001 s."
     assert default.startswith("The default run takes 10 s of processor time; its error is at most ")
     assert cheapest == "Cheapest within 20 % of e and E_vib: modal, error 11 % in 0.01 s."
-    assert pair.startswith("Several meshes against 20 %, solid 0.594 and 0.297 mm extrapolated: e 0.3059 ± ")
+    assert pair.startswith(
+        "Several meshes against 20 %, solid 0.594 and 0.297 mm extrapolated, 2 places: e 0.3059 ± "
+    )
 
 
 def test_a_scene_without_vibration_is_judged_by_what_its_runs_know(cli, fake):

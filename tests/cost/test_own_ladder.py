@@ -2,15 +2,16 @@
 
 import dataclasses
 
+import cost_fakes
 import pytest
 from cost_fakes import Here, run
 from wide_contact import WIDE
 
 import fem_impact.run.simulate
-from fem_impact.cost import own_ladder, to_target
+from fem_impact.cost import lanes, to_target
 from fem_impact.cost.measure import affordable, measure
-from fem_impact.cost.own_ladder import ALONE, OwnLadder
-from fem_impact.cost.settings import FAMILY, RUNGS, family, ladder, on_mesh, placed
+from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
+from fem_impact.cost.settings import FAMILY, FEW, RUNGS, family, ladder, on_mesh, placed
 from fem_impact.cost.times import LONGER
 from fem_impact.cost.to_target import settle
 from fem_impact.errors import SceneError, UsageError
@@ -51,7 +52,7 @@ def test_the_ladder_ends_where_the_band_is_narrow_enough(fake, tmp_path):
 
 def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
-    monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
+    monkeypatch.setattr(lanes, "perf_counter", lambda: float(next(seconds)))
     outcome = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=60.0)
     stated = outcome.validity
     assert stated.accuracy_setting.startswith("1 mesh of its own")
@@ -74,8 +75,8 @@ def asked(monkeypatch, budget_s, workers=1):
 @pytest.fixture
 def on_plan(monkeypatch):
     """Let runs take what they are planned to take, and the clock stand still."""
-    monkeypatch.setattr(own_ladder, "pace", lambda *_: 1.0)
-    monkeypatch.setattr(own_ladder, "perf_counter", lambda: 0.0)
+    monkeypatch.setattr(lanes, "pace", lambda *_: 1.0)
+    monkeypatch.setattr(lanes, "perf_counter", lambda: 0.0)
 
 
 def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan, monkeypatch):
@@ -96,32 +97,65 @@ def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan
     assert len(asked(monkeypatch, LONGER * (both - one))[1]) > 1
 
 
-def test_a_budget_below_all_places_of_two_meshes_takes_one_place_each(on_plan, monkeypatch):
+def test_a_budget_below_two_places_of_two_meshes_takes_one_place_each(on_plan, monkeypatch):
     both = sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:2])
     chosen, places, outcome = asked(monkeypatch, 1.5 * both)
     assert {place for _, place in places} == {0.0} and len(places) >= 2
     assert outcome.validity.achieved_error > 0
     assert f"planned to take {float(f'{both:.2g}'):.0f} s" in chosen.sentence
     assert not [text for text in outcome.validity.warnings if "more than the budget" in text]
-    assert asked(monkeypatch, 10 * both)[1][:4] == [(places[0][0], p) for p in (0.0, 0.25, 0.5, 0.75)]
+    two_places = [(size, place) for size, _ in places[:2] for place in (0.0, 0.5)]
+    assert asked(monkeypatch, 10 * both)[1] == two_places
 
 
 def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monkeypatch):
-    """A rod that leaves earlier than planned leaves time for all places, or for a finer mesh."""
-    whole = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh))
-    assert len(asked(monkeypatch, 0.5 * whole)[1]) < 8
-    monkeypatch.setattr(own_ladder, "pace", lambda *_: 0.4)
+    """A rod that leaves earlier than planned leaves time for a second place, or for a finer mesh."""
+    whole = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh, FEW))
+    assert {place for _, place in asked(monkeypatch, 0.5 * whole)[1]} == {0.0}
+    monkeypatch.setattr(lanes, "pace", lambda *_: 0.4)
     _, places, outcome = asked(monkeypatch, 0.5 * whole)
-    assert len(places) == 8
+    assert [place for _, place in places] == [0.0, 0.5, 0.0, 0.5]
     assert outcome.validity.achieved_error <= FAR.accuracy.target
     assert not [text for text in outcome.validity.warnings if "not reached" in text]
+
+
+@pytest.fixture
+def scattered(monkeypatch):
+    """Let e scatter, and return the error of the coarsest two meshes at two places each."""
+    monkeypatch.setattr(cost_fakes, "WIGGLE", 0.01)
+    return achieved_error([[run(one) for one in placed(FAR, mesh, FEW)] for mesh in FAMILY[:2]])
+
+
+def test_other_places_run_where_only_the_scatter_is_in_the_way(on_plan, scattered, monkeypatch):
+    monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy.target", f"{99 * scattered} %"))
+    _, places, outcome = asked(monkeypatch, 1e9)
+    sizes = sorted({size for size, _ in places}, reverse=True)
+    assert places == [(size, at) for half in ((0.0, 0.5), (0.25, 0.75)) for size in sizes for at in half]
+    assert outcome.validity.achieved_error < 0.8 * scattered
+    assert outcome.validity.accuracy_setting.startswith("2 meshes")
+    assert not [text for text in outcome.validity.warnings if "not reached" in text]
+    monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy.target", f"{10 * scattered} %"))
+    assert len({size for size, _ in asked(monkeypatch, 1e9)[1]}) > 2  # no number of places would do
+
+
+def test_the_files_kept_are_those_of_the_finest_mesh_at_its_first_place(scattered, monkeypatch, tmp_path):
+    def stored(scene, fidelity, options):
+        options.out.mkdir(parents=True)
+        (options.out / "ran.txt").write_text(f"{scene.accuracy.tip_size} {scene.accuracy.grid_shift}")
+        return run(scene)
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", stored)
+    target = replace(FAR, "accuracy.target", f"{99 * scattered} %")
+    to_target.simulate(target, options=RunOptions(out=tmp_path), budget_s=1e9)
+    assert (tmp_path / "ran.txt").read_text() == f"{FAMILY[1].sizes(FAR)[0]} 0.0"
+    assert len([*tmp_path.glob("run-*/ran.txt")]) == 7
 
 
 def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkeypatch):
     """The budget that is advised lets the next mesh run."""
     monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy", "0.001 %"))
     two, three = (
-        sum(plan(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh)) for n in (2, 3)
+        sum(plan(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh, FEW)) for n in (2, 3)
     )
     outcome = asked(monkeypatch, 1.01 * two)[2]
     (told,) = [text for text in outcome.validity.warnings if "not reached" in text]
@@ -129,7 +163,7 @@ def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkey
     assert f"One mesh finer takes about {float(f'{three - two:.2g}'):.0f} s more" in told
     single = asked(monkeypatch, 0.9 * two)[2].validity
     (told,) = [text for text in single.warnings if "not reached" in text]
-    assert f"These meshes and one finer at all places take about {float(f'{three:.2g}'):.0f} s" in told
+    assert f"These meshes and one finer at two places take about {float(f'{three:.2g}'):.0f} s" in told
     assert f'give --budget "{float(f"{LONGER * three:.2g}"):.0f} s"' in told
     assert single.accuracy_setting.startswith("2 meshes")
     whole = asked(monkeypatch, 1e9)[2].validity
@@ -147,14 +181,14 @@ def test_a_finer_mesh_that_fails_leaves_what_the_coarser_ones_say(on_plan, monke
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", cut)
     stated = to_target.simulate(FAR, budget_s=1e9).validity
     assert stated.accuracy_setting.startswith("1 mesh of its own")
-    assert "The next finer mesh gave no result: t5b: the tail." in stated.warnings[-1]
+    assert "Further runs gave no result: t5b: the tail." in stated.warnings[-1]
 
 
 def test_runs_that_exceed_the_budget_say_so(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
-    monkeypatch.setattr(own_ladder, "perf_counter", lambda: float(next(seconds)))
+    monkeypatch.setattr(lanes, "perf_counter", lambda: float(next(seconds)))
     over, _ = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-2:]
-    assert over == "The runs for the wanted error took 160 s, more than the budget of 1 s."
+    assert over == "The runs for the wanted error took 40 s, more than the budget of 1 s."
 
 
 def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):

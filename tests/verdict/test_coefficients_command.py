@@ -3,6 +3,8 @@ import json
 import numpy as np
 import pytest
 
+from fem_impact import load
+from fem_impact.physics.contact import projectile
 from rigid import Projectile, solve
 from rigid.experiments import measured_set
 
@@ -56,6 +58,33 @@ def test_known_coefficients_are_found(cli, camera_file):
     assert document["arms"]["source"].startswith("lowest point")
     centre = document["impulse_centre"]
     assert centre["from_contact_m"] == pytest.approx(-0.1 * (arms.d_c - 0.5 * arms.d_d), rel=1e-6)
+
+
+def test_a_scene_states_the_projectile_that_was_tested(cli, camera_file):
+    """A tube has other inertia than the solid rod of its size; its own coefficients come back."""
+    body, alpha = projectile(load("tube")), load("tube").impact.angle
+    arms = body.arms(alpha)
+    lines = []
+    for i, v in enumerate((1.4, 1.5)):
+        after = solve(-v, -v, e=0.35, mu=0.5, e_m=-0.9, **arms._asdict(), k2=body.k2)
+        lines.append(",".join(repr(float(x)) for x in (i, -v, -v, *after)))
+    asked = ("coefficients", camera_file(*lines), "--scene", "tube", "--json")
+    document = json.loads(cli(*asked)[1])
+    assert document["rod"]["mass_kg"] == pytest.approx(body.mass)
+    for name, value in (("e", 0.35), ("mu", 0.5), ("e_m", -0.9)):
+        assert document["coefficients"][name]["value"] == pytest.approx(value, rel=1e-9)
+    steep = json.loads(cli(*asked, "--set", "impact.angle=40 deg")[1])
+    assert steep["rod"]["alpha_rad"] == pytest.approx(np.radians(40.0))
+
+
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [(ROD[:2], "--diameter, --angle are missing"), (("--scene", "tube", *ROD), "describes a rod")],
+)
+def test_a_solid_rod_is_stated_in_full_or_a_scene_is_named(cli, camera_file, more, words):
+    code, _, err = cli("coefficients", camera_file(*GOOD), *more)
+    assert code == 2
+    assert words in err
 
 
 def test_units_in_the_header_are_converted(cli, camera_file):
@@ -146,7 +175,7 @@ def test_doubts_are_said(cli, camera_file):
 def test_text_names_arms_intervals_and_sources(cli, camera_file):
     _, out, _ = cli("coefficients", camera_file(*GOOD), *ROD)
     for words in (
-        "3 tests of a rod 80 mm x 19 mm",
+        "3 tests of a projectile 80 mm x 19 mm",
         "d_c = 21.70 mm",
         "first order",
         "contact  tracking",

@@ -10,6 +10,7 @@ import pytest
 from own_bodies import taper, write
 from wide_contact import WIDE
 
+from fem_impact.cost import lanes
 from fem_impact.cost.settings import FAMILY, on_mesh
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
@@ -223,7 +224,7 @@ def meshed(monkeypatch, shifts):
             runs.append(run if moved is not None else cut_short(run))
         return runs
 
-    monkeypatch.setattr(change_module, "side_by_side", stand_in)
+    monkeypatch.setattr(lanes, "side_by_side", stand_in)
     return asked
 
 
@@ -275,7 +276,7 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
     def folded(*_):
         raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
 
-    monkeypatch.setattr(change_module, "side_by_side", folded)
+    monkeypatch.setattr(lanes, "side_by_side", folded)
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer) == ("modal", "undecided")
     assert any("on the first mesh" in note and "cell 7 is folded" in note for note in found.notes)
@@ -285,7 +286,7 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
 def test_a_scene_without_a_mesh_is_left_to_the_reduced_model_or_refused(monkeypatch):
     refused = SceneError("needs a mesh of 1.6e+06 cells.", key="barrier.thickness")
     monkeypatch.setattr(change_module, "can_be_made", lambda scene: False)
-    monkeypatch.setattr(change_module, "planned_s", lambda *_: (_ for _ in ()).throw(refused))
+    monkeypatch.setattr(lanes, "planned_s", lambda *_: (_ for _ in ()).throw(refused))
     found = assess(load("t5b"), tolerance=0.02)
     assert (found.fidelity, found.more) == ("modal", "")
     assert f"Finite elements have no answer here: {refused}" in found.notes
@@ -464,7 +465,7 @@ def solid_alone(monkeypatch, moved, check=0.02):
             made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
         return made
 
-    monkeypatch.setattr(change_module, "side_by_side", stand_in)
+    monkeypatch.setattr(lanes, "side_by_side", stand_in)
     return asked
 
 
