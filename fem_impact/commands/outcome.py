@@ -34,11 +34,13 @@ _IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
 def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     """Print the motion after impact, where the energy went, and every warning.
 
-    ``own_tests``: the scene names tests of the user's own, whose arms e is worked out with.
+    ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
     """
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
-    known_by_tests = or_none(outcome.restitution.paper.e) is not None
-    arms = ("tests'" if own_tests else "paper's", "e_paper") if known_by_tests else ("tip's", "e_edge")
+    by_tests, by_tip = (or_none(by.e) for by in (outcome.restitution.paper, outcome.restitution.edge))
+    arms = ("tests'" if own_tests else "paper's", "e_paper")
+    if by_tests in (None, by_tip):  # no tests, or tests that state no arms
+        arms = ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
     barrier = outcome.barrier
     moved = any(or_none(v) != 0 for v in (barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))

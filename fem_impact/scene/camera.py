@@ -83,12 +83,8 @@ def _columns(table: UserTable) -> dict[str, tuple[str, Unit]]:
     missing = [name for name in KINDS if not table.stating(name)]
     if missing and not any(len(table.stating(name)) > 1 for name in KINDS):
         hint = " Separate columns by commas." if any(";" in n or "\t" in n for n in table.names) else ""
-        derived = [name for name in ("e", "mu") if table.stating(name)]
-        means = (
-            f" {' and '.join(derived)} of tests can be given as means only: a file {MEANS}."
-            if derived
-            else ""
-        )
+        known = [name for name in ("e", "mu", "V_n", "V_t", "Omega") if table.stating(name)]
+        means = f" {', '.join(known)} alone can be given as means: a file {MEANS}." if known else ""
         lacks = f"{table.path}: the header lacks {', '.join(missing)}.{hint}"
         raise ResultError(f"{lacks} It needs {HEADER} (capitals: after impact).{means}")
     stated = {name: table.quantity(name, dimension) for name, dimension in {**KINDS, **ARMS}.items()}

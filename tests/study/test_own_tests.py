@@ -1,5 +1,6 @@
 """A scene that names a file of the user's own tests is compared with them as the paper's sets are."""
 
+import html
 import json
 from html import escape
 from pathlib import Path
@@ -101,6 +102,15 @@ def test_run_prints_the_comparison(cli, tmp_path):
     code, out, _ = cli("run", "mine.toml", "--fidelity", "rigid")
     assert code == 0
     assert f"beside {len(measured_set('t5b').motion['v_n'])} measured tests" in out
+
+
+@pytest.mark.parametrize(("arms", "told"), [((), "tip's"), ((0.02, 0.036), "tests'")])
+def test_the_arms_of_e_are_called_the_tests_only_where_these_state_them(cli, tmp_path, arms, told):
+    write(tmp_path, arms)
+    _, out, _ = cli("run", "mine.toml", "--fidelity", "rigid", "--out", "made")
+    assert f"restitution e ({told} arms)" in out
+    cli("report", "made")
+    assert f"e, the {told} arms" in html.unescape((tmp_path / "made" / "report.html").read_text())
 
 
 def test_a_study_of_sets_takes_scene_files(tmp_path, monkeypatch):
@@ -254,10 +264,8 @@ def test_a_study_refuses_a_scene_without_tests(cli, tmp_path):
         ("quantity,mean,sd,n\ne,0.3,0.1\n", "line 2"),
         ("speed,time\n1,2\n", "the header lacks v_n"),
         ("e,mu,Omega\n0.3,0.5,5\n", f"lacks v_n, v_t, V_n, V_t. It needs {HEADER}"),
-        (
-            "e,mu,Omega\n0.3,0.5,5\n",
-            "e and mu of tests can be given as means only: a file quantity,mean,sd,n",
-        ),
+        ("e,mu,Omega\n0.3,0.5,5\n", "e, mu, Omega alone can be given as means: a file quantity,mean,sd,n"),
+        ("V_n_m_per_s,Omega_rpm\n0.3,5\n", "V_n, Omega alone can be given as means: a file quantity,mean"),
     ],
 )
 def test_check_refuses_a_file_of_tests_that_cannot_be_used(cli, tmp_path, text, words):
