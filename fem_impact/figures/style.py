@@ -36,7 +36,7 @@ PALETTE = {
 }
 """Colours of Okabe and Ito, five more of other lightness, and that of texts."""
 
-COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey")
+COLOURS = ("blue", "vermilion", "green", "purple", "orange", "sky", "night", "grey", "brown")
 """Colours of series in order."""
 
 WIDTH = 8.4  # inches
