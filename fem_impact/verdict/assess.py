@@ -256,8 +256,8 @@ def _over_angles(scene: Scene) -> tuple[Change | None, tuple[tuple[float, ...], 
     """Return the largest change of the reduced model over the inclinations, and where it has no answer."""
     changes, missing, why = list[Change](), list[float](), ""
     for angle in sorted({*map(float, ANGLES), scene.impact.angle}):
-        one = inclined(scene, angle)
         try:
+            one = inclined(scene, angle)
             pair = modal_pair(one)
             failed = unfinished(pair)
         except SceneError as error:

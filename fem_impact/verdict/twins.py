@@ -6,11 +6,13 @@ from dataclasses import replace
 from math import cos, hypot, sin
 
 from fem_impact.effects.registry import NAMES, grounded
+from fem_impact.errors import SceneError
 from fem_impact.plan.choose import active
 from fem_impact.plan.limits import require_approach
 from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
+ROUNDING = 1e-9  # of angles, rad
 UNFELT = "contact-heating"
 """It watches the motion, which does not feel it: the twin has no need of it."""
 
@@ -36,8 +38,16 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
 
 
 def inclined(scene: Scene, angle: float) -> Scene:
-    """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays."""
+    """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays.
+
+    Raises
+    ------
+    SceneError
+        The turned velocity points up the slope, as no scene's may.
+    """
     impact = scene.impact
     speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
-    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=-speed * sin(way))
+    if way < -ROUNDING:
+        raise SceneError("would point up the slope, as no scene's velocity may.", key="impact.v_t")
+    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=min(-speed * sin(way), 0.0))
     return replace(scene, impact=turned, measured=None)

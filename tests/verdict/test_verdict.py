@@ -328,6 +328,14 @@ def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_ou
     assert found.not_known[0] and "lifts the contact point" in found.not_known[1]
 
 
+def test_a_velocity_beside_the_axis_leaves_out_inclinations_where_it_would_point_up_the_slope():
+    """Straight at the barrier, 45 degrees beside the axis: with less inclination the rod would rise."""
+    found = assess(replace_all(load("t5b"), {"impact.v_t": "0 m/s"}), "modal")
+    assert [math.degrees(angle) for angle in found.not_known[0]] == pytest.approx(range(5, 45, 5))
+    assert found.not_known[1].startswith("impact.v_t: would point up the slope")
+    assert found.worst.angle > math.radians(44)
+
+
 def test_a_budget_that_allows_no_mesh_leaves_the_reduced_model_and_says_so(monkeypatch):
     asked = meshed(monkeypatch, [])
     found = assess(load("t5b"), tolerance=0.02, budget_s=0.01)
