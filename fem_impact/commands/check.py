@@ -100,6 +100,7 @@ def _body_entry(scene: Scene) -> dict[str, float]:
     """Return what the theories need of the projectile, SI."""
     from fem_impact.physics.beam import bending_period, stretching_period
     from fem_impact.physics.contact import arms, principal_radii, projectile, touch_point
+    from fem_impact.physics.wall import ovalling_period
 
     body, (d_c, d_d), (rho, z) = projectile(scene), arms(scene), touch_point(scene)
     R1, R2 = principal_radii(scene)
@@ -119,6 +120,7 @@ def _body_entry(scene: Scene) -> dict[str, float]:
         "d_d_m": d_d,
         "bending_period_s": bending_period(scene),
         "stretching_period_s": stretching_period(scene),
+        "ovalling_period_s": ovalling_period(scene.projectile),
     }
 
 
@@ -132,9 +134,14 @@ def _body_lines(body: dict[str, float]) -> Iterable[str]:
         f"with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
-        f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)",
+        f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)"
+        f"{_ovalling(body['ovalling_period_s'])}",
         f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
     )
+
+
+def _ovalling(period: float) -> str:
+    return f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
 
 
 def _drawing(scene: Scene) -> list[str]:

@@ -121,7 +121,8 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
     """Return the limit from two or more meshes of every quantity that their runs know.
 
     The uncertainty of a limit is the scatter of the means plus, of a pair, its band, of more meshes Eca and
-    Hoekstra's band less the distance of the finest mesh from the limit.
+    Hoekstra's band less the distance of the finest mesh from the limit; that of the vibration energy is at
+    least the `vibration_floor` of the finest mesh.
     """
     sizes = _sizes(meshes)
     finest = sizes.index(min(sizes))
@@ -130,7 +131,7 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
         if any(mean(quantity, runs) is None for runs in meshes):
             continue
         values = [values_of(quantity, runs) for runs in meshes]
-        truth = limit_of(sizes, values)
+        truth = _floored(quantity.name == "E_vib", limit_of(sizes, values), meshes[finest])
         # the larger of limit and finest value, so that a limit near zero does not inflate the errors
         size = max(abs(truth.value), abs(fmean(values[finest])))
         limits[quantity.name] = replace(truth, scale=quantity.scale(size, meshes[finest][0]))
@@ -140,8 +141,11 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
 def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, float]]:
     """Return limit and half-width of two meshes or more, by key, of every number that all their runs know."""
     sizes, values = _sizes(meshes), [_banded(runs) for runs in meshes]
+    finest = meshes[sizes.index(min(sizes))]
     limits = {
-        name: limit_of(sizes, [of_mesh[name] for of_mesh in values])
+        name: _floored(
+            name == "E_vib_over_E_0", limit_of(sizes, [of_mesh[name] for of_mesh in values]), finest
+        )
         for name in values[0]
         if all(name in of_mesh for of_mesh in values)
     }
@@ -162,6 +166,12 @@ def vibration_floor(run: Outcome) -> float:
     vibration, check = or_none(energy.vibration), or_none(energy.vibration_check)
     apart = 0.0 if vibration is None or check is None else abs(check - vibration)
     return max(apart, or_none(energy.vibration_floor) or 0.0)
+
+
+def _floored(vibrating: bool, truth: Truth, finest: Placed) -> Truth:
+    """Return a limit, that of the vibration energy with no less uncertainty than its counts allow."""
+    floor = fmean(map(vibration_floor, finest)) if vibrating else 0.0
+    return replace(truth, uncertainty=max(truth.uncertainty, floor))
 
 
 def mesh_means(runs: Placed) -> dict[str, float]:

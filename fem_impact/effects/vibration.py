@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from fem_impact.effects.slots import Effect, ModelSpec, bodies_of
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.physics.contact import contact_estimate
+from fem_impact.physics.wall import ovalling_period
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
@@ -20,7 +21,7 @@ def number(scene: Scene) -> float:
     """Return the longest period that the impact can excite over the contact time."""
     longest = stretching_period(scene)
     if scene.impact.angle > 0:
-        longest = max(longest, bending_period(scene))
+        longest = max(longest, bending_period(scene), ovalling_period(scene.projectile))
     return longest / contact_estimate(bodies_of(scene)).duration
 
 

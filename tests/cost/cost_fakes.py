@@ -36,6 +36,7 @@ def run(scene, fidelity="solid", options=None):
     values["cpu_s"] = {"rigid": 1e-3, "modal": 1e-2}.get(fidelity, 8 * (TIP / h) ** 4)
     values["wall_s"] = 2 * values["cpu_s"] if fidelity == "solid" else 3.0  # a busy machine
     values |= {f"setup_{key}": None if part else values[key] / 4 for key in ("cpu_s", "wall_s")}
+    values |= {"E_vib_check_over_E_0": values["E_vib_over_E_0"], "E_vib_floor_over_E_0": 1e-9}
     if fidelity == "rigid" or "vibration" not in active(scene):
         values["E_vib_over_E_0"] = None
     if part:

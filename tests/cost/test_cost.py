@@ -24,7 +24,7 @@ from fem_impact.cost.judge import (
     verdict,
     worst,
 )
-from fem_impact.cost.limits import EVEN, LOWEST, pair_limit, truths
+from fem_impact.cost.limits import EVEN, LOWEST, mesh_limits, pair_limit, truths
 from fem_impact.cost.measure import judge_stored, measure
 from fem_impact.cost.quantities import TARGETED, chosen
 from fem_impact.cost.settings import FAMILY, ONE_PLACE, Mesh, ladder, on_mesh, placed
@@ -202,7 +202,10 @@ def test_the_best_group_is_the_quickest_that_meets_the_target_or_else_the_finest
 
 def test_the_band_of_coarse_meshes_that_agree_by_chance_reaches_to_the_limit_of_the_finest_two():
     values = dict(zip(FAMILY, (0.010, 0.010, 0.013), strict=True))
-    on = {mesh: [altered(run, E_vib_over_E_0=E) for run in runs_on(mesh)] for mesh, E in values.items()}
+    on = {
+        mesh: [altered(run, E_vib_over_E_0=E, E_vib_check_over_E_0=E) for run in runs_on(mesh)]
+        for mesh, E in values.items()
+    }
     truth, finest = (truths([on[mesh] for mesh in meshes]) for meshes in (FAMILY, FAMILY[1:]))
     groups = {one.name: one for one in ladder(SCENE) if one.kind == "extrapolated"}
     coarse, fine = (
@@ -216,6 +219,18 @@ def test_the_band_of_coarse_meshes_that_agree_by_chance_reaches_to_the_limit_of_
     assert coarse.value["E_vib"] == pytest.approx(0.010)
     assert coarse.band["E_vib"] * scale == pytest.approx(limit.value - 0.010)
     assert fine.band["E_vib"] * scale == pytest.approx(limit.uncertainty)
+
+
+def test_the_band_of_the_vibration_is_no_less_than_its_two_counts_allow():
+    """However well two meshes agree; the other quantities do not know of it."""
+    meshes = [runs_on(mesh) for mesh in FAMILY[1:]]
+    apart = [[altered(run, E_vib_check_over_E_0=0.03) for run in runs] for runs in meshes]
+    plain, doubtful = truths(meshes), truths(apart)
+    finest = apart[1][0].energy.vibration
+    assert plain["E_vib"].uncertainty < 0.002
+    assert doubtful["E_vib"].uncertainty == pytest.approx(0.03 - finest)
+    assert doubtful["e"] == plain["e"]
+    assert mesh_limits(apart)[1]["E_vib_over_E_0"] == pytest.approx(0.03 - finest)
 
 
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):

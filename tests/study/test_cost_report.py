@@ -19,6 +19,7 @@ def setting(kind, cpu_s, error, band=None):
         kind=kind,
         fidelity=kind,
         meshes=[dict(finer=1), dict(finer=0)] if band else [],
+        places=4,
         tip_size_m=None,
         value=dict.fromkeys(NAMES, 0.5),
         error=dict.fromkeys(NAMES, error),

@@ -1,0 +1,55 @@
+"""Ovalling of hollow projectiles, beside the ring of theory and the modes of a mesh."""
+
+import math
+
+import pytest
+
+from fem_impact.effects.vibration import number
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.physics.beam import bending_period
+from fem_impact.physics.wall import ovalling_period
+from fem_impact.plan.choose import resolved
+from fem_impact.plan.plan import plan
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.solid.build import build
+from fem_impact.verdict.screening import screening
+
+RING = {"length": "60 mm", "diameter": "60 mm", "tip_radius": "3 mm"}
+
+
+def ring(bore="24 mm", **changes):
+    """Return a short wide tube, which ovals more slowly than it bends."""
+    size = {**RING, "bore": [["0 mm", bore], ["60 mm", bore]], **changes}
+    return replace_all(load("tube"), {f"projectile.{key}": value for key, value in size.items()})
+
+
+def test_a_ring_of_constant_wall_ovals_as_in_theory():
+    rod = ring("27 mm", tip="plain", tip_radius="0 mm").projectile
+    h, R, steel = 3e-3, 28.5e-3, rod.material
+    D = steel.E * h**3 / (12 * (1 - steel.nu**2))
+    omega = math.sqrt(36 / 5 * D / (steel.rho * h * R**4))
+    assert ovalling_period(rod) == pytest.approx(2 * math.pi / omega, rel=1e-9)
+
+
+def test_solid_bodies_do_not_oval():
+    assert ovalling_period(load("t5b").projectile) == ovalling_period(load("ogive").projectile) == 0.0
+
+
+def test_the_modes_of_a_mesh_begin_with_it():
+    model = build(plan(ring()))
+    n = model.layout.rod_size
+    modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0, count=2)
+    lowest, longest = 1 / modes.frequency[:2]
+    assert longest < ovalling_period(ring().projectile) < 1.1 * lowest
+    assert bending_period(ring()) < 0.3 * lowest
+
+
+def test_it_counts_for_the_effect_of_vibration_and_is_told():
+    scene, slender = ring(), load("tube")
+    share = ovalling_period(scene.projectile) / screening(scene).duration
+    assert number(resolved(scene)) == pytest.approx(share)
+    assert "ovals more slowly than the body bends" in screening(scene).sentence
+    assert "ovals" not in screening(slender).sentence
+    told = [" ".join(simulate(one, "modal").validity.assumptions) for one in (scene, slender)]
+    assert ["ovalling of the wall" in text for text in told] == [True, False]
