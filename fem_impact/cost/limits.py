@@ -131,7 +131,9 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
         if any(mean(quantity, runs) is None for runs in meshes):
             continue
         values = [values_of(quantity, runs) for runs in meshes]
-        truth = _floored(quantity.name == "E_vib", limit_of(sizes, values), meshes[finest])
+        truth = limit_of(sizes, values)
+        if quantity.name == "E_vib":
+            truth = replace(truth, uncertainty=max(truth.uncertainty, _floor(meshes[finest])))
         # the larger of limit and finest value, so that a limit near zero does not inflate the errors
         size = max(abs(truth.value), abs(fmean(values[finest])))
         limits[quantity.name] = replace(truth, scale=quantity.scale(size, meshes[finest][0]))
@@ -141,11 +143,8 @@ def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
 def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, float]]:
     """Return limit and half-width of two meshes or more, by key, of every number that all their runs know."""
     sizes, values = _sizes(meshes), [_banded(runs) for runs in meshes]
-    finest = meshes[sizes.index(min(sizes))]
     limits = {
-        name: _floored(
-            name == "E_vib_over_E_0", limit_of(sizes, [of_mesh[name] for of_mesh in values]), finest
-        )
+        name: limit_of(sizes, [of_mesh[name] for of_mesh in values])
         for name in values[0]
         if all(name in of_mesh for of_mesh in values)
     }
@@ -168,10 +167,18 @@ def vibration_floor(run: Outcome) -> float:
     return max(apart, or_none(energy.vibration_floor) or 0.0)
 
 
-def _floored(vibrating: bool, truth: Truth, finest: Placed) -> Truth:
-    """Return a limit, that of the vibration energy with no less uncertainty than its counts allow."""
-    floor = fmean(map(vibration_floor, finest)) if vibrating else 0.0
-    return replace(truth, uncertainty=max(truth.uncertainty, floor))
+def stated_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, float]]:
+    """Return `mesh_limits`, that of the vibration energy with no less half-width than `vibration_floor`."""
+    limits, bands = mesh_limits(meshes)
+    sizes, name = _sizes(meshes), "E_vib_over_E_0"
+    if name in bands:
+        bands[name] = max(bands[name], _floor(meshes[sizes.index(min(sizes))]))
+    return limits, bands
+
+
+def _floor(runs: Placed) -> float:
+    """Return the mean `vibration_floor` of the runs on a mesh."""
+    return fmean(map(vibration_floor, runs))
 
 
 def mesh_means(runs: Placed) -> dict[str, float]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from math import inf, sqrt
 
 from fem_impact.cost.lanes import Budget, below
-from fem_impact.cost.limits import EVEN, ONE_RUN, Placed, mesh_limits, truths
+from fem_impact.cost.limits import EVEN, ONE_RUN, Placed, stated_limits, truths
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import FEW, PLACES, placed, rungs
 from fem_impact.cost.times import LONGER, about_s, planned_s
@@ -94,7 +94,7 @@ class OwnLadder:
         """
         meshes, wall_s, options = climb.done, climb.budget.spent_s, climb.options
         finest, pair = meshes[-1][0], len(meshes) > 1
-        limits, bands = mesh_limits(meshes[-2:]) if pair else (ALONE, ALONE)
+        limits, bands = stated_limits(meshes[-2:]) if pair else (ALONE, ALONE)
         over = [OVER.format(wall_s, self.budget_s)] if wall_s > self.budget_s else []
         missed = [f"The wanted {100 * self.target:.3g} % is not reached: {climb.told}. {ended}"]
         stated = replace(

@@ -14,7 +14,7 @@ from typing import Any
 
 from fem_impact.cost.judge import Judged, cheapest, worst
 from fem_impact.cost.lanes import below, side_by_side
-from fem_impact.cost.limits import Placed, mesh_limits, mesh_means
+from fem_impact.cost.limits import Placed, mesh_means, stated_limits
 from fem_impact.cost.measure import CostStudy
 from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
 from fem_impact.cost.quantities import TARGETED
@@ -289,7 +289,7 @@ def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> O
     """Return the first outcome with target, expected and achieved error and time in its validity."""
     first, several = meshes[0][0], len(meshes) > 1
     means = mesh_means(meshes[0]) if chosen.meshes else ALONE
-    limits, bands = mesh_limits(meshes) if several else (means, ALONE)
+    limits, bands = stated_limits(meshes) if several else (means, ALONE)
     stated = replace(
         first.validity,
         accuracy_target=chosen.target,

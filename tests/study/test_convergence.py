@@ -34,7 +34,7 @@ def study(out, broken=(), ids=("t5b",)):
 def test_every_mesh_is_run_at_the_places_of_the_grid_that_the_ladder_has():
     jobs = jobs_of("t5b", False)
     assert [[job.scene.accuracy.grid_shift for job in mesh] for mesh in jobs] == [
-        [0.0, 0.25, 0.5, 0.75]
+        [0.0, 0.5, 0.25, 0.75]
     ] * 2 + [[0.0, 0.5]]
     sizes = [mesh[0].scene.accuracy.tip_size for mesh in jobs]
     assert sizes == sorted(sizes, reverse=True)
@@ -91,7 +91,7 @@ def test_the_study_writes_table_data_and_figure(tmp_path):
 def test_a_failed_mesh_is_said_and_the_others_still_count(tmp_path):
     found = study(tmp_path, {"t5b-0.594"}, ("t5b", "t6-17"))
     assert [f["scene_id"] for f in found.document["failures"]] == [
-        f"t5b-0.594-{place}" for place in ("0", "0.25", "0.5", "0.75")
+        f"t5b-0.594-{place}" for place in ("0", "0.5", "0.25", "0.75")
     ]
     assert "| t6-17 | e |" in found.text
     assert "| t5b | e |" not in found.text  # two meshes have no limit
