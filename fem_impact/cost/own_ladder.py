@@ -19,7 +19,7 @@ from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
 ALONE = Unknown("one mesh alone cannot estimate its own error")
-NOT_MEASURED = Unknown("no scene near this one was measured")
+NOT_MEASURED = Unknown("no setting measured on a near scene meets the wanted error in this time")
 SETTLED = EVEN[len(PLACES)] / EVEN[FEW] * sqrt(FEW / len(PLACES))
 """Share of the scatter at few places that is left at all of them."""
 OVER = "The runs for the wanted error took {:.3g} s, more than the budget of {:.3g} s."
@@ -149,7 +149,8 @@ class Climb:
         """Return that error as text."""
         if len(self.done) == 1:
             return ALONE.reason
-        return f"{' and '.join(TARGETED)} are known to {plain(100 * self.achieved, 2)} %"
+        known = achieved_errors(self.done[-2:])
+        return " and ".join(f"{name} is known to {plain(100 * error, 2)} %" for name, error in known.items())
 
     def begin(self) -> None:
         """Run the coarsest mesh once, and at a second place where the next fits at two, too."""
@@ -227,15 +228,21 @@ class Climb:
         )
 
 
-def achieved_error(meshes: Sequence[Placed], kept: float = 1.0) -> float:
-    """Return the largest relative uncertainty of the quantities that a target is about.
+def achieved_errors(meshes: Sequence[Placed], kept: float = 1.0) -> dict[str, float]:
+    """Return the relative uncertainty of each quantity that a target is about.
 
-    ``kept`` is the share of their scatter that counts.
+    ``kept`` is the share of its scatter that counts.
     """
     truth = truths(meshes)
-    return max(
-        (truth[name].uncertainty - (1 - kept) * truth[name].scatter) / truth[name].scale for name in TARGETED
-    )
+    return {
+        name: (truth[name].uncertainty - (1 - kept) * truth[name].scatter) / truth[name].scale
+        for name in TARGETED
+    }
+
+
+def achieved_error(meshes: Sequence[Placed], kept: float = 1.0) -> float:
+    """Return the largest of `achieved_errors`."""
+    return max(achieved_errors(meshes, kept).values())
 
 
 def _edge(outcome: Outcome) -> str:
