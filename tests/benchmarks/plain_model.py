@@ -21,7 +21,7 @@ from pathlib import Path
 
 from fem_impact.cost.limits import truths
 from fem_impact.cost.quantities import QUANTITIES, TARGETED
-from fem_impact.cost.settings import FAMILY, FEWER_PLACES, Mesh
+from fem_impact.cost.settings import FAMILY, FEW, PLACES, Mesh
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 
@@ -74,7 +74,7 @@ def off(run, quantity, truth):
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    placed = [[outcome(PRESENT, name, mesh, out, place) for place in FEWER_PLACES] for mesh in FAMILY]
+    placed = [[outcome(PRESENT, name, mesh, out, place) for place in PLACES[:FEW]] for mesh in FAMILY]
     truth = truths([[Outcome.read(path) for path in paths] for paths in placed])
     files = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
     runs = {model: [json.loads(path.read_text("utf-8")) for path in paths] for model, paths in files.items()}
