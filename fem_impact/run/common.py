@@ -45,6 +45,7 @@ HARDER = Unknown(
 )
 HARD = "neither body yields, so that no hardness limits the pressure of a touching spot"
 UNDETERMINED = Unknown("the contact point does not approach, or no moment acts about the mass centre: 0 / 0")
+NO_PUSH = Unknown("gravity has drawn the rod to the barrier more than that has pushed it away")
 RESIDUAL_LIMIT = 1e-4  # of E_0: above it a run failed
 GRAVITY_TOLD, GRAVITY_RULES = 0.01, 0.5  # speed gained by falling over the approach: told, and too much
 ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d: below it there is none
@@ -266,6 +267,9 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
         return _on_turning(scene, motion, barrier, barrier.Omega_b)
     (d_c, d_d), omega, m = arms(scene), scene.impact.omega, as_on_massive(scene, motion, barrier)
     before, (V_n, V_t, Omega) = (m.v_n, m.v_t), after(m)
+    if V_n <= m.v_n:
+        none = unknown(ArmCoefficients, NO_PUSH.reason)
+        return Restitution(mu=NO_PUSH, mu_c=NO_PUSH, paper=none, edge=none, impulse=none)
     e = float(rigid.restitution(m.v_n, V_n, Omega, d_c, omega))
     spin, alpha = m.k_squared * (Omega - omega), scene.impact.angle
     centre = (spin + d_d * (V_t - m.v_t)) / (V_n - m.v_n)

@@ -15,7 +15,7 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam import HORIZON, horizon
 from fem_impact.physics.contact import effective_mass, projectile
 from fem_impact.plan.plan import plan
-from fem_impact.run.common import barrier_motion, motion, restitution
+from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
@@ -107,6 +107,16 @@ def test_only_effects_of_the_model_are_named():
 def test_a_thick_rod_has_modes_too():
     thick = {"projectile.length": "300 mm", "projectile.diameter": "60 mm"}
     assert simulate(replace_all(load("t5b"), thick), "modal").energy.vibration > 0
+
+
+def test_a_rod_that_gravity_draws_in_more_than_it_is_pushed_away_has_no_coefficients():
+    scene = load("t5b")
+    still = barrier_motion(scene, 0.0, 0.0, 0.0)
+    found = restitution(scene, motion(plan(scene, "rigid"), -1.6, -0.5, 90.0, 0.17, 5.56e-4), still)
+    for number in (found.mu, found.mu_c, found.edge.e, found.paper.E_ln, found.impulse.d_c):
+        assert number == NO_PUSH
+    pushed = restitution(scene, motion(plan(scene, "rigid"), -1.4, -0.5, 90.0, 0.17, 5.56e-4), still)
+    assert pushed.mu > 0
 
 
 def test_arms_that_do_not_approach_have_no_restitution():
