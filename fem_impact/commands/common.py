@@ -158,7 +158,12 @@ def stated_budget(options: Options) -> float | None:
     """Return the time, s, of ``--budget``, None where it is not given."""
     from fem_impact.scene.units import option_quantity
 
-    return option_quantity(options.budget, "time", "--budget") if options.budget else None
+    if not options.budget:
+        return None
+    stated = option_quantity(options.budget, "time", "--budget")
+    if stated <= 0:
+        raise UsageError("must lie above 0.", key="--budget", value=options.budget)
+    return stated
 
 
 def print_json(document: Any) -> None:

@@ -104,6 +104,14 @@ def can_be_made(scene: Scene) -> bool:
     return True
 
 
+def _makeable(scene: Scene, mesh: Mesh) -> bool:
+    """Say whether a scene may state the sizes of a mesh, and it can be made."""
+    try:
+        return can_be_made(on_mesh(scene, mesh))
+    except SceneError:
+        return False
+
+
 @lru_cache(maxsize=64)
 def rungs(scene: Scene) -> tuple[Mesh, ...]:
     """Return those of `RUNGS` that can be made for a scene, from coarse to fine.
@@ -113,7 +121,7 @@ def rungs(scene: Scene) -> tuple[Mesh, ...]:
     SceneError
         None can be made: the reason of that with the scene's own cells at the tip.
     """
-    made = tuple(mesh for mesh in RUNGS if can_be_made(on_mesh(scene, mesh)))
+    made = tuple(mesh for mesh in RUNGS if _makeable(scene, mesh))
     if not made:
         plan(on_mesh(scene, FAMILY[-1]))
     return made

@@ -46,7 +46,8 @@ def within(data: Table, key: str, read: Callable[[Any], T], default: Table | Non
     """Read one sub-table and place its complaints below its key."""
     table = data.get(key, default) if default is not None else needed(data, key)
     if not isinstance(table, Mapping) and not (key in ("material", "accuracy") and isinstance(table, str)):
-        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}].")
+        text = {"accuracy": ' or write accuracy = "5 %"', "material": " or name one"}.get(key, "")
+        raise SceneError("must be a table.", key=key, value=table, remedy=f"Open it with [{key}]{text}.")
     try:
         return read(table)
     except SceneError as error:

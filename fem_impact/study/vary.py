@@ -53,6 +53,9 @@ def read_vary(text: str) -> tuple[str, list[Any]]:
     if not equals or not key.strip() or not listed.strip():
         raise UsageError("is not of the form key=values.", key="--vary", value=text, remedy=_EXAMPLE)
     match = _RANGE.fullmatch(listed)
+    if match is None and re.match(rf"\s*{_NUMBER}[^,]*\.\.", listed):
+        problem = "is no range: that has a first and a last value, a step and one unit at its end."
+        raise UsageError(problem, key="--vary", value=text, remedy=_EXAMPLE)
     return key.strip(), _steps(match, text) if match else _listed(listed)
 
 

@@ -21,6 +21,7 @@ from fem_impact.verdict.change import (
     modal_pair,
     unfinished,
 )
+from fem_impact.verdict.reliability import known_error
 from fem_impact.verdict.screening import Screening, screening
 from fem_impact.verdict.twins import inclined
 
@@ -111,9 +112,9 @@ def assess(
     scene : Scene
         Any rod and barrier; a mesh or target error that it states is not used.
     fidelity : "auto", "modal" or "solid"
-        ``auto`` takes the reduced model with its known error, and finite elements on two meshes or more where
-        that error leaves the answer open and the budget allows. Other inclinations than the scene's are
-        computed with the reduced model.
+        ``auto`` takes the reduced model with its known error, and finite elements where that error leaves the
+        answer open, or is that of scenes unlike this one, and the budget allows. Other inclinations than the
+        scene's are computed with the reduced model.
     tolerance : change of e that may be neglected
     budget_s : wall time of the finite elements, s
     workers : runs at a time, 1 or 2
@@ -130,7 +131,9 @@ def assess(
     reduced = fidelity == "modal" or not not_reduced(scene)
     quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(not_reduced(scene))])
     here, used, more = quick, "modal", "--fidelity solid"
-    open_still = quick is None or quick.answer(tolerance) == "undecided"
+    # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
+    unlike = quick is not None and not known_error(scene).alike
+    open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
         least = LEAST_PAIRS if fidelity == "solid" else int(not reduced)
         solid, told, more = _solid(scene, least, tolerance, (budget_s, workers), quick, tell)

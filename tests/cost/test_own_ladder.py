@@ -9,10 +9,10 @@ from cost_fakes import Here, run
 from wide_contact import WIDE
 
 import fem_impact.run.simulate
-from fem_impact.cost import lanes, to_target
+from fem_impact.cost import lanes, settings, to_target
 from fem_impact.cost.measure import affordable, measure
 from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
-from fem_impact.cost.settings import FAMILY, FEW, RUNGS, family, ladder, on_mesh, placed
+from fem_impact.cost.settings import FAMILY, FEW, RUNGS, Mesh, family, ladder, on_mesh, placed, rungs
 from fem_impact.cost.times import LONGER
 from fem_impact.cost.to_target import settle
 from fem_impact.errors import SceneError, UsageError
@@ -202,6 +202,13 @@ def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
     assert outcome.validity.accuracy_setting.startswith("3 meshes of its own")
     assert outcome.cost.tip_size == pytest.approx(family(WIDE)[-1].sizes(WIDE)[0])
     assert [len(placed(WIDE, mesh)) for mesh in family(WIDE)] == [4, 4, 2]
+
+
+def test_a_mesh_whose_sizes_no_scene_may_state_is_left_out(monkeypatch):
+    """Those of a contact so narrow that its finest cells would be under 0.01 mm."""
+    monkeypatch.setattr(Mesh, "sizes", lambda mesh, scene: (2e-5 / 2**mesh.finer,) * 2)
+    monkeypatch.setattr(settings, "can_be_made", lambda scene: True)
+    assert rungs.__wrapped__(FAR) == RUNGS[:3]
 
 
 @pytest.mark.parametrize(("stated", "taken"), [(6, 8), (8, 8), (12, 12)])

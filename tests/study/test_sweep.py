@@ -29,13 +29,20 @@ from fem_impact.tables.table import read_csv
         ("projectile.length=200 mm, 40 cm", ["200 mm", "40 cm"]),
         ("accuracy.across=8,12", [8, 12]),
         ("projectile.tip=A,B", ["A", "B"]),
+        ("projectile.mesh=../a.msh,b.msh", ["../a.msh", "b.msh"]),
     ],
 )
 def test_lists_and_ranges_with_units(text, values):
     assert read_vary(text) == (text.partition("=")[0].strip(), values)
 
 
-@pytest.mark.parametrize("text", ["impact.angle", "impact.angle=", "x=10..60:0deg", "x=60..10:5deg"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        *("impact.angle", "impact.angle=", "x=10..60:0deg", "x=60..10:5deg"),
+        *("x=15..60", "x=15..60deg", "x=15deg..60deg:5deg", "x=15-60..70"),
+    ],
+)
 def test_what_names_no_values_is_refused(text):
     with pytest.raises(UsageError, match=r"--vary impact.angle=15..60:5deg"):
         read_vary(text)

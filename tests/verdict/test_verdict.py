@@ -263,6 +263,16 @@ def test_one_mesh_that_the_reduced_model_contradicts_does_not_decide(monkeypatch
     assert "the band holds both" in found.here.source
 
 
+def test_a_scene_like_none_that_was_computed_both_ways_is_not_left_to_the_reduced_model(monkeypatch):
+    """However wide the tolerance: its error is that of other materials."""
+    asked = meshed(monkeypatch, [0.0, 0.0])
+    copper = replace_all(load("t5b"), {"projectile.material": "copper"})
+    found = assess(copper, tolerance=0.9, budget_s=1e5)
+    assert (found.fidelity, found.answer) == ("solid", "yes")
+    assert len(asked) == 1  # the reduced model bears it out
+    assert assess(load("t5b"), tolerance=0.9, budget_s=1e5).fidelity == "modal"
+
+
 def test_a_mesh_without_an_answer_leaves_one_that_the_reduced_model_contradicts_undecided(monkeypatch):
     meshed(monkeypatch, [-0.4, None])
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
