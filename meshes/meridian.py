@@ -131,7 +131,10 @@ class Meridian:
         sides = self.at(np.array([arc - reach, arc, arc + reach]))
         step = np.diff(sides, axis=0)
         step = step / np.hypot(*step.T)[:, None]
-        mean = step.sum(axis=0) / np.hypot(*step.sum(axis=0))
+        mean = step.sum(axis=0)
+        if not mean.any():  # the surface turns back upon itself
+            mean = step[1]
+        mean = mean / np.hypot(*mean)
         return np.array([-mean[1], mean[0]])
 
     def snap(self, points: FloatArray) -> FloatArray:

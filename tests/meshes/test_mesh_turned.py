@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import meshes
@@ -250,7 +250,12 @@ def test_a_random_closed_tube_is_refused_unrefined_or_never_folds(tube, across, 
     assert 2 * found.volume == pytest.approx(true, rel=0.12)  # thin walls of polygons with 12 sides
 
 
+FIN = np.array([[0, 0], [1, 0], [0.5, 2], [1, 2], [0.5, 2], [0, 2.25]]) / 64
+"""A profile that turns back upon itself, m."""
+
+
 @settings(max_examples=60, deadline=None)
+@example(FIN, 6)
 @given(profiles(), st.sampled_from([6, 8, 12]))
 def test_a_random_profile_is_meshed_without_folds_or_refused(line, across):
     try:
