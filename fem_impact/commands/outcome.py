@@ -37,10 +37,8 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
     """
     lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
-    by_tests, by_tip = (or_none(by.e) for by in (outcome.restitution.paper, outcome.restitution.edge))
-    arms = ("tests'" if own_tests else "paper's", "e_paper")
-    if by_tests in (None, by_tip):  # no tests, or tests that state no arms
-        arms = ("tip's", "e_edge")
+    stated = outcome.restitution.tests_state_arms
+    arms = ("tests'" if own_tests else "paper's", "e_paper") if stated else ("tip's", "e_edge")
     restitution = (f"restitution e ({arms[0]} arms)", arms[1], "")
     barrier = outcome.barrier
     moved = any(or_none(v) != 0 for v in (barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt))

@@ -191,9 +191,8 @@ def _approximate_inverse(stiffness: MassStiffness, root: Array) -> tuple[Product
     # another quarter less where it starts from a narrow band
     order = reverse_cuthill_mckee(shifted.tocsr(), symmetric_mode=True)
     free, shifted = free[order], shifted[order][:, order].tocsc()
-    how: dict[str, Any] = {"permc_spec": "MMD_AT_PLUS_A", "options": {"SymmetricMode": True}}
     try:
-        factor = splu(shifted, diag_pivot_thresh=0.0, **how)
+        factor = splu(shifted, "MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     except MemoryError:  # SuperLU's numbers have 32 bits: it fails with memory left
         raise RunError(
             f"The modes of the rod need a factor of its stiffness over {len(free)} unknowns, which is too "

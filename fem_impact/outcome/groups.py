@@ -169,6 +169,11 @@ class Restitution:
         "impulse", "the arms of the centre of the contact impulse, where e_m = -1"
     )
 
+    @property
+    def tests_state_arms(self) -> bool:
+        """Whether there are tests, with arms of their own beside the tip's."""
+        return or_none(self.paper.e) not in (None, or_none(self.edge.e))
+
 
 @group
 class Energy:

@@ -135,12 +135,8 @@ def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
 
 
 def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
-    # only a scene whose tests state arms has others than the tip's
-    by_tests, by_tip = (or_none(by.e) for by in (outcome.restitution.paper, outcome.restitution.edge))
-    by_tip_only = by_tests in (None, by_tip)
-    restitution = (
-        ("e, the tip's arms", "e_edge", "") if by_tip_only else ("e, the tests' arms", "e_paper", "")
-    )
+    stated = outcome.restitution.tests_state_arms
+    restitution = ("e, the tests' arms", "e_paper", "") if stated else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
     cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
     residual = number(outcome.energy.residual, 2)

@@ -12,9 +12,8 @@ from fem_impact.modal.impact import ModalResult
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import ContactBodies, between
-from fem_impact.physics.wall import ovalling_period
+from fem_impact.physics.wall import slow_ovalling
 from fem_impact.plan.measured import reduced_table
 from fem_impact.plan.plan import Plan
 from fem_impact.run.common import (
@@ -105,10 +104,8 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
 
 def _ovals(scene: Scene) -> list[str]:
     """Tell of a wall that ovals more slowly than the body bends, which this model leaves out."""
-    period = ovalling_period(scene.projectile)
-    if scene.impact.angle == 0 or period <= bending_period(scene):
-        return []
-    return [OVALLING.format(period * 1e6)]
+    period = slow_ovalling(scene)
+    return [OVALLING.format(period * 1e6)] if period else []
 
 
 def _tilted(result: ModalResult) -> list[str]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fem_impact.effects.slots import bodies_of
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate, projectile
-from fem_impact.physics.wall import ovalling_period
+from fem_impact.physics.wall import slow_ovalling
 from fem_impact.plan.choose import resolved
 from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
@@ -24,7 +24,7 @@ class Screening:
     Attributes
     ----------
     period, duration : first bending period T1 and contact time tau of the first contact, s
-    ovalling : period of the ovalling of a hollow body's wall, s; 0 of a solid one
+    ovalling : period of a hollow body's ovalling where it is slower than bending, s; otherwise 0
     gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
     straight : whether the rod strikes along its axis
     """
@@ -56,7 +56,7 @@ class Screening:
             f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, estimated "
             f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
         )
-        if self.ovalling <= self.period or self.straight:
+        if not self.ovalling:
             return told
         return (
             f"{told}. Neither number knows of the wall, which ovals more slowly than the body bends: within "
@@ -70,7 +70,7 @@ def screening(scene: Scene) -> Screening:
     return Screening(
         bending_period(scene),
         float(contact_estimate(bodies).duration),
-        ovalling_period(scene.projectile),
+        slow_ovalling(scene),
         float(projectile(scene).gamma),
         scene.impact.angle == 0,
     )
