@@ -110,11 +110,13 @@ def _bare(name: str) -> str:
 def did_you_mean(name: str, known: Iterable[str], otherwise: str, bare: Callable[[str], str] = _bare) -> str:
     """Return a remedy that proposes the nearest known name in any case, ``otherwise`` where none is near.
 
-    Hyphens before a name do not make it nearer to another; ``bare`` may leave out other parts of names.
+    Hyphens before a name do not make it nearer to another, and of two names that differ in them alone the one
+    like the given name is proposed; ``bare`` may leave out other parts of names.
     """
     from difflib import get_close_matches
 
-    by_bare = {bare(candidate): candidate for candidate in known}
+    like_it_last = sorted(known, key=lambda candidate: candidate.startswith("-") == name.startswith("-"))
+    by_bare = {bare(candidate): candidate for candidate in like_it_last}
     near = get_close_matches(bare(name), by_bare, 1)
     return f"Did you mean {by_bare[near[0]]}?" if near else otherwise
 

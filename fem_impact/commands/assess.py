@@ -27,6 +27,7 @@ def assess(options: Options) -> int:
     from fem_impact.verdict.dropped import dropped
     from fem_impact.verdict.sentences import document
 
+    means = _budget(options), min(options.workers or cores(), 2)
     scene = named_scene(options, SHORT) or _short(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
@@ -35,7 +36,6 @@ def assess(options: Options) -> int:
         from fem_impact.scene.write import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
-    means = _budget(options), min(options.workers or cores(), 2)
     verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
     found = document(verdict, _command(options))
     if case is not None:
@@ -92,6 +92,9 @@ def _budget(options: Options) -> float:
     from fem_impact.verdict.assess import BUDGET
 
     stated = stated_budget(options)
+    if stated is not None and options.fidelity == "modal":
+        problem = "is for finite elements, and --fidelity modal runs none."
+        raise UsageError(problem, key="--budget", value=options.budget, remedy="Leave out one of the two.")
     return BUDGET if stated is None else stated
 
 

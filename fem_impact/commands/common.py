@@ -7,7 +7,8 @@ import math
 import sys
 import tempfile
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -29,9 +30,10 @@ def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
 
     Its title tells the values of projectile, barrier, surface and impact that were changed.
     """
-    from fem_impact.scene.shipped import load, replace, replace_all, titled
+    from fem_impact.scene.shipped import load_to_change, replace, replace_all, titled
 
-    scene, given = load(id_or_path), read_changes(changes)
+    given = read_changes(changes)
+    scene = load_to_change(id_or_path, given)
     if not given:
         return scene
     made = replace_all(scene, given)
@@ -115,7 +117,7 @@ def checked_result(result: Path) -> Path:
     if not result.exists():
         raise ResultError(f"{result}: there is no such directory. Name one that `fem-impact run` wrote.")
     if not result.is_dir():
-        raise ResultError(f"{result}: is a file. Name the directory of the results, such as {result.parent}.")
+        raise ResultError(f"{result}: is a file, not the directory of a result. {_directory_for(result)}")
     if not any((result / name).is_file() for name in RESULT_FILES):
         if (result / "history.csv").is_file():
             way = f"Go on with `fem-impact run {result / 'scene.toml'} --resume --out {result}`."
@@ -126,6 +128,15 @@ def checked_result(result: Path) -> Path:
         names = " or ".join(RESULT_FILES)
         raise ResultError(f"{result}: holds no {names}. Name a directory that `fem-impact run` wrote.")
     return result
+
+
+def _directory_for(file: Path) -> str:
+    """Return what to name instead of a file: its directory if that holds results, or how to make some."""
+    if any((file.parent / name).is_file() for name in RESULT_FILES):
+        return f"Name the directory that it lies in: {file.parent}"
+    if file.suffix == ".toml":
+        return f"Compute the scene by `fem-impact run {file}`, which prints its directory at the end."
+    return "Name the one that `fem-impact run` printed at its end."
 
 
 def _refuse_files(out: Path) -> None:
@@ -152,6 +163,20 @@ def _prove_writable(directory: Path) -> None:
 def _cannot(out: Path, error: Exception) -> str:
     reason = getattr(error, "strerror", None) or str(error)
     return f"{out}: cannot be written ({reason}). Choose another directory with --out."
+
+
+@contextmanager
+def told_kept(out: Path, options: Options) -> Iterator[None]:
+    """Say at the end which older results of a directory were set aside, and where they are."""
+    from fem_impact.files.run_directory import earlier
+
+    before = earlier(out)
+    try:
+        yield
+    finally:
+        for place in earlier(out):
+            if place not in before and not options.quiet:
+                sys.stderr.write(f"Older results that were in {out} are kept in {place}\n")
 
 
 def stated_budget(options: Options) -> float | None:

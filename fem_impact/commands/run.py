@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import shlex
 import sys
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from fem_impact.commands.common import (
     shown_path,
     size_text,
     stated_budget,
+    told_kept,
 )
 from fem_impact.commands.options import Options
 from fem_impact.commands.terminal import chosen_meter, print_table
@@ -45,25 +47,21 @@ def run(options: Options) -> int:
     """Compute one scene, write its results and print them."""
     scene = changed_scene(options.scene, options.changes)
     if options.resume and options.fidelity in ("rigid", "modal"):
-        problem, remedy = "is for finite elements only: this run takes seconds.", "Leave it out."
-        raise UsageError(problem, key="--resume", value=options.fidelity, remedy=remedy)
+        problem = f"is for finite elements only: a {options.fidelity} run takes seconds."
+        raise UsageError(problem, key="--resume", remedy="Leave it out.")
     say_kept(scene, options)
     chosen = _setting(scene, options)
     _say_plan(scene, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or _default_out(scene, options))
     from fem_impact.commands.outcome import print_outcome
     from fem_impact.cost.to_target import simulate
-    from fem_impact.files.run_directory import earlier
 
-    meter, before = chosen_meter(options), earlier(out)
     try:
-        run_options = RunOptions(out, meter, options.resume, options.checkpoint)
-        outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
+        with told_kept(out, options), closing(chosen_meter(options)) as meter:
+            run_options = RunOptions(out, meter, options.resume, options.checkpoint)
+            outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
     except KeyboardInterrupt:
         raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
-    finally:
-        meter.close()
-        _say_kept(out, before, options)
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
@@ -146,14 +144,6 @@ def _way_on(out: Path) -> str:
     if (out / CHECKPOINT).exists():
         return "--resume goes on from the last checkpoint."
     return "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
-
-
-def _say_kept(out: Path, before: list[Path], options: Options) -> None:
-    from fem_impact.files.run_directory import earlier
-
-    for place in earlier(out):
-        if place not in before and not options.quiet:
-            sys.stderr.write(f"An older run that was in {out} is kept in {place}\n")
 
 
 def _default_out(scene: Scene, options: Options) -> Path:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fem_impact.commands.about_studies import OWN_TESTS
-from fem_impact.commands.common import checked_out, print_json
+from fem_impact.commands.common import checked_out, print_json, told_kept
 from fem_impact.commands.options import Options
 from fem_impact.commands.terminal import chosen_meter, print_markdown
 from fem_impact.errors import RunError, UsageError, did_you_mean
@@ -35,7 +35,12 @@ def study(options: Options) -> int:
             return _report(options, out)
     request = Request(out, ids, options.quick)
     page = asked_page(options)
-    with directory_lock(out), closing(chosen_meter(options)) as meter, _workers(options) as executor:
+    with (
+        directory_lock(out),
+        told_kept(out, options),
+        closing(chosen_meter(options)) as meter,
+        _workers(options) as executor,
+    ):
         if options.estimate:
             return _estimate(options, request, meter, executor)
         return _study(options, request, meter, executor, page)

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import shlex
 import sys
+from collections.abc import Mapping
 from contextlib import closing, nullcontext
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.commands.common import changed_scene, checked_out, print_json
+from fem_impact.commands.common import changed_scene, checked_out, print_json, read_changes, told_kept
 from fem_impact.commands.options import Options
 from fem_impact.commands.terminal import chosen_meter, print_markdown
-from fem_impact.errors import RunError, UsageError
+from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.jobs.executors import cores, on_scheduler
 
 if TYPE_CHECKING:
@@ -20,22 +22,24 @@ if TYPE_CHECKING:
 
 def sweep(options: Options) -> int:
     """Compute all combinations, write table, figures and report, and print the findings."""
-    from fem_impact.scene.write import digest
     from fem_impact.study.results import require_columns
-    from fem_impact.study.sweep import FIDELITY, publish_sweep
+    from fem_impact.study.sweep import FIDELITY, cases_digest, publish_sweep
     from fem_impact.study.sweep import sweep as swept
     from fem_impact.study.vary import cases
 
     columns = _columns(options)
     require_columns(columns)
-    scene, vary = changed_scene(options.scene, options.changes), _vary(options)
+    vary = _vary(options)
+    _refuse_both(read_changes(options.changes), vary)
+    scene = changed_scene(options.scene, options.changes)
     cases(scene, vary)  # refuses what cannot run before a directory is made
-    out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{digest(scene)[:8]}")
     fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
+    about = cases_digest(scene, vary, fidelity)
+    out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{about[:8]}")
     lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
-    with closing(chosen_meter(options)) as meter, lent as executor:
+    with told_kept(out, options), closing(chosen_meter(options)) as meter, lent as executor:
         results = swept(scene, vary, fidelity, out, workers, meter, executor)
-    made = publish_sweep(results, scene.title, _line(options), out, columns)
+        made = publish_sweep(results, scene.title, _line(options), out, columns, about)
     if options.json:
         print_json(_document(results, out))
     else:
@@ -53,6 +57,24 @@ def _vary(options: Options) -> dict[str, list[Any]]:
     if twice:
         raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
     return dict(pairs)
+
+
+def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
+    """Refuse a value of ``--set`` that a varied one takes the place of, and an impact stated in two ways."""
+    from fem_impact.scene.impact import WAYS, the_way
+    from fem_impact.scene.shipped import bare, moved
+
+    for key, other in product(changes, vary):
+        if bare(key) == bare(other) or key.startswith(f"{other}."):
+            remedy = "Leave out one of the two."
+            raise UsageError(f"is given beside --vary {other}.", key="--set", value=key, remedy=remedy)
+    stated = moved([*changes, *vary])
+    if not any(set(way) & stated for way in WAYS):
+        return
+    try:
+        the_way(stated)
+    except SceneError as error:
+        raise error.under("impact", "--set, --vary") from None
 
 
 def _columns(options: Options) -> list[str]:

@@ -1,7 +1,8 @@
-"""The directory of a run: names of its files, older runs set aside, drafts removed."""
+"""The directory of a run or study: names of its files, older results set aside, drafts removed."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -17,14 +18,27 @@ DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""
 
 
+PUBLISHED = ("study.json", "summary.md", "*.csv", "sweep.parquet", "figures", "report.html")
+"""The report of a study or sweep; its outcomes stay in the store."""
+
+
 def set_aside(out: Path) -> Path | None:
     """Move the files of an older run, and those made from them, to a directory in ``out``; return it."""
     computed = [out / name for name in COMPUTED if (out / name).exists()]
+    return _moved(out, computed, [path for name in DERIVED for path in out.glob(name)])
+
+
+def set_report_aside(out: Path) -> Path | None:
+    """Move the report of an older study or sweep to a directory in ``out``; return it."""
+    return _moved(out, [path for name in PUBLISHED for path in out.glob(name) if path.name not in BESIDE])
+
+
+def _moved(out: Path, computed: Sequence[Path], derived: Sequence[Path] = ()) -> Path | None:
     if not computed:
         return None
     place = _free(out, max(path.stat().st_mtime for path in computed))
     make_directory(place)
-    for path in [*computed, *(path for name in DERIVED for path in out.glob(name))]:
+    for path in (*computed, *derived):
         path.rename(place / path.name)
     return place
 

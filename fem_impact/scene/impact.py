@@ -119,7 +119,12 @@ def restated(old: Impact, table: dict[str, Any], changed: Collection[str]) -> di
         if "angle" not in new or old.stated != WAYS[2] or abs(old.beside) > BESIDE:
             return table
         table, new = {**table, "speed": fields.SPEED.write(hypot(old.v_n, old.v_t))}, {"speed"}
-    kept = {key for way in WAYS if set(way) & new for key in way}
-    others = {key for way in WAYS for key in way} - kept
-    both = {p.key: p.write(getattr(old, p.key)) for p in (fields.V_N, fields.V_T) if p.key in kept - new}
-    return {**both, **{key: value for key, value in table.items() if key not in others}}
+    both = (fields.V_N, fields.V_T) if new & set(WAYS[2]) else ()
+    return one_way({**{p.key: p.write(getattr(old, p.key)) for p in both if p.key not in new}, **table}, new)
+
+
+def one_way(table: dict[str, Any], new: Collection[str]) -> dict[str, Any]:
+    """Return the table of an impact without the ways to state the velocities that new keys replace."""
+    kept = {key for way in WAYS if set(way) & set(new) for key in way}
+    others = {key for way in WAYS for key in way} - kept if kept else set()
+    return {key: value for key, value in table.items() if key not in others}

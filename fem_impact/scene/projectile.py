@@ -169,19 +169,26 @@ def _check_segments(rod: ProjectileSpec) -> None:
         if end == inf:
             remedy = "Give its end; only the last segment may leave it out and ends at the tail."
             raise SceneError("is missing.", key=f"segments[{number}].to", remedy=remedy)
+        if number < len(rod.segments) and end >= rod.length:
+            raise SceneError(
+                f"leaves no room for the next segment: the projectile is {rod.length * 1e3:.6g} mm long.",
+                key=f"segments[{number}].to",
+                value=f"{end * 1e3:g} mm",
+                remedy=f"Give an end before {rod.length * 1e3:.6g} mm, or a longer projectile.",
+            )
         if not end > before:
             raise SceneError(
                 "must end behind the one before it.",
                 key=f"segments[{number}].to",
                 value=f"{end * 1e3:g} mm",
-                remedy=f"Give an end beyond {before * 1e3:g} mm, or a longer projectile.",
+                remedy=f"Give an end beyond {before * 1e3:g} mm.",
             )
     if abs(ends[-1] - rod.length) > 1e-9 * rod.length:
         raise SceneError(
-            f"must end at the tail, {rod.length * 1e3:.6g} mm from the tip.",
+            f"must end at the tail: the projectile is {rod.length * 1e3:.6g} mm long.",
             key=f"segments[{len(rod.segments)}].to",
             value=f"{ends[-1] * 1e3:.6g} mm",
-            remedy='Leave its "to" out: the last segment then ends at the tail.',
+            remedy='Leave "to" out, so that the last segment ends at the tail, or change the length.',
         )
     if rod.material != rod.segments[0].material:
         raise SceneError("is not that of the first segment.", key="material", value=rod.material.name)

@@ -25,6 +25,7 @@ from fem_impact.scene.shapes import (
     Profile,
     read_points,
     refuse_as_tip,
+    refuse_tip,
     sizes_of,
     stated_by_length,
     stated_points,
@@ -46,8 +47,12 @@ _TOML = 'A scene is a TOML file: key = value lines under [section] headings, tex
 
 def read_toml(path: str | Path) -> Scene:
     """Read one scene file."""
-    data = _beside(_parse(_load(Path(path)), str(path)), Path(path))
-    return read_dict(_with_points(data, Path(path)), str(path))
+    return read_dict(read_tables(Path(path)), str(path))
+
+
+def read_tables(path: Path) -> dict[str, Any]:
+    """Return the tables of a scene file unchecked, with its own files found from its place."""
+    return _with_points(_beside(_parse(_load(path), str(path)), path), path)
 
 
 def _beside(data: dict[str, Any], path: Path) -> dict[str, Any]:
@@ -267,6 +272,7 @@ def _of_mesh(table: Table, own: dict[str, Any]) -> ProjectileSpec:
 def _named_shape(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     """Read a shape by name; those that are rods with a published kind of tip become such rods."""
     name = table["shape"]
+    refuse_tip(table)
     by_length = stated_by_length(name, table)
     sizes = numbers_of(table, sizes_of(name, by_length), ("shape", "material"))
     material = within(table, "material", _material)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
@@ -40,6 +40,8 @@ SIZES = (
     ),
 )
 BY_LENGTH = "nose_length"
+TIP = ("tip", "tip_radius", "tip_radius_m")
+"""Keys of a rod's tip."""
 REPLACED = ("calibre_radius", "cone_angle")  # sizes that the length of the nose may stand for
 # sizes that a shape needs, in the order in which they are written
 NEEDS = {
@@ -79,6 +81,16 @@ def _si(key: str) -> tuple[str, ...]:
     """Return the name of a size with its SI unit, if it has one."""
     name = next(size.si_key for size in SIZES if size.key == key)
     return (name,) if name else ()
+
+
+def refuse_tip(stated: Mapping[str, Any]) -> None:
+    """Refuse the tip of a rod beside a named shape, which has its own (SceneError)."""
+    key = next((key for key in TIP if key in stated), None)
+    if key:
+        remedy = f"Leave out {key}, or shape."
+        raise SceneError(
+            "stands beside a shape, which has its own.", key=key, value=stated[key], remedy=remedy
+        )
 
 
 def refuse_as_tip(tip: object) -> None:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from difflib import get_close_matches
 from functools import cache
 from pathlib import Path
@@ -11,11 +12,11 @@ from typing import Any
 
 from fem_impact.errors import SceneError, UsageError, did_you_mean
 from fem_impact.scene import fields
-from fem_impact.scene.impact import restated
+from fem_impact.scene.impact import one_way, restated
 from fem_impact.scene.library import CHANGED, nearest_scene, shipped, stated
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.read import read_dict, read_toml
-from fem_impact.scene.shapes import BY_LENGTH, REPLACED
+from fem_impact.scene.read import read_dict, read_scene, read_tables, read_toml
+from fem_impact.scene.shapes import BY_LENGTH, REPLACED, TIP
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.units import DIMENSIONS, parse_quantity
 from fem_impact.scene.write import to_dict
@@ -41,6 +42,29 @@ def load(id_or_path: str | Path) -> Scene:
     return read_toml(Path(name))
 
 
+def load_to_change(id_or_path: str | Path, changes: Mapping[str, Any]) -> Scene:
+    """Return a scene that is to be changed; what a change replaces in its file is not refused.
+
+    Raises
+    ------
+    UsageError, SceneError
+        As `load`, for what the changes do not mend.
+    """
+    try:
+        return load(id_or_path)
+    except SceneError:
+        if not changes:
+            raise
+    path = Path(id_or_path)
+    data = read_tables(path)
+    for key, value in changes.items():
+        with suppress(SceneError):  # what stands in no table of the file is told when it is changed
+            _change(data, key, value)
+    if isinstance(data.get("impact"), dict):
+        data["impact"] = one_way(data["impact"], moved(changes))
+    return read_dict(data, f"{path} with --set")
+
+
 @cache
 def _shipped(name: str) -> Scene:
     return read_dict(stated(name), f"shipped scene {name}")
@@ -59,28 +83,58 @@ def replace(scene: Scene, key: str, value: Any) -> Scene:
     return replace_all(scene, {key: value})
 
 
-def replace_all(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "--set") -> Scene:
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
     A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
     property renames its material, and a changed rod, impact or surface state no longer repeats a measured
     set, which the title says: a name never stands for other values. Friction, materials, effects and accuracy
-    are the model's side and leave ``measured`` as it is.
+    are the model's side and leave ``measured`` as it is. ``source`` is named in every message.
+
+    Raises
+    ------
+    SceneError
+        A key is none of a scene, a change takes out what another one states, or the scene is refused.
     """
+    try:
+        return read_scene(_changed(scene, changes))
+    except SceneError as error:
+        raise error.under("", source) from None
+
+
+def _changed(scene: Scene, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a scene with its changes, and with what follows from them."""
     data = to_dict(scene)
     for key, value in changes.items():
         _change(data, key, value)
+    if undone := next((key for key in changes if not _stands(data, key)), ""):
+        remedy = "Keep one of the two."
+        raise SceneError("is taken out again by another change of the same call.", key=undone, remedy=remedy)
     if other := {key: value for key, value in changes.items() if _is_another_impact(key, value)}:
         measured = data.pop("measured", "")
         if "title" not in changes:
             data["title"] = _title(data["title"], measured, other)
-    if moved := {_bare(key.removeprefix("impact.")) for key in changes if key.startswith("impact.")}:
-        data["impact"] = restated(scene.impact, data["impact"], moved)
+    if new := moved(changes):
+        data["impact"] = restated(scene.impact, data["impact"], new)
     if any(key.startswith("projectile.") for key in changes) and "projectile.segments" not in changes:
         _end_at_tail(data["projectile"])
     if LENGTH & changes.keys() and "projectile.bore" not in changes:
         _open_at_tail(data["projectile"], scene.projectile)
-    return read_dict(data, "--set")
+    return data
+
+
+def _stands(data: dict[str, Any], key: str) -> bool:
+    """Return whether a dotted key has a value."""
+    *path, last = key.split(".")
+    table: Any = data
+    for name in path:
+        table = table.get(name) if isinstance(table, dict) else None
+    return isinstance(table, dict) and last in table
+
+
+def moved(changes: Iterable[str]) -> set[str]:
+    """Return the keys of the impact that are changed, without units."""
+    return {bare(key.removeprefix("impact.")) for key in changes if key.startswith("impact.")}
 
 
 def _end_at_tail(rod: Any) -> None:
@@ -105,13 +159,16 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     if path[-2:] == ["material", "rate"]:
         _open_rate(_section(data, path[:-1], key), last)
     if not path and last not in data:
-        _refuse_bare(key, data)
+        _refusebare(key, data)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
-    table.pop(_bare(last) if _bare(last) in table else last, None)
-    if path == ["projectile"] and _bare(last) in (BY_LENGTH, *REPLACED):
-        for other in {BY_LENGTH, *REPLACED} - {_bare(last)}:
+    table.pop(bare(last) if bare(last) in table else last, None)
+    if path == ["projectile"] and bare(last) in (BY_LENGTH, *REPLACED):
+        for other in {BY_LENGTH, *REPLACED} - {bare(last)}:
             table.pop(other, None)  # one of them states the form of a nose
+    if path == ["projectile"] and last == "shape":
+        for other in TIP:
+            table.pop(other, None)  # a shape has its own
     table[last] = value
     _rename(table, path, last)
     if "material" in path and last != "name":
@@ -121,7 +178,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
         _keep_one(table, last)
 
 
-def _bare(key: str) -> str:
+def bare(key: str) -> str:
     """Return a key without the suffix of its SI unit."""
     return next((key.removesuffix(suffix) for suffix in _SUFFIXES if key.endswith(suffix)), key)
 
@@ -149,14 +206,14 @@ def titled(title: str, changes: Mapping[str, Any]) -> str:
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
 
 
-def _refuse_bare(key: str, data: dict[str, Any]) -> None:
+def _refusebare(key: str, data: dict[str, Any]) -> None:
     """Refuse a key without its section that one of a section comes near to, such as ``lenght``."""
     sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
     whole = {inner: f"{name}.{inner}" for name, table in sections for inner in table}
     near = get_close_matches(key, whole, 1, 0.8)
     if near:
         remedy = f"Did you mean {whole[near[0]]}?"
-        raise SceneError("is not a key of a scene.", key=key, remedy=remedy, source="--set")
+        raise SceneError("is not a key of a scene.", key=key, remedy=remedy)
 
 
 def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
@@ -165,11 +222,11 @@ def _section(data: dict[str, Any], path: list[str], key: str) -> dict[str, Any]:
         inner = table.get(name)
         if name == "accuracy" and isinstance(inner, str):
             remedy = "Give the error that is allowed, or a mesh, not both."
-            raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy, source="--set")
+            raise SceneError(f"stands beside accuracy = {inner!r}.", key=key, remedy=remedy)
         if not isinstance(inner, dict):
             sections = [k for k, v in table.items() if isinstance(v, Mapping)]
             hint = did_you_mean(name, sections, "Write section.key, such as accuracy.tip_size.")
-            raise SceneError("is not a key of a scene.", key=key, remedy=hint, source="--set")
+            raise SceneError("is not a key of a scene.", key=key, remedy=hint)
         table = inner
     return table
 

@@ -12,11 +12,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from fem_impact.errors import ResultError
 from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
-from fem_impact.files.atomic import make_directory, write_text
-from fem_impact.files.signed_json import signed
+from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.files.run_directory import set_report_aside
+from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none
@@ -42,12 +44,20 @@ class Request:
         Whether to run the small version.
     line : str
         Command line that made it, where that is not one of ``fem-impact study``.
+    cases : str
+        Digest of the cases of a sweep, by which the report of another one in ``out`` is known.
     """
 
     out: Path
     ids: tuple[str, ...] = ()
     quick: bool = False
     line: str = ""
+    cases: str = ""
+
+    @property
+    def about(self) -> str:
+        """What is computed; a report of something else in the directory is set aside."""
+        return self.cases or " ".join([*self.ids, *(["--quick"] if self.quick else [])])
 
     def command(self, study: str) -> str:
         """Return the command line of this request."""
@@ -136,7 +146,10 @@ class StudyReport:
 
 
 def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
-    """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data."""
+    """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data.
+
+    The report of another study, or of other cases, that stands in the directory is set aside.
+    """
     ledger: list[list[Cell]] = []
     for name, run in results.items():
         if isinstance(run, Outcome):
@@ -146,6 +159,8 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
             ledger.append([values[column] for column in LEDGER])
     report = replace(report, title=_title(report, request, results), pictures=_telling(report.pictures))
     document = _document(report, request, results)
+    if _stands_another(request.out / "study.json", document):
+        set_report_aside(request.out)
     for picture in report.pictures:
         _draw(picture, make_directory(request.out / "figures"))
     for sheet in report.sheets:
@@ -155,6 +170,17 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
     write_text(request.out / "summary.md", text)
     write_text(request.out / "study.json", json.dumps(signed(document), indent=1, allow_nan=False))
     return StudyResult(document, text)
+
+
+def _stands_another(path: Path, document: Mapping[str, Any]) -> bool:
+    """Return whether a file is the report of another study or of other cases, or cannot be read."""
+    if not path.exists():
+        return False
+    try:
+        old = read_signed(read_text(path), str(path))
+    except ResultError:
+        return True
+    return any(old.get(key, "") != document[key] for key in ("study", "about"))
 
 
 def _title(report: StudyReport, request: Request, results: Results) -> str:
@@ -176,6 +202,7 @@ def _document(report: StudyReport, request: Request, results: Results) -> dict[s
         "study": report.study,
         "title": report.title,
         "command": request.command(report.study),
+        "about": request.about,
         "findings": list(report.findings),
         "conclusions": [
             {"name": name if name in drawn else "", "sentence": sentence}

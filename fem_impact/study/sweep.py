@@ -17,6 +17,7 @@ from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.lock import directory_lock
+from fem_impact.files.signed_json import checksum
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import run_jobs
@@ -25,6 +26,7 @@ from fem_impact.options import FIDELITIES
 from fem_impact.outcome.record import KEY_TABLE
 from fem_impact.progress import NullMeter
 from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest
 from fem_impact.study.document import Request, Sheet, StudyReport, StudyResult, publish
 from fem_impact.study.results import COLUMNS, SHORT, Results, Row, row_of
 from fem_impact.study.vary import cases, in_unit, measure
@@ -103,12 +105,18 @@ def _engine(workers: int) -> Executor:
     return ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
 
 
+def cases_digest(scene: Scene, vary: Mapping[str, Sequence[Any]], fidelity: str) -> str:
+    """Return the SHA-256 of what a sweep computes: scene, values and fidelity."""
+    return checksum({"scene": digest(scene), "vary": dict(vary), "fidelity": fidelity})
+
+
 def publish_sweep(
-    results: Results, title: str, line: str, out: Path, columns: Sequence[str] = ()
+    results: Results, title: str, line: str, out: Path, columns: Sequence[str] = (), cases: str = ""
 ) -> StudyResult:
     """Write table, figures with their data, summary and study.json of a sweep; Parquet where it can be.
 
-    The table has every column; the summary shows ``columns``, `SHORT` where none are named.
+    The table has every column; the summary shows ``columns``, `SHORT` where none are named. A report in
+    ``out`` of a sweep with other ``cases`` (`cases_digest`) is set aside.
 
     Raises
     ------
@@ -126,7 +134,7 @@ def publish_sweep(
         sheets=[_sheet(results, columns)],
         sources=sorted(effects),
     )
-    made = publish(report, Request(out, line=line), runs)
+    made = publish(report, Request(out, line=line, cases=cases), runs)
     if find_spec("pandas") and find_spec("pyarrow"):
         results.to_dataframe().to_parquet(out / "sweep.parquet")
     return made

@@ -18,8 +18,11 @@ from fem_impact.scene.units import DIMENSIONS
 MOST = 100_000
 """Largest number of cases of one sweep."""
 
+MOST_DIGITS = 6
+"""Most digits of a step that is proposed."""
+
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_RANGE = re.compile(rf"\s*({_NUMBER})\s*\.\.\s*({_NUMBER})\s*:\s*({_NUMBER})\s*(\S.*)?")
+_RANGE = re.compile(rf"\s*({_NUMBER})\s*(?<!\.)\.\.(?!\.)\s*({_NUMBER})\s*:\s*({_NUMBER})\s*(\S.*)?")
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(\S.*)?")
 _EXAMPLE = "Write --vary impact.angle=15..60:5deg, or --vary projectile.length=0.2,0.4,0.8m."
 
@@ -54,7 +57,7 @@ def read_vary(text: str) -> tuple[str, list[Any]]:
         raise UsageError("is not of the form key=values.", key="--vary", value=text, remedy=_EXAMPLE)
     match = _RANGE.fullmatch(listed)
     if match is None and re.match(rf"\s*{_NUMBER}[^,]*\.\.", listed):
-        problem = "is no range: that has a first and a last value, a step and one unit at its end."
+        problem = "is no range: that is first..last:step, with one unit at its end."
         raise UsageError(problem, key="--vary", value=text, remedy=_EXAMPLE)
     return key.strip(), _steps(match, text) if match else _listed(listed)
 
@@ -64,8 +67,25 @@ def _steps(match: re.Match[str], text: str) -> list[Any]:
     if step == 0 or (last - first) / step < 0 or (last - first) / step >= MOST:
         problem = "has no step that leads from its first to its last value."
         raise UsageError(problem, key="--vary", value=text, remedy=_EXAMPLE)
-    count = int((last - first) / step) + 1
-    return [_with_unit(f"{first + at * step:f}", match[4]) for at in range(count)]
+    count = int((last - first) / step)
+    if first + count * step != last:
+        raise _no_step(match, text, count)
+    return [_with_unit(f"{first + at * step:f}", match[4]) for at in range(count + 1)]
+
+
+def _no_step(match: re.Match[str], text: str, count: int) -> UsageError:
+    """Return the refusal of a range whose steps do not meet its end, with the nearest ranges that do."""
+    first, last, step = (Decimal(part) for part in match.group(1, 2, 3))
+    near = [number for number in (count, count + 1) if number]
+    pairs = [(first + number * step, step) for number in near]
+    pairs += [(last, (last - first) / number) for number in near]
+    ranges = [
+        f"{match[1]}..{end.normalize():f}:{by.normalize():f}{match[4] or ''}"
+        for end, by in pairs
+        if len(by.normalize().as_tuple().digits) <= MOST_DIGITS
+    ]
+    problem = "does not come to its last value in whole steps."
+    return UsageError(problem, key="--vary", value=text, remedy=f"Write {' or '.join(ranges)}.")
 
 
 def _listed(text: str) -> list[Any]:
@@ -105,7 +125,7 @@ def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Case]:
     made = list(_made(scene, vary))
     if all(case.scene is None for case in made):
         which = "The only combination" if len(made) == 1 else f"Each of the {len(made)} combinations"
-        raise SceneError(f"{which} is refused: {made[0].refused.removeprefix('--set: ')}", key="--vary")
+        raise SceneError(f"{which} is refused: {made[0].refused}", key="--vary")
     return made
 
 
@@ -127,7 +147,7 @@ def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Case]:
     for number, values in enumerate(product(*vary.values()), 1):
         stated = dict(zip(vary, values, strict=True))
         try:
-            yield Case(f"case-{number:05d}", stated, replace_all(scene, stated))
+            yield Case(f"case-{number:05d}", stated, replace_all(scene, stated, source=""))
         except FemImpactError as error:
             yield Case(f"case-{number:05d}", stated, None, str(error))
 

@@ -2,7 +2,10 @@
 
 from pathlib import Path
 
+import pytest
+
 from fem_impact.commands.common import changed_scene, shown_path
+from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml
 
@@ -22,6 +25,60 @@ def test_the_title_of_a_scene_with_own_tests_names_no_file(tmp_path):
     (tmp_path / "mine.toml").write_text(to_toml(scene))
     changed = changed_scene(str(tmp_path / "mine.toml"), ["impact.angle=30 deg"])
     assert (changed.title, changed.measured) == ("my rod, changed: impact.angle = 30 deg", None)
+
+
+BAD = """
+id = "mine"
+projectile = {{ length = "{length}", diameter = "19 mm", tip = "plain", material = "rod-steel" }}
+barrier = {{ material = "plate-steel" }}
+surface = {{ state = "machined" }}
+impact = {{ angle = "{angle}", v_n = "{v_n}", v_t = "-1 m/s" }}
+"""
+GOOD = {"length": "80 mm", "angle": "45 deg", "v_n": "-1 m/s"}
+
+
+@pytest.mark.parametrize(
+    ("bad", "changes"),
+    [
+        ({"length": "80"}, ["projectile.length=0.1 m"]),
+        ({"length": "80"}, ["projectile.length_m=0.1", "accuracy.across=12"]),
+        ({"angle": "95 deg"}, ["impact.angle=30 deg"]),
+        ({"v_n": "1 m/s"}, ["impact.v_n=-2 m/s"]),
+        ({"v_n": "1 m/s"}, ["impact.speed=2 m/s"]),
+    ],
+)
+def test_a_change_mends_what_is_refused_in_the_file(tmp_path, bad, changes):
+    good, wrong = tmp_path / "good.toml", tmp_path / "wrong.toml"
+    good.write_text(BAD.format(**GOOD))
+    wrong.write_text(BAD.format(**GOOD | bad))
+    with pytest.raises(SceneError, match=str(wrong)):
+        changed_scene(str(wrong), [])
+    with pytest.raises(SceneError, match=f"{wrong} with --set: .*{next(iter(bad))}"):
+        changed_scene(str(wrong), ["accuracy.across=10"])
+    mended, changed = (changed_scene(str(path), changes) for path in (wrong, good))
+    assert (mended.projectile, mended.accuracy, mended.title) == (
+        changed.projectile,
+        changed.accuracy,
+        changed.title,
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "lost"),
+    [
+        (["accuracy.tip_size=0.5 mm", "accuracy=5 %"], "accuracy.tip_size"),
+        (["accuracy.tip_size=0.5 mm", "accuracy.target=5 %"], "accuracy.tip_size"),
+        (["projectile.tip_radius=2 mm", "projectile.shape=hemisphere"], "projectile.tip_radius"),
+        (["surface.friction=0.3", "surface.state=cleaned"], "surface.friction"),
+    ],
+)
+def test_a_change_that_another_one_takes_out_is_refused(changes, lost):
+    with pytest.raises(SceneError, match=f"^--set: {lost}: is taken out again by another change"):
+        changed_scene("t5b", changes)
+
+
+def test_a_shape_takes_the_place_of_a_tip():
+    assert changed_scene("t5b", ["projectile.shape=hemisphere"]).projectile.tip_radius == 0.0095
 
 
 def test_paths_are_shown_from_the_working_directory(tmp_path, monkeypatch):

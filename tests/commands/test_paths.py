@@ -197,6 +197,24 @@ def test_results_that_are_none(cli, stand, command):
         assert words in err
 
 
+def test_a_file_where_a_result_is_wanted_is_told_what_to_name(cli):
+    Path("ring.toml").write_text("")
+    Path("notes.md").write_text("")
+    Path("here").mkdir()
+    Path("here/outcome.json").write_text("{}")
+    for file, remedy in (
+        (
+            "ring.toml",
+            "Compute the scene by `fem-impact run ring.toml`, which prints its directory at the end.",
+        ),
+        ("notes.md", "Name the one that `fem-impact run` printed at its end."),
+        ("here/outcome.json", "Name the directory that it lies in: here"),
+    ):
+        assert cli("report", file)[2].endswith(
+            f"{file}: is a file, not the directory of a result. {remedy}\n"
+        )
+
+
 def test_render_names_what_is_missing_and_loses_nothing(cli, stand):
     Path("here").mkdir()
     for name in ("outcome.json", "fields.vtkhdf"):

@@ -66,4 +66,4 @@ def test_the_command_says_where_the_older_run_is(cli):
     cli("run", "t5b", "--fidelity", "rigid", "--out", "here")
     code, _, err = cli("run", "t5c", "--fidelity", "rigid", "--out", "here")
     assert code == 0
-    assert "An older run that was in here is kept in here/earlier-" in err
+    assert "Older results that were in here are kept in here/earlier-" in err

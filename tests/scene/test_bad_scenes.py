@@ -91,6 +91,7 @@ EFFECTS = [
     (["auto", "auto"], ["twice"]),
     (["auto", "gravity", "-gravity"], ["twice"]),
     (["auto", "-gravty"], ["-gravty", "Did you mean -gravity?"]),
+    (["auto", "gravitiy"], ["gravitiy", "Did you mean gravity?"]),
     (["auto", "-barrier-rigid"], ["always a barrier"]),
     (["auto", "barrier-rigid", "barrier-elastic"], ["2 barriers"]),
     (["auto", "radiation", "barrier-rigid"], ["means nothing without", "barrier-elastic"]),

@@ -28,6 +28,7 @@ CONE |= {"cone_angle": "20 deg", "nose_radius": "3 mm"}
 BY_LENGTH = {key: value for key, value in OGIVE.items() if key != "calibre_radius"}
 POINTS = [["0 mm", "0 mm"], ["1 mm", "4 mm"], ["5 mm", "7 mm"], ["60 mm", "9 mm"], ["80 mm", "6 mm"]]
 TWO = [{"to": "40 mm", "material": "rod-steel"}, {"to": "100 mm", "material": "plate-steel"}]
+LAST = {"material": "plate-steel"}
 
 
 def scene(projectile, angle="45 deg"):
@@ -161,7 +162,16 @@ def test_points_carry_the_unit_of_their_column(tmp_path):
         ),
         ({**OGIVE, "bore": [["50 mm", "5 mm"], ["120 mm", "5 mm"]]}, "beyond the tail"),
         ({**OGIVE, "segments": TWO[:1]}, "must end at the tail"),
-        ({**OGIVE, "segments": [TWO[1], TWO[0]]}, r"segments\[2\]\.to.*must end behind"),
+        ({**OGIVE, "segments": [TWO[0], TWO[0], TWO[1]]}, r"segments\[2\]\.to.*must end behind"),
+        (
+            {**OGIVE, "segments": [TWO[1], TWO[0]]},
+            r"segments\[1\]\.to.*leaves no room for the next.* is 100 mm long.*longer projectile",
+        ),
+        (
+            {**OGIVE, "segments": [{**TWO[0], "to": "120 mm"}, LAST]},
+            r'segments\[1\]\.to = "120 mm".*leaves no room',
+        ),
+        ({**OGIVE, "tip": "B"}, r'projectile\.tip = "B": stands beside a shape.*Leave out tip, or shape'),
         ({**OGIVE, "segments": TWO, "material": "rod-steel"}, "stands beside segments"),
         ({**OGIVE, "segments": "steel"}, "must be a list of segments"),
         (
@@ -295,9 +305,7 @@ def test_the_last_segment_ends_at_the_tail():
     rho = [part.material.rho for part in longer.projectile.segments]
     added = 0.06 * np.pi * 9.5e-3**2 * rho[1]
     assert longer.projectile.body().mass == pytest.approx(made.projectile.body().mass + added, rel=1e-6)
-    with pytest.raises(
-        SceneError, match=r"segments\[2\]\.to.*Give an end beyond 40 mm, or a longer projectile"
-    ):
+    with pytest.raises(SceneError, match=r"segments\[1\]\.to.*the projectile is 40 mm long"):
         replace(made, "projectile.length", "40 mm")
 
 

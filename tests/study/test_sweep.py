@@ -11,6 +11,7 @@ from outcome_maker import altered, outcome
 
 import fem_impact
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
+from fem_impact.files.run_directory import earlier
 from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.study.results import COLUMNS, SHORT, Results, Row
@@ -41,11 +42,60 @@ def test_lists_and_ranges_with_units(text, values):
     [
         *("impact.angle", "impact.angle=", "x=10..60:0deg", "x=60..10:5deg"),
         *("x=15..60", "x=15..60deg", "x=15deg..60deg:5deg", "x=15-60..70"),
+        *("x=20...60:5deg", "x=20.. .60:5deg.", "x=0...5:0.1"),
     ],
 )
 def test_what_names_no_values_is_refused(text):
     with pytest.raises(UsageError, match=r"--vary impact.angle=15..60:5deg"):
         read_vary(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "nearest"),
+    [
+        ("x=20..60:7deg", "Write 20..55:7deg or 20..62:7deg or 20..60:8deg."),
+        ("x=60..20:-7deg", "Write 60..25:-7deg or 60..18:-7deg or 60..20:-8deg."),
+        ("x=20..22:7deg", "Write 20..27:7deg or 20..22:2deg."),
+        ("x=0..1:0.3", "Write 0..0.9:0.3 or 0..1.2:0.3 or 0..1:0.25."),
+    ],
+)
+def test_a_range_that_does_not_come_to_its_end_names_the_nearest_that_do(text, nearest):
+    with pytest.raises(UsageError) as refused:
+        read_vary(text)
+    assert str(refused.value).endswith(nearest)
+    for ranged in nearest.removeprefix("Write ").removesuffix(".").split(" or "):
+        first, _, last = ranged.partition(":")[0].partition("..")
+        _, values = read_vary(f"x={ranged}")
+        assert [float(str(value).split()[0]) for value in (values[0], values[-1])] == [
+            float(first),
+            float(last),
+        ]
+
+
+@pytest.mark.parametrize(
+    ("changes", "vary", "words"),
+    [
+        (["impact.angle=20 deg"], "impact.angle=30,45deg", '--set = "impact.angle": is given beside --vary'),
+        (
+            ["projectile.length=0.1 m"],
+            "projectile.length_m=0.1",
+            "is given beside --vary projectile.length_m",
+        ),
+        (
+            ["projectile.material.E=200 GPa"],
+            "projectile.material=rod-steel",
+            "beside --vary projectile.material",
+        ),
+        (["impact.height=1 m"], "impact.speed=1,2m/s", "states the velocity twice, by height and by speed"),
+        (["impact.height=1 m"], "impact.v_n=-1,-2m/s", "states the velocity twice, by height and by v_n"),
+    ],
+)
+def test_a_value_that_is_set_and_varied_is_refused(cli, changes, vary, words):
+    line = [word for change in changes for word in ("--set", change)]
+    code, out, err = cli("sweep", "t5b", *line, "--vary", vary, "--fidelity", "rigid")
+    assert code in (2, 3) and out == ""
+    assert words in err
+    assert not Path("results").exists()
 
 
 def test_all_combinations_with_the_last_key_changing_fastest():
@@ -65,7 +115,10 @@ def test_values_of_other_units_come_in_that_of_the_first():
     [
         ({"impact.angel": ["15 deg"]}, "Did you mean angle"),
         ({"lenght": ["15 mm"]}, "Did you mean projectile.length"),
-        ({"projectile.length": ["1 mm", "2 mm"]}, "Each of the 2 combinations is refused: projectile.length"),
+        (
+            {"projectile.length": ["1 mm", "2 mm"]},
+            "^--vary: Each of the 2 combinations is refused: projectile.length",
+        ),
         ({}, "names no values"),
         ({"impact.angle": "15 deg"}, "one text, not a list"),
         ({"surface.friction": [0.1] * 400, "restitution": [0.1] * 400}, "160000 combinations"),
@@ -204,7 +257,7 @@ def test_a_case_that_cannot_run_is_a_row_with_its_reason(swept):
     results, _ = swept
     failed = [row for row in results if row.outcome is None]
     assert len(failed) == 2 and len(results) == 6
-    assert all("shorter than the diameter" in row.reason for row in failed)
+    assert all(row.reason.startswith('projectile.length = "1 mm": is shorter than') for row in failed)
     assert "2 failed" in repr(results) and "<code>E_vib_over_E_0</code>" in results._repr_html_()
 
 
@@ -220,7 +273,7 @@ STEPPED = [["0 mm", "6 mm"], ["150 mm", "6 mm"], ["200 mm", "4 mm"]]
         ("ogive", {}, "20 mm", "projectile.nose_length, calibre_radius"),
         ("ogive", {"projectile.nose_length": "30 mm"}, "20 mm", "projectile.nose_length, calibre_radius"),
         ("sphere-cone", {}, "20 mm", "projectile.nose_length, cone_angle"),
-        ("heavy-tail", {}, "60 mm", "end beyond 80 mm, or a longer projectile"),
+        ("heavy-tail", {}, "60 mm", 'segments[1].to = "80 mm": leaves no room for the next segment'),
     ],
 )
 def test_a_length_that_the_rest_does_not_fit_names_the_remedy(name, changes, short, words):
@@ -305,6 +358,64 @@ def test_the_command(cli):
     assert cli("report", "here")[0] == 0
     assert "Sweep" in Path("here/report.html").read_text(encoding="utf-8")
     assert cli("sweep", "t5b", "--vary", "impact.angle=3", "--vary", "impact.angle=4")[0] == 2
+
+
+def swept_here(cli, vary, *more):
+    """Files of the directory ``here`` after a sweep there, of the older ones, and what was told."""
+    line = ("sweep", "t5b", "--vary", vary, "--fidelity", "rigid", "--workers", "1", "--out", "here")
+    code, _, err = cli(*line, *more)
+    assert code == 0
+    names = ("sweep.csv", "runs.csv", "summary.md", "figures/sweep.csv")
+    return [
+        {name: (d / name).read_text() for name in names} for d in (Path("here"), *earlier(Path("here")))
+    ], err
+
+
+def test_another_sweep_in_the_directory_sets_the_report_of_the_first_aside(cli):
+    (first,), err = swept_here(cli, "impact.angle=30,45deg")
+    cli("report", "here")
+    assert "Older results" not in err
+    (second, kept), err = swept_here(cli, "surface.friction=0.2,0.4")
+    assert kept == first and second["sweep.csv"] != first["sweep.csv"]
+    (place,) = earlier(Path("here"))
+    assert f"Older results that were in here are kept in {place}" in err
+    assert (place / "report.html").exists() and not Path("here/report.html").exists()
+    other_fidelity = ("--fidelity", "modal")
+    (_, *kept), _ = swept_here(cli, "surface.friction=0.2,0.4", *other_fidelity)
+    assert len(kept) == 2 and second in kept
+
+
+def test_the_same_sweep_goes_on_in_its_directory_after_a_kill_and_with_other_columns(cli):
+    line = ("sweep", "t5b", "--vary", "impact.angle=30,45,50deg", "--fidelity", "rigid", "--workers", "1")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("fem_impact.study.sweep.publish", raises(KeyboardInterrupt))  # killed before its tables
+        assert cli(*line, "--out", "here")[0] == 130
+    assert Path("here/store.sqlite").exists() and not Path("here/sweep.csv").exists()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(jobs_run, "_compute", None)  # would be called for a job that is not stored
+        assert cli(*line, "--out", "here")[0] == 0
+        assert cli(*line, "--out", "here", "--columns", "mu")[0] == 0
+    assert not earlier(Path("here"))
+
+
+def raises(error):
+    """A function that raises an error."""
+
+    def call(*_):
+        raise error
+
+    return call
+
+
+def test_each_sweep_has_a_directory_of_its_own_unless_one_is_named(cli):
+    line = ("sweep", "t5b", "--workers", "1", "--quiet", "--vary")
+    for more in (
+        ("impact.angle=30deg",),
+        ("impact.angle=45deg",),
+        ("impact.angle=45deg", "--fidelity", "rigid"),
+    ):
+        assert cli(*line, *more)[0] == 0
+    assert len(list(Path("results").iterdir())) == 3
 
 
 def test_two_keys_make_all_combinations_and_a_parquet_file(cli, tmp_path):

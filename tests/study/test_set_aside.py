@@ -1,0 +1,36 @@
+"""Reports of studies: one of other cases does not replace another."""
+
+import pytest
+
+from fem_impact.files.run_directory import earlier
+from fem_impact.study.document import Request, StudyReport, publish
+
+REPORT = StudyReport("gamma", "Title", ["A finding."])
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "kept"),
+    [
+        ({}, {}, 0),
+        ({}, {"quick": True}, 1),
+        ({"ids": ("t4",)}, {"ids": ("t4", "t2")}, 1),
+        ({"line": "fem-impact cost t5b"}, {"line": "fem-impact cost t5b --stored"}, 0),
+        ({"cases": "one"}, {"cases": "two"}, 1),
+        ({"cases": "one"}, {}, 1),
+    ],
+)
+def test_a_report_of_other_cases_is_set_aside(tmp_path, first, second, kept):
+    publish(REPORT, Request(tmp_path, **first), {})
+    (tmp_path / "history.csv").write_text("time_s\n")  # of a run
+    told = (tmp_path / "summary.md").read_text()
+    publish(REPORT, Request(tmp_path, **second), {})
+    assert [(place / "summary.md").read_text() for place in earlier(tmp_path)] == [told] * kept
+    assert (tmp_path / "history.csv").exists() and (tmp_path / "study.json").exists()
+
+
+def test_a_damaged_report_is_set_aside(tmp_path):
+    publish(REPORT, Request(tmp_path), {})
+    (tmp_path / "study.json").write_text("{")
+    publish(REPORT, Request(tmp_path), {})
+    (place,) = earlier(tmp_path)
+    assert (place / "study.json").read_text() == "{"
