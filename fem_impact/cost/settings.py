@@ -161,7 +161,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
 
 
 def _across(scene: Scene) -> int:
-    return max(scene.accuracy.across, ACROSS)
+    return max(scene.across, ACROSS)
 
 
 def placed(scene: Scene, mesh: Mesh, most: int = len(PLACES)) -> list[Scene]:

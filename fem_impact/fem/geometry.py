@@ -116,7 +116,7 @@ def rest_points(scene: Scene, start: float) -> Array:
 
 def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
-    body, across = projectile(scene), scene.accuracy.across
+    body, across = projectile(scene), scene.across
     try:
         if own := scene.projectile.own_mesh:
             half = own.half()

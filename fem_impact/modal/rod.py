@@ -77,7 +77,7 @@ def _turned(alpha: float, x: Array, z: Array) -> tuple[Array, Array]:
 
 def _moved(scene: Scene, places: Array) -> tuple[Array, Array]:
     """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
-    points, shape, omega = _modes(_elastic(scene.projectile), scene.accuracy.across)
+    points, shape, omega = _modes(_elastic(scene.projectile), scene.across)
     kept = omega < section_frequency(scene)
     return omega[kept], np.array([_moved_place(scene, points, shape[:, :, kept], *place) for place in places])
 

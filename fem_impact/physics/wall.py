@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from fem_impact.scene.projectile import ProjectileSpec
     from fem_impact.scene.types import Scene
 
-SECTIONS = 400  # over the length
-
 
 def ovalling_period(rod: ProjectileSpec) -> float:
     """Return the period of the wall's ovalling, s; 0 of a body without a bore.
@@ -27,20 +25,13 @@ def ovalling_period(rod: ProjectileSpec) -> float:
     Elasticity, 4th ed. 1927, section 293. A closed end holds the wall, which this does not know: the period
     is the longest there may be.
     """
-    from rigid import Turned
-
     if not rod.bore:
         return 0.0
-    body = rod.body()
-    assert isinstance(body, Turned), "a bore is stated for a turned body"
-    z = (np.arange(SECTIONS) + 0.5) * rod.length / SECTIONS
-    inner = body.inner_radius(z)
-    bored = inner > 0
+    z, outer, inner = rod.wall()
     ends = [part.to for part in rod.segments][:-1]
     steels = [part.material for part in rod.segments] or [rod.material]
-    of = np.searchsorted(ends, z[bored])
+    of = np.searchsorted(ends, z)
     E, nu, rho = (np.array([getattr(steel, key) for steel in steels])[of] for key in ("E", "nu", "rho"))
-    outer, inner = body.radius(z[bored]), inner[bored]
     h, R = outer - inner, 0.5 * (outer + inner)
     stiffness, mass = 9 * E * h**3 / (12 * (1 - nu**2) * R**3), 1.25 * rho * h * R
     return 2 * pi * sqrt(float(mass.sum() / stiffness.sum()))

@@ -75,8 +75,8 @@ def body_cell(scene: Scene) -> float:
     """
     rod = scene.projectile
     plain = rod.is_rod or rod.own_mesh is not None
-    width = rod.diameter if plain else 2 * _contact_radius(rod, posture(scene), scene.accuracy.across)
-    return width / scene.accuracy.across
+    width = rod.diameter if plain else 2 * _contact_radius(rod, posture(scene), scene.across)
+    return width / scene.across
 
 
 def rod_cell(scene: Scene) -> float:

@@ -85,13 +85,13 @@ def require_layers(bodies: ContactBodies, zones: Zones, fidelity: str) -> None:
 def _too_thin(scene: Scene, zones: Zones, share: float) -> SceneError:
     thin = int(np.argmin([layer.thickness for layer in scene.barrier.layers]))
     thickness = scene.barrier.layers[thin].thickness
-    across = 2 * ceil(0.5 * scene.accuracy.across * zones.base * FLATTEST / thickness * 1.5)
+    across = 2 * ceil(0.5 * scene.across * zones.base * FLATTEST / thickness * 1.5)
     told = f"their height would be {share:.2g} of their width" if share else "no row is left for it"
     return SceneError(
         f"fits no row of the barrier's cells, {zones.base * 1e3:.3g} mm wide: {told}.",
         key=f"barrier.layers[{thin + 1}].thickness",
         value=f"{thickness * 1e3:.3g} mm",
-        remedy=f"Give accuracy.across = {max(across, scene.accuracy.across + 2)}, or a thicker layer.",
+        remedy=f"Give accuracy.across = {max(across, scene.across + 2)}, or a thicker layer.",
     )
 
 

@@ -22,7 +22,7 @@ OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.a
 def require_mesh(scene: Scene) -> None:
     """Refuse a turned projectile of which no mesh can be made (SceneError), with remedies that were tried."""
     if not scene.projectile.is_rod and scene.projectile.own_mesh is None:
-        _require_mesh(scene.projectile, scene.accuracy.across)
+        _require_mesh(scene.projectile, scene.across)
 
 
 @lru_cache(maxsize=256)

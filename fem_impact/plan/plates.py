@@ -128,7 +128,7 @@ def require_plate_mesh(scene: Scene, base: float, block: tuple[Array, Array]) ->
 
     ``base``, m, is the width of its cells, ``block`` its lowest and highest corner before rows are moved.
     """
-    h, across = scene.barrier.thickness, scene.accuracy.across
+    h, across = scene.barrier.thickness, scene.across
     assert h is not None, "a plate that bends has a thickness"
     flat = h / (ROWS * base)
     least = 2 * math.ceil(0.5 * across * FLATTEST / flat)

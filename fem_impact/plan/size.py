@@ -238,7 +238,7 @@ def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
 
 def _coarse_elements(scene: Scene, end: float) -> float:
     """Return the elements of half the coarse body from its tip up to a height, m."""
-    rod, across = scene.projectile, scene.accuracy.across
+    rod, across = scene.projectile, scene.across
     if rod.own_mesh is not None:
         return float((cell_moments(rod.own_mesh.half()).low < end).sum())
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end

@@ -70,14 +70,15 @@ class Accuracy:
     ``unresolved`` says whether coefficients and shares of a contact that the mesh does not resolve are
     withheld (null, with the reason) or reported all the same.
     ``grid_shift`` is the place of a meshed barrier's grid along t, in cells at the contact.
-    ``max_time`` that is not stated follows from the rod's bending and the contact time, see `Plan.max_time`.
+    ``across`` that is not stated follows from the projectile, see `Scene.across`; ``max_time`` from the rod's
+    bending and the contact time, see `Plan.max_time`.
     ``target`` is the wanted relative error; measured costs then choose fidelity and mesh instead.
     """
 
     tip_size: float | None = None
     barrier_size: float | None = None
     mass_scaling: float = 4.0
-    across: int = 8
+    across: int | None = None
     grid_shift: float = 0.0
     block_margin: float = 6e-3
     max_time: float | None = None
@@ -159,6 +160,11 @@ class Scene:
             check_numbers(self, fields.TOP)
         _check_approach(self)
         _check_tip_size(self)
+
+    @property
+    def across(self) -> int:
+        """Cells over the diameter of the projectile: those that are stated, or as many as its wall needs."""
+        return self.accuracy.across or self.projectile.across
 
     @property
     def materials(self) -> dict[str, Material]:

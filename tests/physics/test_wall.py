@@ -36,13 +36,34 @@ def test_solid_bodies_do_not_oval():
     assert ovalling_period(load("t5b").projectile) == ovalling_period(load("ogive").projectile) == 0.0
 
 
-def test_the_modes_of_a_mesh_begin_with_it():
-    model = build(plan(ring()))
+def slowest(scene):
+    """Return the two longest periods of the projectile's mesh, s."""
+    model = build(plan(scene))
     n = model.layout.rod_size
     modes = rod_modes(model.rod_stiffness, model.mass[:n], model.inverse_mass[:n] == 0, count=2)
-    lowest, longest = 1 / modes.frequency[:2]
+    return 1 / modes.frequency[:2]
+
+
+def test_the_modes_of_a_mesh_begin_with_it():
+    lowest, longest = slowest(ring())
     assert longest < ovalling_period(ring().projectile) < 1.1 * lowest
     assert bending_period(ring()) < 0.3 * lowest
+
+
+@pytest.mark.parametrize("bore", ["22.5 mm", "24 mm"])
+def test_a_thin_wall_has_the_cells_that_its_ovalling_needs(bore):
+    finer, few = (slowest(replace_all(ring(bore), {"accuracy.across": n}))[0] for n in (24, 8))
+    assert slowest(ring(bore))[0] == pytest.approx(finer, rel=0.01)
+    assert few < 0.96 * finer
+
+
+def test_only_a_thin_wall_has_more_cells_unless_they_are_stated():
+    assert [ring(bore).across for bore in ("22.4 mm", "22.6 mm")] == [8, 16]
+    assert load("tube").across == load("t5b").across == 8
+    assert replace_all(ring("25 mm"), {"accuracy.across": 10}).across == 10
+    assert (
+        replace_all(ring("25 mm"), {"projectile.bore": [["0 mm", "12 mm"], ["60 mm", "12 mm"]]}).across == 8
+    )
 
 
 def test_it_counts_for_the_effect_of_vibration_and_is_told():

@@ -70,7 +70,7 @@ def remedied(scene, words):
     with pytest.raises(SceneError, match=words) as refused:
         plan(scene)
     across = int(re.search(r"accuracy.across = (\d+) or", str(refused.value))[1])
-    assert abs(across - scene.accuracy.across) > 1
+    assert abs(across - scene.across) > 1
     return plan(replace_all(scene, {"accuracy.across": across}))
 
 
