@@ -74,9 +74,9 @@ class Turned:
         inner, outer = self.inner_radius(z), self.radius(z)
         thin = np.flatnonzero(inner >= outer)
         if len(thin):
-            place, r, R = z[thin[0]] * 1e3, inner[thin[0]] * 1e3, outer[thin[0]] * 1e3
-            walls = f"radius {r:.3g} mm at {place:.3g} mm leaves no wall under radius {R:.3g} mm"
-            raise ShapeError(f"the bore of {walls}")
+            # to .1 um: the place lies a little beside a vertex
+            place, r, R = (f"{round(1e3 * x[thin[0]], 4):.3g} mm" for x in (z, inner, outer))
+            raise ShapeError(f"the bore of radius {r} at {place} leaves no wall under radius {R}")
 
     def _check_density(self) -> None:
         ends = [0.0, *(end for end, _ in self.density)]

@@ -51,6 +51,7 @@ NEARNESS = {
 }
 # keys of accuracy that change errors or times and must be the same
 SAME = ("element", "yielding_element", "step", "mass_scaling", "fine_zone", "block_margin")
+OTHERWISE = "Leave out --fidelity: finite elements then find their own error. Or"
 BUDGET = 120.0  # s of wall time, unless stated, for a scene whose like was not measured
 
 
@@ -177,15 +178,11 @@ def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) 
 
 def _too_far(scene: Scene, name: str, distance: float, differs: str) -> NotMeasured:
     how = "differs in" if distance == inf else f"differs by {distance:.2g} times what is allowed in"
-    allowed = ", ".join(f"{key} {value:g}" for key, value in NEARNESS.items())
     return NotMeasured(
-        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}. Tip, effects, "
-        f"{', '.join(SAME)} must be the same and max_time no shorter; allowed are differences (of logarithms "
-        "where it is a ratio) of: "
-        f"{allowed}.",
+        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}.",
         key="accuracy",
         value=_written(scene),
-        remedy="Run `fem-impact cost SCENE` and give the mesh it names: accuracy.tip_size and across.",
+        remedy=f"{OTHERWISE} state no wanted error.",
     )
 
 
@@ -201,7 +198,7 @@ def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
         f"is uncertain by {plain(100 * error, 2)} % in {quantities}.",
         key="accuracy",
         value=_written(scene),
-        remedy=f'Allow "{100 * error + 0.5:.0f} %", or give a mesh of your own and no target.',
+        remedy=f'{OTHERWISE} allow "{100 * error + 0.5:.0f} %".',
     )
 
 

@@ -15,7 +15,6 @@ from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
 from fem_impact.plan.cells import posture
 from fem_impact.plan.layers import block_of, moved_rows
-from fem_impact.plan.mesh import OTHERWISE
 from fem_impact.plan.size import no_rest
 from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
@@ -112,6 +111,9 @@ def rest_points(scene: Scene, start: float) -> Array:
     """
     _, x, z, k2 = projectile(scene).moments_behind(start)
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
+
+
+OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
 
 
 def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:

@@ -10,7 +10,7 @@ from fem_impact.arrays import Array
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import ContactBodies, contact_estimate
 from fem_impact.plan.plates import rows_through
-from fem_impact.plan.zones import Corners, Zones
+from fem_impact.plan.zones import Corners, Zones, zones_of
 from fem_impact.scene.types import Scene
 from meshes import drawn_depths
 
@@ -64,7 +64,7 @@ def moved_rows(scene: Scene, zones: Zones) -> tuple[Array, Array]:
     return rows[[*chosen, -1]], np.array([0.0, *interfaces(scene), bottom])
 
 
-def require_layers(bodies: ContactBodies, zones: Zones, fidelity: str) -> None:
+def require_layers(bodies: ContactBodies, fidelity: str) -> None:
     """Refuse layers that no row of cells fits, and any in the reduced model (SceneError)."""
     scene = bodies.scene
     if not scene.barrier.layers:
@@ -76,6 +76,7 @@ def require_layers(bodies: ContactBodies, zones: Zones, fidelity: str) -> None:
             remedy="Use --fidelity solid, or leave the layers out.",
         )
     if fidelity == "solid" and bodies.compliant:
+        zones = zones_of(bodies)
         before, after = moved_rows(scene, zones)
         share = float((np.diff(after) / np.diff(before)).min())
         if share < FLATTEST:

@@ -16,7 +16,8 @@ from rigid import Turned
 
 FINER = (8, 10, 12, 16, 20)  # cells over the diameter that are tried for a remedy
 THICKEST, TRIALS = 1.5, 12  # closed ends that are tried: up to so many diameters, and how many
-OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
+NO_MESH = "--fidelity rigid needs no mesh; the modes of modal are those of a mesh."
+FARTHER = "Let the bore end farther from the end of the projectile, or be open there."
 
 
 def require_mesh(scene: Scene) -> None:
@@ -31,19 +32,24 @@ def _require_mesh(rod: ProjectileSpec, across: int) -> None:
         _make_mesh(rod, across)
     except meshes.ClosedEndError as error:
         number = 0 if isclose(rod.bore[0][0], error.distance, rel_tol=1e-9) else len(rod.bore) - 1
+        found = [*_thicker(rod, across, number, error.distance), *_finer(rod, across)]
         raise SceneError(
             f"cannot be meshed: {error}.",
             key=f"projectile.bore[{number + 1}]",
             value=f"z = {1e3 * rod.bore[number][0]:.4g} mm",
-            remedy=_said([*_thicker(rod, across, number, error.distance), *_finer(rod, across)]),
+            remedy=f"Give {' or '.join(found)}." if found else FARTHER,
         ) from None
     except meshes.MeshError as error:
         raise no_mesh(error, rod, across) from None
 
 
 def no_mesh(error: meshes.MeshError, rod: ProjectileSpec, across: int) -> SceneError:
-    """Return the refusal of a projectile that cannot be meshed, with more cells across if that helps."""
-    return SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_said(_finer(rod, across)))
+    """Return the refusal of a projectile that cannot be meshed, with more cells across if that helps.
+
+    The error itself says what to change of the shape.
+    """
+    remedy = " ".join([*(f"It can be with {finer}." for finer in _finer(rod, across)), NO_MESH])
+    return SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=remedy)
 
 
 def _make_mesh(rod: ProjectileSpec, across: int) -> None:
@@ -77,7 +83,3 @@ def _thicker(rod: ProjectileSpec, across: int, number: int, distance: float) -> 
         if _works(moved, across):
             return [f"z = {1e3 * z:.4g} mm there"]
     return []
-
-
-def _said(remedies: list[str]) -> str:
-    return f"Give {' or '.join(remedies)}." if remedies else OTHERWISE

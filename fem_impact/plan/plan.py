@@ -40,7 +40,6 @@ class Plan:
     active : names of the effects in the model, in the order in which they enter it
     slots : what these effects fill
     bodies : rod and barrier as they touch with these effects
-    zones : sizes of the fine zones of the meshes (solid)
     """
 
     scene: Scene
@@ -48,7 +47,11 @@ class Plan:
     active: tuple[str, ...]
     slots: ModelSpec
     bodies: ContactBodies
-    zones: Zones
+
+    @property
+    def zones(self) -> Zones:
+        """Return the sizes of the fine zones of the meshes (solid)."""
+        return zones_of(self.bodies)
 
     @property
     def max_time(self) -> float:
@@ -110,13 +113,14 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     through = fidelity == "solid" and is_thin(bodies)
     require_plate(bodies, through)
     require_point(bodies)
-    slots, zones = ModelSpec(), zones_of(bodies)
+    slots = ModelSpec()
     for name in in_model.effects:
         EFFECTS[name].fill(in_model, slots)
     if through:  # the mesh bends by itself: its impedance would count that twice
         slots.plate, slots.bending = None, plate_waves(bodies)[0]
-    require_layers(bodies, zones, fidelity)
+    require_layers(bodies, fidelity)
     if fidelity == "solid":
+        zones = zones_of(bodies)
         require_shallow(bodies)
         require_fine_zone(bodies)
         require_mesh(scene)
@@ -128,4 +132,4 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
             require_layer(slots.skin, zones)
         if scene.accuracy.target is None:  # a target chooses its own mesh
             require_memory(slots, bodies, zones)
-    return Plan(scene, fidelity, in_model.effects, slots, bodies, zones)
+    return Plan(scene, fidelity, in_model.effects, slots, bodies)

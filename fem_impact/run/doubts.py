@@ -39,9 +39,10 @@ def _on_ratio(provenance: Provenance, motion: RodMotion, restitution: Restitutio
     mu, f = or_none(restitution.mu), motion.friction
     if mu is None or abs(mu) <= PLOUGHING * f + LEAST_RATIO:
         return ""
+    mesh = f", or by the mesh.{CONFIRM}" if provenance.fidelity == "solid" else "."
     return (
-        f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form "
-        f"of its crater, or by the mesh.{CONFIRM}"
+        f"mu = {mu:.3g} is beyond f = {f:g} by more than ploughing gives: the tip was held by the form of "
+        f"its crater{mesh}"
     )
 
 

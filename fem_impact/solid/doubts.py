@@ -152,7 +152,8 @@ def doubts(model: Model, watch: SkinWatch) -> tuple[str, ...]:
     if model.book.outside:
         warnings.append(
             f"{model.book.outside} rod nodes left the fine zone of the barrier while below its surface: "
-            "friction and indentation there are missing."
+            'friction and indentation there are missing. accuracy.fine_zone = "even" makes it wider, as does '
+            "a larger accuracy.barrier_size."
         )
     return tuple(warning for warning in warnings if warning)
 

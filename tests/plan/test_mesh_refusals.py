@@ -11,6 +11,7 @@ from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.plan.mesh import _require_mesh
 from fem_impact.plan.plan import plan
+from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 
 ROD = {"length": "150 mm", "diameter": "16 mm", "material": "brass"}
@@ -64,9 +65,29 @@ def test_a_wall_that_is_thin_beside_its_cells_is_refused_with_cells_that_work():
     thin = {**TUBE, "bore": [["30 mm", "7.4 mm"], ["150 mm", "7.4 mm"]]}
     with pytest.raises(SceneError, match=r"projectile: cannot be meshed: a wall of 0\.075") as refused:
         plan(scene(thin, across=6))
-    across = int(re.fullmatch(r"Give accuracy.across = (\d+)\.", refused.value.remedy)[1])
+    across = int(re.search(r"It can be with accuracy.across = (\d+)\.", refused.value.remedy)[1])
     assert len(mesh(scene(thin, across=across)).cells) > 100
 
 
 def test_the_reduced_model_needs_no_mesh():
     assert plan(scene(CAPPED), "modal").fidelity == "modal"
+
+
+POINTED = {"material": "brass", "profile": [["0 mm", "0 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]]}
+STEPPED = {
+    "material": "brass",
+    "profile": [["0 mm", "2 mm"], ["20 mm", "2 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]],
+}
+SLIM = {**ROD, "tip": "plain", "bore": [["0 mm", "0.5 mm"], ["150 mm", "0.5 mm"]]}
+
+
+@pytest.mark.parametrize(
+    ("body", "remedy"),
+    [(POINTED, "round it with a radius"), (STEPPED, "spread it over"), (SLIM, "give 0.2 to 0.95 of it")],
+)
+def test_a_shape_without_a_mesh_is_told_what_to_change_of_it_and_is_computed_as_a_rigid_body(body, remedy):
+    for fidelity in ("solid", "modal"):
+        with pytest.raises(SceneError, match=f"cannot be meshed: .*{remedy}.*rigid needs no mesh") as refused:
+            simulate(scene(body), fidelity)
+        assert "longer rod" not in str(refused.value) and "accuracy.tip_size" not in str(refused.value)
+    assert simulate(scene(body), "rigid").motion.mass > 0

@@ -107,6 +107,10 @@ def test_other_edges_are_those_of_the_hull():
         ([[0, 0], [R, 0], [R, L]], [(0.5 * L, RHO)], None, "last segment ends"),
         ([[0, 0], [R, 0], [R, L]], [(L, -1.0)], None, "densities must be positive"),
         ([[0, 0], [R, 0], [R, L]], [(L, RHO)], [[1.1 * R, 0], [R, L]], "leaves no wall"),
+        (
+            *([[0, 0], [R, R], [R, L]], [(L, RHO)], [[0.5 * R, 0], [0.5 * R, L]]),
+            "at 0 mm leaves no wall under radius 0 mm",
+        ),
         ([[0, 0], [R, 0], [0.5 * R, L]], [(L, RHO)], [[0.4 * R, 0], [0.6 * R, L]], "leaves no wall"),
         ([[0, 0], [R, 0], [R, L]], [(L, RHO)], [[0.5 * R, 0], [0.5 * R, 2 * L]], "beyond the tail"),
         ([[0, 0], [np.nan, 0], [R, L]], [(L, RHO)], None, "all finite"),

@@ -63,6 +63,10 @@ def test_a_negative_restitution_names_what_lifts_the_tip(outcome):
 def test_a_ratio_beyond_friction_is_doubted(outcome):
     assert "mu = -0.7 is beyond f = 0.57" in doubted(outcome, mu=-0.7)[0]
     assert "mu = 0.02 is beyond f = 0" in doubted(outcome, mu=0.02, f=0.0)[0]
+    assert doubted(outcome, mu=-0.7)[0].endswith(
+        "or by the mesh. Confirm it with half the accuracy.tip_size."
+    )
+    assert doubted(outcome, mu=-0.7, fidelity="modal")[0].endswith("held by the form of its crater.")
 
 
 def test_energy_that_the_rod_did_not_bring_is_doubted_or_gravitys(outcome):

@@ -1,5 +1,7 @@
 """The fine zone of the barrier: where its surface may flow."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import solid_scenes as scenes
@@ -11,6 +13,7 @@ from fem_impact.plan.zones import DRAG, LOW, SLIDE, half_widths
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all
+from fem_impact.solid.doubts import doubts
 from fem_impact.solid.run import solve
 
 SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
@@ -125,3 +128,18 @@ def test_the_mass_of_thin_rows_saves_steps_and_moves_nothing(monkeypatch):
         assert heavy.to_dict()[key] == pytest.approx(true.to_dict()[key], abs=1e-3)
     assert heavy.motion.Omega == pytest.approx(true.motion.Omega, rel=5e-3)
     assert heavy.restitution.edge.e != true.restitution.edge.e
+
+
+def test_nodes_that_leave_the_barriers_zone_are_told_with_what_makes_it_wider():
+    scene = load("t5b")
+    model, watch = (
+        SimpleNamespace(book=SimpleNamespace(outside=9), zones=()),
+        SimpleNamespace(doubt=lambda: ""),
+    )
+    (told,) = doubts(model, watch)
+    assert told.startswith("9 rod nodes left the fine zone of the barrier")
+    width = plan(scene).zones.barrier[-1][0]
+    size = plan(scene).zones.barrier_size
+    for key, value in (("accuracy.fine_zone", "even"), ("accuracy.barrier_size", f"{2e3 * size} mm")):
+        assert key in told
+        assert plan(replace(scene, key, value)).zones.barrier[-1][0] > 1.2 * width
