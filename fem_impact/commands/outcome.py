@@ -10,7 +10,7 @@ from fem_impact.commands.common import headed
 from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import EnergyShare, shares
+from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.common import strikes_again
 from fem_impact.tables.text import wrapped
 
@@ -27,7 +27,7 @@ _BARRIER = (
 _TURNED = (("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"),)
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
-_IF_ON = ("damping", "contact", "gravity", "plate", "barrier")
+_IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
 
@@ -48,7 +48,9 @@ def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
     of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", on the finest mesh"
     if not outcome.validity.finished:
         of = ", at the stop of this unfinished run"
-    lines += ["", f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{of}:"]
+    gravity = or_none(ADDED.of(outcome.energy))
+    added = "" if gravity is None else f", to which gravity added {100 * gravity:.3f} %"
+    lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
     listed = _listed(outcome)
     lines += [_share(label, value) for label, value in listed.items()]
     lines += [_share("not accounted for", outcome.energy.residual)]

@@ -269,7 +269,7 @@ class Energy:
     gravity: Num = key(
         "W_gravity_over_E_0",
         "-",
-        "What gravity added to the other shares, the speed of the fall itself taken out" + SHARE,
+        "What gravity added to the shares, the speed of the fall itself taken out" + SHARE,
         True,
     )
     residual: float = key("residual_over_E_0", "-", "What the energy balance of all steps misses" + SHARE)

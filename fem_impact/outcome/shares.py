@@ -61,9 +61,10 @@ SHARES = (
     _share("W_closing", "numerical loss at contact", "grey", "figure"),
     _share("W_damping", "damping", "sand", "figure"),
     _share("E_contact", "held by the contact", "grey"),
-    _share("W_gravity", "gravity", "grey"),
 )
-"""All shares, in the order of tables and figures. No figure has the work of gravity."""
+"""All shares, in the order of tables and figures. They add up to one and `ADDED`."""
+ADDED = _share("W_gravity", "added by gravity", "grey")
+"""Work of gravity: no share that E_0 goes to, but energy that comes to it."""
 
 
 def shares(place: Place) -> tuple[EnergyShare, ...]:

@@ -15,7 +15,7 @@ from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.shares import EnergyShare, shares
+from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
@@ -192,7 +192,7 @@ def _cell(row: Row) -> str:
 
 def _shares(outcomes: Sequence[Outcome]) -> Table:
     """Return one row per set with its shares of E_0; with two meshes their limits with bands."""
-    listed = shares("report")
+    listed = (*shares("report"), ADDED)
     rows = [
         (
             o.provenance.scene_id,

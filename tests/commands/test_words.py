@@ -1,5 +1,7 @@
 """What a terminal of 80 columns shows: no line broken in a word, every reason once, names as they are."""
 
+import re
+
 import pytest
 
 from fem_impact.commands.parser import build_parser, every_command
@@ -41,3 +43,23 @@ def test_unknown_shares_give_each_reason_once_and_nothing_runs_over(cli, stand):
 def test_names_are_never_broken():
     name = "a-name-" * 20
     assert wrapped(f"the word {name} stands whole", "  ") == ["  the word", f"    {name}", "    stands whole"]
+
+
+def test_the_printed_shares_add_up_to_the_initial_energy_and_what_gravity_added(cli):
+    line = (
+        "run",
+        "t5b",
+        "--fidelity",
+        "modal",
+        "--set",
+        "effects=auto,gravity",
+        "--set",
+        "impact.height=1 mm",
+    )
+    _, out, _ = cli(*line)
+    head, listed = re.search(r"of the initial energy, (.*):\n((?:  .* %\n|  .* not known\n)*)", out).groups()
+    added = re.fullmatch(r"E_0 = \S+ J, to which gravity added (\S+) %", head)
+    shares = [float(line.split()[-2]) for line in listed.splitlines() if line.endswith("%")]
+    assert float(added[1]) > 1 and "gravity" not in listed
+    assert sum(shares) == pytest.approx(100 + float(added[1]), abs=0.005)
+    assert "gravity added" not in cli("run", "t5b", "--fidelity", "modal")[1]
