@@ -92,9 +92,6 @@ def _budget(options: Options) -> float:
     from fem_impact.verdict.assess import BUDGET
 
     stated = stated_budget(options)
-    if stated is not None and options.fidelity == "modal":
-        problem = "is for finite elements, and --fidelity modal runs none."
-        raise UsageError(problem, key="--budget", value=options.budget, remedy="Leave out one of the two.")
     return BUDGET if stated is None else stated
 
 

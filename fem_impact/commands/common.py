@@ -188,6 +188,9 @@ def stated_budget(options: Options) -> float | None:
     stated = option_quantity(options.budget, "time", "--budget")
     if stated <= 0:
         raise UsageError("must lie above 0.", key="--budget", value=options.budget)
+    if options.fidelity in ("rigid", "modal"):
+        problem = f"is for finite elements, and --fidelity {options.fidelity} runs none."
+        raise UsageError(problem, key="--budget", value=options.budget, remedy="Leave out one of the two.")
     return stated
 
 

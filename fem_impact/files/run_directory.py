@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -16,29 +15,22 @@ COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS)
 """Files that a run computes."""
 DERIVED = ("scene.toml", "row.json", "report.html", "figures", "film*")
 """The scene, and files made from those of the run."""
-
-
-PUBLISHED = ("study.json", "summary.md", "*.csv", "sweep.parquet", "figures", "report.html")
+PUBLISHED = ("study.json", "summary.md", "*.csv", "sweep.parquet")
 """The report of a study or sweep; its outcomes stay in the store."""
 
 
 def set_aside(out: Path) -> Path | None:
-    """Move the files of an older run, and those made from them, to a directory in ``out``; return it."""
-    computed = [out / name for name in COMPUTED if (out / name).exists()]
-    return _moved(out, computed, [path for name in DERIVED for path in out.glob(name)])
+    """Move an older run, or the report of an older study, to a directory in ``out``; return it.
 
-
-def set_report_aside(out: Path) -> Path | None:
-    """Move the report of an older study or sweep to a directory in ``out``; return it."""
-    return _moved(out, [path for name in PUBLISHED for path in out.glob(name) if path.name not in BESIDE])
-
-
-def _moved(out: Path, computed: Sequence[Path], derived: Sequence[Path] = ()) -> Path | None:
+    What was made from their files goes with them.
+    """
+    names = COMPUTED if not (out / "study.json").exists() else (*COMPUTED, *PUBLISHED)
+    computed = {path for name in names for path in out.glob(name)}
     if not computed:
         return None
     place = _free(out, max(path.stat().st_mtime for path in computed))
     make_directory(place)
-    for path in (*computed, *derived):
+    for path in computed | {path for name in DERIVED for path in out.glob(name)}:
         path.rename(place / path.name)
     return place
 

@@ -17,7 +17,7 @@ from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, read_text, write_text
-from fem_impact.files.run_directory import set_report_aside
+from fem_impact.files.run_directory import set_aside
 from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
@@ -148,7 +148,7 @@ class StudyReport:
 def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
     """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data.
 
-    The report of another study, or of other cases, that stands in the directory is set aside.
+    A run, another study, or a report of other cases that stands in the directory is set aside.
     """
     ledger: list[list[Cell]] = []
     for name, run in results.items():
@@ -159,8 +159,8 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
             ledger.append([values[column] for column in LEDGER])
     report = replace(report, title=_title(report, request, results), pictures=_telling(report.pictures))
     document = _document(report, request, results)
-    if _stands_another(request.out / "study.json", document):
-        set_report_aside(request.out)
+    if _stands_another(request.out, document):
+        set_aside(request.out)
     for picture in report.pictures:
         _draw(picture, make_directory(request.out / "figures"))
     for sheet in report.sheets:
@@ -172,10 +172,11 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
     return StudyResult(document, text)
 
 
-def _stands_another(path: Path, document: Mapping[str, Any]) -> bool:
-    """Return whether a file is the report of another study or of other cases, or cannot be read."""
+def _stands_another(out: Path, document: Mapping[str, Any]) -> bool:
+    """Return whether a directory holds a run, another study, or a report damaged or of other cases."""
+    path = out / "study.json"
     if not path.exists():
-        return False
+        return (out / "outcome.json").exists()
     try:
         old = read_signed(read_text(path), str(path))
     except ResultError:

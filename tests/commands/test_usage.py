@@ -23,6 +23,7 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("run", "t5b", "--set", "accuracy.tip_size"), "is not of the form key=value"),
         (("run", "t5b", "--fidelity", "modal", "--resume"), "--resume: is for finite elements only: a modal"),
         (("assess", "t5b", "--fidelity", "modal", "--budget", "30 s"), "--fidelity modal runs none"),
+        (("run", "t5b", "--fidelity", "rigid", "--budget", "30 s"), "--fidelity rigid runs none"),
         (("study", "gama"), "there is no 'gama'. Did you mean gamma?"),
         (("run", "t5b", "--stet"), "there is no option --stet. Did you mean --set?"),
         (("runn", "t5b"), "there is no 'runn'. Did you mean run?"),
