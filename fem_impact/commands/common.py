@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.commands.options import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
 from fem_impact.files.ownership import stranger
+from fem_impact.files.run_directory import COMPUTED
 
 if TYPE_CHECKING:
     from fem_impact.plan.size import RunSize
@@ -132,7 +133,7 @@ def checked_result(result: Path) -> Path:
 
 def _directory_for(file: Path) -> str:
     """Return what to name instead of a file: its directory if that holds results, or how to make some."""
-    if any((file.parent / name).is_file() for name in RESULT_FILES):
+    if any((file.parent / name).is_file() for name in (*RESULT_FILES, *COMPUTED)):
         return f"Name the directory that it lies in: {file.parent}"
     if file.suffix == ".toml":
         return f"Compute the scene by `fem-impact run {file}`, which prints its directory at the end."

@@ -32,4 +32,4 @@ def test_a_file_is_answered_with_its_directory(cli, tmp_path):
     (tmp_path / "one" / "fields.vtkhdf").write_bytes(b"")
     code, _, err = cli("render", "one/fields.vtkhdf")
     assert code == 5
-    assert "is a file. Name the directory of the results, such as one." in err
+    assert "is a file, not the directory of a result. Name the directory that it lies in: one\n" in err
