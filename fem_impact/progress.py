@@ -29,6 +29,11 @@ def compiling(end_time_s: float, seconds: int) -> Progress:
     return Progress(0.0, end_time_s, 0, 0.0, f"compiling the kernels, once, about {seconds} s")
 
 
+def setting_up(end_time_s: float, note: str, eta_s: float | None = None) -> Progress:
+    """Return the report of a run that makes its mesh and finds the modes of its rod before the first step."""
+    return Progress(0.0, end_time_s, 0, 0.0, "setting up: mesh and modes of the rod", eta_s, note)
+
+
 @dataclass(frozen=True, slots=True)
 class CaseProgress:
     """The state of a study: ``note`` names the case that was just done; ``eta_s`` covers all cases."""

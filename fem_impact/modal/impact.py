@@ -38,7 +38,7 @@ from fem_impact.physics.contact import contact_estimate, fall
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.flow_law import FlowLaw, flow_law
 from fem_impact.plan.plan import Plan
-from fem_impact.progress import Progress, compiling
+from fem_impact.progress import Progress, compiling, setting_up
 
 STEPS = 1000  # over the estimated contact
 COMPILE = 6  # s, about, once
@@ -111,9 +111,11 @@ def solve(
 
     Where it is ``recorded``, the result holds what moved over time.
     """
-    if progress is not None and not compiled_before("march.drop"):
-        progress(compiling(plan.max_time, COMPILE))
     scene = plan.scene
+    if progress is not None:
+        progress(setting_up(plan.max_time, scene.id))
+        if not compiled_before("march.drop"):
+            progress(compiling(plan.max_time, COMPILE))
     rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
     flow = flow_law(plan.bodies, plan.slots.rod_law, plan.slots.barrier_law)
     contacts = np.zeros((MOST_CONTACTS, 4))

@@ -44,7 +44,6 @@ from fem_impact.modal.motion import (
     SURFACE_N,
     SURFACE_T,
     T_ROW,
-    TILT,
     TIP,
     TURN,
     V_N,
@@ -138,12 +137,11 @@ def reach_to(
 
 
 @inlined
-def strikes(now: ModalState, others: Others, depth: float, peak: float) -> int:
-    """Return the place of a point that strikes beside the followed one, ``depth`` m deep, or `NOTHING`."""
-    low = min(0.0, -depth - TILT * max(depth, peak)) if others.flat else 0.0
+def strikes(now: ModalState, others: Others) -> int:
+    """Return the place of a point that strikes beside the followed one, or `NOTHING`."""
     for i in range(len(others.t)):
         arm_n = reach_to(now, others.t[i], others.n[i], others.along_t[i], others.along_n[i])[3]
-        if now.rigid[HEIGHT] + arm_n - others.radius[i] < low:
+        if now.rigid[HEIGHT] + arm_n - others.radius[i] < 0.0:
             return i
     return NOTHING
 
@@ -228,7 +226,6 @@ def ahead(
     bounds: Bounds,
     flow: FlowLaw,
     furrow: Furrow,
-    peak: float,
 ) -> tuple[int, int]:
     """Fly on until something strikes or to the horizon; return the steps and what strikes.
 
@@ -242,7 +239,7 @@ def ahead(
         if meets(furrow, depth, place, flow) if flow.yields else depth > 0.0:
             return steps, TIP
         if steps % LOOK == 0:
-            struck = strikes(now, others, depth, peak)
+            struck = strikes(now, others)
             if struck != NOTHING:
                 return steps, struck
     return steps, NOTHING
@@ -354,7 +351,7 @@ def drop(
     while time - last < bounds.horizon:
         arm, depth, place = followed(now, start, modes)
         force = meet(law, flow, springs, furrow, depth, place, place - before)
-        struck = strikes(now, others, depth, tally[PEAK]) if steps % LOOK == LOOK - 1 else NOTHING
+        struck = strikes(now, others) if steps % LOOK == LOOK - 1 else NOTHING
         touches = force[0] != 0.0
         late = touches and time > bounds.latest
         if len(record) and steps % every == 0:
@@ -379,7 +376,7 @@ def drop(
             break
         if pressed and not touches:
             flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
-            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, furrow, tally[PEAK])
+            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, furrow)
             steps += flown
             if struck != TIP:
                 wait = flown * dt

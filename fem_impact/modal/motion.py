@@ -11,7 +11,6 @@ from fem_impact.arrays import Array
 MOST_CONTACTS = 200
 SPRINGS = 100
 LOOK = 8  # steps between looks at the rod's other points
-TILT = 0.5  # of the largest depth: a face has tipped over where an edge is so much lower than its middle
 
 # of the rigid motion: m/s, m/s, rad/s, m and m from the barrier's surface under the contact, rad; the
 # velocities of the barrier's mass centre, m/s, its spin, rad/s, and velocities of its surface, m/s; the rod's
@@ -67,7 +66,7 @@ class Others(NamedTuple):
     """Other round edges that may touch: centres from the mass centre at first contact and radii, (m,) m.
 
     ``along_t``, ``along_n`` (m, k) are their displacements by each mode, kg^-1/2. They strike where they are
-    lower than the barrier; edges of a face that lands ``flat`` touch with it until it tips over.
+    lower than the barrier.
     """
 
     t: Array
@@ -75,12 +74,11 @@ class Others(NamedTuple):
     radius: Array
     along_t: Array
     along_n: Array
-    flat: bool
 
 
 NONE = np.zeros(0)
 RIGID = Modes(NONE, NONE, NONE)
-ALONE = Others(NONE, NONE, NONE, np.zeros((0, 0)), np.zeros((0, 0)), False)
+ALONE = Others(NONE, NONE, NONE, np.zeros((0, 0)), np.zeros((0, 0)))
 """No modes, and no other points."""
 
 

@@ -61,9 +61,8 @@ def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
     places = np.array([touch_point(scene), *((x, z) for _, x, z, _ in edges)])
     omega, moved = _moved(scene, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
     along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
-    flat = alpha == 0 and body.face > 0
     t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
-    others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:], flat)
+    others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:])
     names = tuple(edge[0] for edge in edges)
     return ModalRod(
         body.mass, body.k2, -d_c, radius - d_d, radius, omega, along_t[0], along_n[0], others, names

@@ -107,6 +107,11 @@ def touch_point(scene: Scene) -> tuple[float, float]:
     return float(rho) if scene.impact.angle > 0 else 0.0, float(z)
 
 
+def lands_flat(scene: Scene) -> bool:
+    """Say whether a flat face touches all at once: estimates and laws of a round contact do not hold then."""
+    return scene.impact.angle == 0 and projectile(scene).face > 0
+
+
 def approach(scene: Scene) -> float:
     """Return the speed, m/s, at which the contact point comes towards the barrier, spin included."""
     return -scene.relative.v_n - arms(scene)[0] * scene.impact.omega

@@ -13,6 +13,7 @@ from fem_impact.physics.contact import (
     approach,
     arms,
     contact_estimate,
+    lands_flat,
     principal_radii,
     projectile,
     touch_point,
@@ -26,6 +27,7 @@ from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Projectile
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
+FLAT_FACE = "a flat face that lands all at once"
 FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
@@ -217,6 +219,20 @@ def require_point(bodies: ContactBodies) -> None:
     )
 
 
+def require_round(scene: Scene, fidelity: str) -> None:
+    """Refuse a face that lands flat where e would follow from the law of a round contact (SceneError)."""
+    if fidelity == "solid" or (fidelity == "rigid" and scene.restitution is not None):
+        return
+    if lands_flat(scene):
+        stated = ", or state restitution" if fidelity == "rigid" else ""
+        raise SceneError(
+            f"is that of {FLAT_FACE}, but {fidelity} takes the contact law of a round tip.",
+            key="impact.angle",
+            value="0 deg",
+            remedy=f"Use --fidelity solid{stated}.",
+        )
+
+
 def require_turned(scene: Scene, asked: str) -> None:
     """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
     if scene.projectile.own_mesh is not None:
@@ -233,6 +249,7 @@ def not_reduced(scene: Scene) -> str:
     found = {
         "a projectile with a mesh of its own": scene.projectile.own_mesh,
         "a barrier of layers": scene.barrier.layers,
+        FLAT_FACE: lands_flat(scene),
         "a plate thinner than its contact is wide": is_wider(bodies_of(resolved(scene))),
     }
     return next((what for what, there in found.items() if there), "")

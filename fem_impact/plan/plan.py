@@ -18,6 +18,7 @@ from fem_impact.plan.limits import (
     require_approach,
     require_own_mesh,
     require_point,
+    require_round,
     require_shallow,
     require_still,
     validity,
@@ -109,6 +110,7 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
     require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
     require_own_mesh(scene, in_model.effects, fidelity)
+    require_round(scene, fidelity)
     bodies = bodies_of(in_model)
     through = fidelity == "solid" and is_thin(bodies)
     require_plate(bodies, through)

@@ -18,7 +18,7 @@ from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.physics.contact import approach, effective_mass
 from fem_impact.plan.plan import Plan
-from fem_impact.progress import Progress, compiling
+from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
 from fem_impact.solid.doubts import doubts, skin_shares
@@ -126,7 +126,11 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     RunError
         If the motion is no longer finite.
     """
-    whole = Stopwatch()
+    whole, size = Stopwatch(), plan.size
+    if options.progress is not None:
+        options.progress(
+            setting_up(size.steps * size.step, plan.scene.id, None if options.resume else size.time)
+        )
     model, out = model or build(plan), options.out
     view, state = RodState.of(model), model.initial_state()
     watchers = Watchers.of(plan, model, view, out, options.resume)

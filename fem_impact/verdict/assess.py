@@ -10,7 +10,7 @@ import numpy as np
 
 from fem_impact.cost.times import LONGER, about_s
 from fem_impact.errors import RunError, SceneError
-from fem_impact.plan.limits import not_reduced
+from fem_impact.plan.limits import FLAT_FACE, not_reduced
 from fem_impact.tables.text import plain
 from fem_impact.verdict.change import (
     Answer,
@@ -142,7 +142,8 @@ def assess(
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
     if here is None:
         raise RunError(" ".join(notes))
-    worst, not_known = _over_angles(scene) if reduced else (None, ((), ""))
+    elsewhere = reduced or not_reduced(scene) == FLAT_FACE  # a face that lands flat does so at 0 deg alone
+    worst, not_known = _over_angles(scene) if elsewhere else (None, ((), ""))
     return Verdict(
         scene,
         tolerance,

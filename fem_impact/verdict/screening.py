@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.effects.slots import bodies_of
 from fem_impact.physics.beam import bending_period
-from fem_impact.physics.contact import contact_estimate, projectile
+from fem_impact.physics.contact import contact_estimate, lands_flat, projectile
 from fem_impact.physics.wall import slow_ovalling
 from fem_impact.plan.choose import resolved
 from fem_impact.tables.text import plain
@@ -15,6 +15,12 @@ from rigid import LIMIT, behaves_rigidly
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
+
+
+ROUND = (
+    "The contact is estimated as that of a round tip, but a flat face lands all at once: in two runs on "
+    "finite elements it lasted 0.3 and 0.6 of that"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +32,7 @@ class Screening:
     period, duration : first bending period T1 and contact time tau of the first contact, s
     ovalling : period of a hollow body's ovalling where it is slower than bending, s; otherwise 0
     gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
-    straight : whether the rod strikes along its axis
+    straight, flat : whether the rod strikes along its axis, and whether it lands on a flat face
     """
 
     period: float
@@ -34,6 +40,7 @@ class Screening:
     ovalling: float
     gamma: float
     straight: bool
+    flat: bool
 
     @property
     def ratio(self) -> float:
@@ -56,6 +63,8 @@ class Screening:
             f"T1/tau = {self.ratio:.2f} (first bending period {plain(self.period * 1e6)} us, estimated "
             f"contact {plain(self.duration * 1e6)} us), gamma = {self.gamma:.1f} m^-0.3815: {self.published}"
         )
+        if self.flat:
+            return f"{told}. {ROUND}"
         if not self.ovalling:
             return told
         return (
@@ -73,4 +82,5 @@ def screening(scene: Scene) -> Screening:
         slow_ovalling(scene),
         float(projectile(scene).gamma),
         scene.impact.angle == 0,
+        lands_flat(scene),
     )
