@@ -82,7 +82,7 @@ def test_shares_are_percent_and_of_two_meshes_their_limits_with_bands():
     (cells,) = tables([limited])["shares"].rows
     shown = ["0.35 ± 0.12" if share.label == "vibration" else "12.3" for share in shares("report")]
     shown[[share.label for share in shares("report")].index("damping")] = None
-    assert cells == ("t5b", *shown, "12.3", "-2e-05", 9100, "7")  # 12.3 % added by gravity
+    assert cells == ("t5b", *shown, "25.0", "-2e-05", 9100, "7")  # of E_0, 25 % was added by gravity
 
 
 def test_a_study_changes_each_input_and_a_quick_one_none(tmp_path):
