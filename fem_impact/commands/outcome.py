@@ -99,13 +99,13 @@ def _accuracy(outcome: Outcome) -> list[str]:
         return []
     both = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
     lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
+    judged = "e" if isinstance(outcome.energy.vibration, Unknown) else "e and E_vib"  # a rigid rod has none
     for label, error, wall in both:
-        lines += [f"  {label} error of e and E_vib {_percent(error)}, time {_value(wall)} s"]
-    limits = or_none(v.mesh_limit)
-    if limits:
-        e, vibration = (_number(limits[name]) for name in ("e_edge", "E_vib_over_E_0"))
-        lines += [f"  all runs together: e (tip's arms) {e}, E_vib/E_0 {vibration}"]
-    return lines
+        lines += [f"  {label} error of {judged} {_percent(error)}, time {_value(wall)} s"]
+    limits = or_none(v.mesh_limit) or {}
+    names = (("e_edge", "e (tip's arms)"), ("E_vib_over_E_0", "E_vib/E_0"))
+    told = ", ".join(f"{label} {_number(limits[name])}" for name, label in names if name in limits)
+    return [*lines, f"  all runs together: {told}"] if told else lines
 
 
 def _percent(value: Num) -> str:

@@ -205,8 +205,11 @@ class Climb:
         own = [below(self.options, self._ran + at) for at in range(len(scenes))]
         runs = self.budget.run(scenes, own)
         for run in runs:
+            e = run.restitution.edge.e
             if not run.validity.finished:
                 raise RunError(f"{scenes[0].id}: {run.validity.stopped_because}")
+            if isinstance(e, Unknown):
+                raise RunError(f"{scenes[0].id}: e is not known: {e.reason}")
         return runs
 
     def _advice(self) -> str:
@@ -229,14 +232,16 @@ class Climb:
 
 
 def achieved_errors(meshes: Sequence[Placed], kept: float = 1.0) -> dict[str, float]:
-    """Return the relative uncertainty of each quantity that a target is about.
+    """Return the relative uncertainty of each quantity that a target is about; a rigid rod has no E_vib.
 
     ``kept`` is the share of its scatter that counts.
     """
     truth = truths(meshes)
+    rigid = isinstance(meshes[0][0].energy.vibration, Unknown)
     return {
         name: (truth[name].uncertainty - (1 - kept) * truth[name].scatter) / truth[name].scale
         for name in TARGETED
+        if not (rigid and name == "E_vib")
     }
 
 

@@ -9,14 +9,17 @@ from typing import TYPE_CHECKING
 
 from fem_impact.effects.registry import AUTO, BARRIERS, EFFECTS, NAMES, check_effects, grounded
 from fem_impact.effects.slots import Harm, quick_impact
+from fem_impact.errors import SceneError
 from fem_impact.outcome.groups import EffectChoice
 from fem_impact.physics.beam_impact import BeamImpact
+from fem_impact.physics.contact import approach, arms
 from fem_impact.plan.measured import expected_shares
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
+SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 UNFELT = ("contact-heating",)  # what the motion does not feel is watched or not, never missed
 
 
@@ -59,14 +62,29 @@ class Choice:
         )
 
 
+def _require_approach(scene: Scene) -> None:
+    """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
+    speed = approach(scene)
+    if speed < SLOWEST:
+        raise SceneError(
+            f"lifts the contact point off the barrier at {max(-speed, 0.0):.3g} m/s: "
+            "another part would strike.",
+            key="impact.omega",
+            value=f"{scene.impact.omega:.3g} rad/s",
+            remedy=f"Keep it under {abs(scene.relative.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
+        )
+
+
 def active(scene: Scene) -> tuple[str, ...]:
     """Return the effects in the model of a scene, in the order in which they enter it.
 
     Raises
     ------
     SceneError
-        If the scene names an effect that is none, none or two barriers, or one without what it needs.
+        If the scene names an effect that is none, none or two barriers, or one without what it needs, or if
+        the contact point does not come towards the barrier: the numbers of the effects are of an approach.
     """
+    _require_approach(scene)
     check_effects(scene.effects)
     on = decided(scene)[2] if AUTO in scene.effects else set(scene.effects)
     return tuple(name for name in NAMES if name in on)

@@ -10,8 +10,6 @@ from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import (
     ContactBodies,
-    approach,
-    arms,
     contact_estimate,
     lands_flat,
     principal_radii,
@@ -35,7 +33,6 @@ DIAMETER = 0.019
 SPEEDS = (1.30, 6.10)
 ANGLES = (math.radians(17.0), math.radians(60.0))
 TIPS = {("A", 0.007), ("B", 0.003)}
-SLOWEST = 1e-6  # m/s, of the contact point: below it nothing is computed
 
 
 def validity(bodies: ContactBodies, active: Collection[str], meshed_through: bool = False) -> tuple[str, ...]:
@@ -286,16 +283,3 @@ def _require_tip(bodies: ContactBodies, body: Faceted) -> None:
     if flank > 2 * size.a_t:
         problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
         raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
-
-
-def require_approach(scene: Scene) -> None:
-    """Refuse a spin that takes the lowest point away from the barrier as the rod comes down (SceneError)."""
-    speed = approach(scene)
-    if speed < SLOWEST:
-        raise SceneError(
-            f"lifts the contact point off the barrier at {max(-speed, 0.0):.3g} m/s: "
-            "another part would strike.",
-            key="impact.omega",
-            value=f"{scene.impact.omega:.3g} rad/s",
-            remedy=f"Keep it under {abs(scene.relative.v_n / arms(scene)[0]):.4g} rad/s, or turn it round.",
-        )

@@ -15,7 +15,6 @@ from fem_impact.plan.cells import coarse_tip, thin_cells
 from fem_impact.plan.choose import Choice, choices, neglected, resolved
 from fem_impact.plan.layers import block_of, layer_warning, require_layers
 from fem_impact.plan.limits import (
-    require_approach,
     require_own_mesh,
     require_point,
     require_round,
@@ -107,7 +106,6 @@ def plan(scene: Scene, fidelity: str = "solid") -> Plan:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
     require_still(scene, fidelity)
-    require_approach(scene)  # first: the numbers of the effects are those of an approach
     in_model = resolved(scene)
     require_own_mesh(scene, in_model.effects, fidelity)
     require_round(scene, fidelity)

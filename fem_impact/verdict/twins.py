@@ -8,7 +8,6 @@ from math import cos, hypot, sin
 from fem_impact.effects.registry import NAMES, grounded
 from fem_impact.errors import SceneError
 from fem_impact.plan.choose import active
-from fem_impact.plan.limits import require_approach
 from fem_impact.scene.types import Scene
 
 VIBRATION = "vibration"
@@ -29,7 +28,6 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
     SceneError
         A spin lifts the contact point off the barrier.
     """
-    require_approach(scene)  # first: the numbers of the effects are those of an approach
     on = {*active(scene), VIBRATION}
     free = tuple(name for name in NAMES if name in on)
     stiff = tuple(grounded([name for name in free if name not in (VIBRATION, UNFELT)]))

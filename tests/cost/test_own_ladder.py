@@ -2,6 +2,7 @@
 
 import dataclasses
 import re
+from pathlib import Path
 
 import cost_fakes
 import pytest
@@ -9,13 +10,14 @@ from cost_fakes import Here, run
 from wide_contact import WIDE
 
 import fem_impact.run.simulate
+from fem_impact.commands.outcome import print_outcome
 from fem_impact.cost import lanes, settings, to_target
 from fem_impact.cost.measure import affordable, measure
 from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
 from fem_impact.cost.settings import FAMILY, FEW, RUNGS, Mesh, family, ladder, on_mesh, placed, rungs
 from fem_impact.cost.times import LONGER
 from fem_impact.cost.to_target import settle
-from fem_impact.errors import SceneError, UsageError
+from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.plan.plan import plan
@@ -23,6 +25,17 @@ from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace, replace_all
 
 FAR = replace_all(load("t5b"), {"impact.omega": "30 rad/s", "accuracy": "20 %"})
+
+
+@pytest.fixture
+def summary(capsys):
+    """Return a function that gives what the command prints of an outcome."""
+
+    def printed(outcome):
+        print_outcome(outcome, Path("out"))
+        return capsys.readouterr().out
+
+    return printed
 
 
 @pytest.fixture
@@ -49,6 +62,28 @@ def test_the_ladder_ends_where_the_band_is_narrow_enough(fake, tmp_path):
     finer = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=1e9)
     assert finer.validity.accuracy_setting.startswith(f"{len(RUNGS)} meshes")
     assert finer.validity.achieved_error > 1e-5  # not reached, and said
+
+
+def test_a_rod_that_cannot_vibrate_is_judged_by_e_alone(fake, summary):
+    rigid = replace(FAR, "effects", ["auto", "-vibration"])
+    outcome = to_target.simulate(rigid, budget_s=1e9)
+    vibrating = to_target.simulate(replace(FAR, "accuracy", "50 %"), budget_s=1e9)
+    assert 0 < outcome.validity.achieved_error <= 0.2
+    told = summary(outcome)
+    assert "achieved error of e " in told and "all runs together: e (tip's arms) 0.3" in told
+    assert "E_vib" not in told.split("asked for")[1]
+    assert "achieved error of e and E_vib" in summary(vibrating)
+
+
+def test_a_run_that_knows_no_e_ends_the_ladder(monkeypatch):
+    def restless(scene, *rest):
+        made = run(scene, *rest)
+        arms = dataclasses.replace(made.restitution.edge, e=Unknown("gravity made it no impact"))
+        return dataclasses.replace(made, restitution=dataclasses.replace(made.restitution, edge=arms))
+
+    monkeypatch.setattr(fem_impact.run.simulate, "simulate", restless)
+    with pytest.raises(RunError, match="e is not known: gravity made it no impact"):
+        to_target.simulate(FAR, budget_s=1e9)
 
 
 def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):

@@ -11,7 +11,7 @@ from own_bodies import taper, write
 from wide_contact import WIDE
 
 from fem_impact.cost import lanes
-from fem_impact.cost.settings import FAMILY, on_mesh
+from fem_impact.cost.settings import FAMILY, ladder, on_mesh
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.plan.cells import ERROR, expected_cells
@@ -336,6 +336,13 @@ def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_ou
     """spinning-rod turns so fast that at other inclinations its lowest point would not approach."""
     found = assess(load("spinning-rod"), "modal")
     assert found.not_known[0] and "lifts the contact point" in found.not_known[1]
+
+
+def test_a_spin_that_lifts_the_contact_point_is_refused_before_any_work():
+    lifted = replace_all(load("t5b"), {"impact.omega": "150 rad/s"})
+    for work in (lambda: assess(lifted), lambda: ladder(lifted), lambda: plan(lifted)):
+        with pytest.raises(SceneError, match=r"impact\.omega = .* lifts the contact point off the barrier"):
+            work()
 
 
 def test_a_velocity_beside_the_axis_leaves_out_inclinations_where_it_would_point_up_the_slope():
