@@ -89,7 +89,8 @@ def build_geometry(
             raise no_rest()
         rod = meshes.without_slices(rod, rest_points(scene, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
-    _require_tip_first(points, zones.base)
+    if posture(scene) > 0:  # an upright body has no side that could strike
+        _require_tip_first(points, zones.base)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, fine = _touching(rod.mesh, points, zones)
     may_yield = {

@@ -105,11 +105,14 @@ class ModalResult:
 
 
 def solve(
-    plan: Plan, progress: Callable[[Progress], None] | None = None, recorded: bool = False
+    plan: Plan,
+    progress: Callable[[Progress], None] | None = None,
+    recorded: bool = False,
+    step: float = 1.0,
 ) -> ModalResult:
     """Compute an impact; the modes of a new rod are computed first, and a first run says that it compiles.
 
-    Where it is ``recorded``, the result holds what moved over time.
+    Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
     """
     scene = plan.scene
     if progress is not None:
@@ -123,7 +126,7 @@ def solve(
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
     widest = reach(law, flow, E_0)
     fastest = max([*rod.omega, contact_rate(law, flow, start, modes, widest)])
-    dt = min(contact_estimate(plan.bodies).duration / STEPS, FASTEST / fastest)
+    dt = step * min(contact_estimate(plan.bodies).duration / STEPS, FASTEST / fastest)
     bounds = Bounds(dt, horizon(scene), plan.max_time, widest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     record = np.zeros((MOST_ROWS if recorded else 0, 15))

@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.physics.beam import bending_period
-
 if TYPE_CHECKING:
     from fem_impact.scene.projectile import ProjectileSpec
-    from fem_impact.scene.types import Scene
 
 
 def ovalling_period(rod: ProjectileSpec) -> float:
@@ -35,9 +32,3 @@ def ovalling_period(rod: ProjectileSpec) -> float:
     h, R = outer - inner, 0.5 * (outer + inner)
     stiffness, mass = 9 * E * h**3 / (12 * (1 - nu**2) * R**3), 1.25 * rho * h * R
     return 2 * pi * sqrt(float(mass.sum() / stiffness.sum()))
-
-
-def slow_ovalling(scene: Scene) -> float:
-    """Return the period of ovalling, s, where an oblique impact meets a wall slower than bending; else 0."""
-    period = ovalling_period(scene.projectile)
-    return period if scene.impact.angle > 0 and period > bending_period(scene) else 0.0

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from fem_impact.modal.impact import ModalResult
+from fem_impact.modal.impact import ModalResult, solve
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactBodies, between
-from fem_impact.physics.wall import slow_ovalling
 from fem_impact.plan.measured import reduced_table
 from fem_impact.plan.plan import Plan
+from fem_impact.progress import Progress
 from fem_impact.run.common import (
     CUT_OFF,
     HARDER,
@@ -40,6 +40,7 @@ from fem_impact.run.doubts import doubts
 from fem_impact.run.resolution import without_end
 from fem_impact.scene.types import Scene
 
+HALVINGS = 2  # of the time step
 WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
 CHOICES = Unknown("effects are weighed for the finite elements; `fem-impact check` lists them")
 NOT_MESHED = Unknown("the reduced model has no elements")
@@ -48,11 +49,21 @@ SOFT_ROD = Unknown(
     "the work in the surface of a rod that is softer than the barrier is known by finite elements alone: "
     "this model was .14 and .17 of E_0 too high in two scenes"
 )
-OVALLING = (
-    "Left out: the ovalling of the wall, whose period of {:.3g} us is longer than that of the bending. In "
-    "two rings E_vib was .080 and .008 of E_0, where finite elements (--fidelity solid) gave .043 and .017."
-)
 KEPT = Unknown("the modes of a rod are computed once and kept")
+
+
+def closed(
+    plan: Plan, progress: Callable[[Progress], None] | None = None, recorded: bool = False
+) -> ModalResult:
+    """Compute an impact as `solve` does, with half the time step, and half of that, while the ledger is open.
+
+    Of 57 random scenes one missed 1.1e-4 of E_0, and half of it with half the step.
+    """
+    for halved in range(HALVINGS + 1):
+        result = solve(plan, progress, recorded, 0.5**halved)
+        if not open_ledger(result.residual / result.E_0):
+            break
+    return result
 
 
 def reduce(plan: Plan, result: ModalResult) -> Outcome:
@@ -80,7 +91,6 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
             (
                 *ASSUMPTIONS,
                 *_dent(plan.bodies),
-                *_ovals(scene),
                 *([LEVEL] if scene.barrier.inertia else []),
                 *beside_solid(scene),
             ),
@@ -100,12 +110,6 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
         cost=_cost(result),
     )
     return without_end(outcome, cut) if cut else outcome
-
-
-def _ovals(scene: Scene) -> list[str]:
-    """Tell of a wall that ovals more slowly than the body bends, which this model leaves out."""
-    period = slow_ovalling(scene)
-    return [OVALLING.format(period * 1e6)] if period else []
 
 
 def _tilted(result: ModalResult) -> list[str]:

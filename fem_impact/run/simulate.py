@@ -98,11 +98,11 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
 
         return rigid_outcome(plan)
     if plan.fidelity == "modal":
-        from fem_impact.modal.impact import solve as solve_modal
+        from fem_impact.run.modal import closed
         from fem_impact.run.modal import reduce as reduce_modal
         from fem_impact.run.modal_history import write_history
 
-        result = solve_modal(plan, options.progress, recorded=options.out is not None)
+        result = closed(plan, options.progress, recorded=options.out is not None)
         if options.out is not None:
             write_history(plan, result, options.out / "history.csv")
         return reduce_modal(plan, result)

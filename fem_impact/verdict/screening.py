@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from fem_impact.effects.slots import bodies_of
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.contact import contact_estimate, lands_flat, projectile
-from fem_impact.physics.wall import slow_ovalling
+from fem_impact.physics.wall import ovalling_period
 from fem_impact.plan.choose import resolved
 from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
@@ -30,7 +30,7 @@ class Screening:
     Attributes
     ----------
     period, duration : first bending period T1 and contact time tau of the first contact, s
-    ovalling : period of a hollow body's ovalling where it is slower than bending, s; otherwise 0
+    ovalling : period of the ovalling of a hollow body's wall, s; 0 of a solid one
     gamma : slenderness l / d^1.3815, m^-0.3815 (Eq 29)
     straight, flat : whether the rod strikes along its axis, and whether it lands on a flat face
     """
@@ -65,7 +65,7 @@ class Screening:
         )
         if self.flat:
             return f"{told}. {ROUND}"
-        if not self.ovalling:
+        if self.ovalling <= self.period or self.straight:
             return told
         return (
             f"{told}. Neither number knows of the wall, which ovals more slowly than the body bends: within "
@@ -79,7 +79,7 @@ def screening(scene: Scene) -> Screening:
     return Screening(
         bending_period(scene),
         float(contact_estimate(bodies).duration),
-        slow_ovalling(scene),
+        ovalling_period(scene.projectile),
         float(projectile(scene).gamma),
         scene.impact.angle == 0,
         lands_flat(scene),

@@ -236,3 +236,24 @@ def test_the_step_follows_the_contact_of_a_thin_rod_too():
     }
     found = result_of(replace_all(load("t5b"), changes))
     assert abs(found.residual) < 5e-5 * found.E_0
+
+
+def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
+    """The first march is spoiled; the next, with half the step, is not."""
+    steps = []
+
+    def spoiled_once(planned, progress, recorded, step):
+        steps.append(step)
+        result = solve(planned, step=step)
+        return replace(result, residual=2e-4 * result.E_0) if step == 1 else result
+
+    monkeypatch.setattr("fem_impact.run.modal.solve", spoiled_once)
+    outcome = simulate(load("t5b"), "modal")
+    assert steps == [1.0, 0.5]
+    assert outcome.validity.finished and abs(outcome.energy.residual) < 1e-5
+
+
+def test_a_smaller_step_is_one():
+    usual, half = (solve(plan(load("t5b"), "modal"), step=step) for step in (1.0, 0.5))
+    assert half.step == 0.5 * usual.step
+    assert half.V_n == pytest.approx(usual.V_n, abs=1e-3 * 1.5)

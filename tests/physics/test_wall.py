@@ -72,5 +72,10 @@ def test_it_counts_for_the_effect_of_vibration_and_is_told():
     assert number(resolved(scene)) == pytest.approx(share)
     assert "ovals more slowly than the body bends" in screening(scene).sentence
     assert "ovals" not in screening(slender).sentence
-    told = [" ".join(simulate(one, "modal").validity.assumptions) for one in (scene, slender)]
-    assert ["ovalling of the wall" in text for text in told] == [True, False]
+
+
+@pytest.mark.parametrize(("bore", "share"), [("24 mm", 0.065), ("20 mm", 0.011)])
+def test_the_reduced_model_has_the_ovalling_in_its_modes(bore, share):
+    """Finite elements gave these shares, and .074 and .012 with 8 cells over the diameter."""
+    energy = simulate(replace_all(ring(bore), {"accuracy.across": 16}), "modal").energy
+    assert energy.vibration == pytest.approx(share, rel=0.25)
