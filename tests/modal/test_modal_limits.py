@@ -256,4 +256,4 @@ def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
 def test_a_smaller_step_is_one():
     usual, half = (solve(plan(load("t5b"), "modal"), step=step) for step in (1.0, 0.5))
     assert half.step == 0.5 * usual.step
-    assert half.V_n == pytest.approx(usual.V_n, abs=1e-3 * 1.5)
+    assert half.V_n == pytest.approx(usual.V_n, abs=3e-3 * 1.5)
