@@ -30,8 +30,8 @@ from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from meshes import cell_moments, thin_skin_rise
 from meshes.refine import reach
-from meshes.section import section
-from rigid import Faceted
+from meshes.section import SLIMMEST, WIDEST, bored_section, section
+from rigid import Faceted, Turned
 
 SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
 SPLIT = 7  # elements that a cell adds when it is split into eight
@@ -242,8 +242,16 @@ def _coarse_elements(scene: Scene, end: float) -> float:
     if rod.own_mesh is not None:
         return float((cell_moments(rod.own_mesh.half()).low < end).sum())
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
-    radius = rod.diameter / 2 if rod.is_rod else np.maximum(rod.body().radius(z), 0.05 * rod.diameter)
-    return float(len(section(across).quads) * end * np.mean(across / (2 * radius)))
+    body = rod.body()
+    radius = rod.diameter / 2 if rod.is_rod else np.maximum(body.radius(z), 0.05 * rod.diameter)
+    if rod.bore:
+        assert isinstance(body, Turned), "a bore is stated for a turned body"
+        _, outer, inner = rod.wall()
+        half = bored_section(across, float(np.clip(inner[0] / outer[0], SLIMMEST, WIDEST)))
+        cells = len(half.quads) - np.where(body.inner_radius(z) > 0, half.bore_quads, 0)
+    else:
+        cells = np.full(SAMPLES, len(section(across).quads))
+    return float(end * np.mean(cells * across / (2 * radius)))
 
 
 def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:

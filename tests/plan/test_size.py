@@ -30,6 +30,13 @@ def test_elements_of_changed_scenes(changes):
     check_elements(replace_all(load("t5b"), changes))
 
 
+@pytest.mark.parametrize("bore", ["6 mm", "8 mm"])
+@pytest.mark.parametrize("begin", ["0 mm", "60 mm"])
+def test_elements_of_hollow_bodies(bore, begin):
+    tube = {"projectile.tip_radius": "1 mm", "projectile.bore": [[begin, bore], ["200 mm", bore]]}
+    check_elements(replace_all(load("tube"), tube))
+
+
 @pytest.mark.parametrize("name", ["quick", "t6-17", "t3-machined", "t2", "elastic-frictionless"])
 def test_elements_of_shipped_scenes(name):
     check_elements(load(name))
