@@ -27,6 +27,8 @@ _BARRIER = (
 _TURNED = (("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"),)
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
+_SEEN = 5e-4
+"""Least share that is listed of the vibration that the modes do not hold."""
 _IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -77,12 +79,15 @@ def _again(outcome: Outcome) -> list[str]:
 
 def _listed(outcome: Outcome) -> dict[str, Num]:
     """Return the shares of E_0 in this run by their labels."""
-    values = {share: share.of(outcome.energy) for share in shares("terminal")}
-    return {
-        _label(share, outcome.energy): value
-        for share, value in values.items()
-        if not (isinstance(value, Unknown) and share.key.path[-1] in _IF_ON)
-    }
+    energy, listed = outcome.energy, dict[str, Num]()
+    for share in shares("terminal"):
+        name, value = share.key.path[-1], share.of(energy)
+        if not (isinstance(value, Unknown) and name in _IF_ON):
+            listed[_label(share, energy)] = value
+        modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
+        if name == "vibration" and modes is not None and whole is not None and whole - modes > _SEEN:
+            listed["vibration above its modes"] = whole - modes  # without it the shares do not add up
+    return listed
 
 
 def _label(share: EnergyShare, energy: Energy) -> str:

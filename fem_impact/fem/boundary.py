@@ -30,12 +30,17 @@ RADIATION = (0.72091, 0.54936, -1.83562, 1.34367)
 
 
 def spread_boundary(
-    mesh: HexMesh, E: float, nu: float, rho: float, cells: NDArray[np.bool_] | None = None
+    mesh: HexMesh,
+    E: float,
+    nu: float,
+    rho: float,
+    cells: NDArray[np.bool_] | None = None,
+    middle: float = 0.0,
 ) -> tuple[Array, Array]:
     """Return spring stiffnesses, N/m, and damping, N s/m, of all mesh nodes, both (n, 3).
 
-    They are those at the outer faces of ``cells``, a mask (m,), or of all cells. The faces are plane and
-    parallel to the axes, so each node's springs are diagonal.
+    They are those at the outer faces of ``cells``, a mask (m,), or of all, for a load at t = ``middle``, m.
+    The faces are plane and parallel to the axes, so each node's springs are diagonal.
     """
     lame, G = lame_constants(E, nu)
     c_d, c_s = sqrt((lame + 2 * G) / rho), sqrt(G / rho)
@@ -45,7 +50,7 @@ def spread_boundary(
     if not len(faces):
         return np.zeros((len(mesh.points), 3)), np.zeros((len(mesh.points), 3))
     basis = face_basis(hex_mesh(mesh.points, mesh.cells), faces)
-    spring = springs.assemble(basis, G=G) @ ones
+    spring = springs.assemble(basis, G=G, middle=middle) @ ones
     damping = dashpots.assemble(basis, rho=rho, c_d=c_d, c_s=c_s) @ ones
     totals = np.zeros((2, len(mesh.points), 3))
     outer = np.unique(faces)  # nodes inside the cells of these faces have round-off only

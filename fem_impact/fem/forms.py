@@ -62,8 +62,9 @@ def mean_dilatation_stiffness(u, v, w):  # type: ignore[no-untyped-def]
 
 @BilinearForm
 def springs(u, v, w):  # type: ignore[no-untyped-def]
-    """Springs of a half-space loaded at the origin; r, m, is the distance to the face's centre; ``G``, Pa."""
-    r = np.linalg.norm(w.x.mean(axis=-1, keepdims=True), axis=0)
+    """Springs of a half-space loaded at t = ``middle``, m, r away from the face's centre; ``G``, Pa."""
+    t, b, n = w.x.mean(axis=-1, keepdims=True)
+    r = np.sqrt((t - w.middle) ** 2 + b**2 + n**2)
     return w.G / r * along_and_across(u, v, w.n, NORMAL_SPRING, TANGENTIAL_SPRING)
 
 

@@ -47,6 +47,7 @@ class Geometry:
     skin_rows : number of thin rows of cells at the top of the barrier
     may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
     touching : (m,) bool, cells of the rod that may touch a meshed barrier
+    middle : place along t of the middle of a face that lands flat, m; 0 of a contact about a point
     """
 
     rod: RodMesh
@@ -58,6 +59,7 @@ class Geometry:
     skin_rows: int = 0
     may_yield: Mapping[str, Bools] = field(default_factory=dict)
     touching: Bools | None = None
+    middle: float = 0.0
 
 
 def to_barrier_frame(alpha: float) -> Array:
@@ -102,7 +104,10 @@ def build_geometry(
         split = barrier.level > 0
         may_yield["barrier"] = split & _round(barrier, barrier.points, zones.along, zones.half)
     sizes = zones.tip_size, zones.barrier_size
-    return Geometry(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching)
+    return Geometry(
+        *(rod, points, barrier, *sizes, zones.conforming, zones.skin_rows, may_yield, touching),
+        middle=-0.5 * zones.reach,
+    )
 
 
 def rest_points(scene: Scene, start: float) -> Array:

@@ -26,7 +26,7 @@ facet: e was 1.4 instead of .8, and mu three times f.
 from __future__ import annotations
 
 from functools import lru_cache
-from math import log2, sqrt
+from math import ceil, log2, sqrt
 
 import numpy as np
 
@@ -146,11 +146,15 @@ def size_for(bodies: ContactBodies, cells: float, radius: float | None = None) -
 
 
 def advice(bodies: ContactBodies, radius: float | None = None) -> str:
-    """Return what to give so that a contact, of a radius, m, if that is known, is resolved."""
+    """Return what to give so that a contact, of a radius, m, if that is known, is resolved.
+
+    It is the size of cells that halving makes: a larger one may be rounded up to cells that are too large.
+    """
     h = size_for(bodies, ADVISED[kind(bodies)], radius)
     if h < FINEST:
         return "No tip size resolves it: use the modal fidelity"
-    return f"Give accuracy.tip_size = {h * 1e3:.2g} mm or less"
+    made = min(base / 2 ** ceil(log2(base / h)) for base in (rod_cell(bodies.scene), body_cell(bodies.scene)))
+    return f"Give accuracy.tip_size = {max(made, FINEST) * 1e3:.2g} mm or less"
 
 
 def widest_tip_size(bodies: ContactBodies) -> float:

@@ -38,8 +38,9 @@ def elastic_block(
     x: Array,
     effect: str = "barrier-elastic",
     bending: float | None = None,
+    middle: float = 0.0,
 ) -> ElasticBlockParts:
-    """Return a meshed barrier at positions ``x`` (size,), with springs and dashpots around it.
+    """Return a meshed barrier at positions ``x`` (size,) struck at t = ``middle``, m, and what is around it.
 
     A plate meshed through its thickness has no springs, and dashpots at its edges for bending waves of the
     phase speed ``bending``, m/s.
@@ -50,7 +51,7 @@ def elastic_block(
     around = [
         plate_edges(body.mesh, m.E, m.nu, m.rho, bending)
         if bending
-        else spread_boundary(body.mesh, m.E, m.nu, m.rho, here)
+        else spread_boundary(body.mesh, m.E, m.nu, m.rho, here, middle)
         for m, here in body.parts
     ]
     spring, damping = (sum(parts[1:], parts[0]) for parts in zip(*around, strict=True))
@@ -62,10 +63,12 @@ def elastic_block(
     return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
 
 
-def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
-    """Return the dashpots of a block's boundary, which take the radiated energy."""
+def dashpots(
+    body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts, middle: float = 0.0
+) -> Dashpots:
+    """Return the dashpots around a block struck at t = ``middle``, m, which take the radiated energy."""
     place, (m, _) = layout.barrier_slice, body.parts[-1]  # slow waves are far longer than layers are thick
-    nearest = np.linalg.norm(body.points, axis=1) + body.mesh.is_hanging
+    nearest = np.linalg.norm(body.points - [middle, 0.0, 0.0], axis=1) + body.mesh.is_hanging
     loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
     fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
     damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))

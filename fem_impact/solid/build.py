@@ -150,9 +150,8 @@ class Builder:
 
         assert self.meshed.barrier is not None, "the barrier is meshed"
         effect = "barrier-elastoplastic" if any(self.spec.barrier_laws) else "barrier-elastic"
-        return elastic_block(
-            self.meshed.barrier, self.meshed.layout, self.meshed.x, effect, self.spec.bending
-        )
+        where, middle = (self.meshed.layout, self.meshed.x), self.meshed.geometry.middle
+        return elastic_block(self.meshed.barrier, *where, effect, self.spec.bending, middle)
 
     @cached_property
     def ground(self) -> Ground:
@@ -171,7 +170,9 @@ class Builder:
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
         pots = (
-            [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if self.spec.radiating else []
+            [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block, self.meshed.geometry.middle)]
+            if self.spec.radiating
+            else []
         )
         if self.spec.bending:
             pots = [plate_dashpots(self.meshed.layout, inverse, block)]

@@ -113,7 +113,8 @@ class SkinWatch:
         place = self.places[int(np.argmin(heights))]
         self.reason = (
             "The rod came down on the barrier outside the meshed contact "
-            f"{when_and_where(state, state.x[place])} Use the barrier-rigid effect, or another angle."
+            f"{when_and_where(state, state.x[place])} A larger accuracy.tip_size widens the zone that is "
+            "meshed; or use the barrier-rigid effect, or another angle."
         )
         return True
 

@@ -1,6 +1,7 @@
 """``run`` and ``study``: what is passed on, printed and returned."""
 
 import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -211,3 +212,14 @@ def test_a_rod_that_still_comes_down_is_told(cli, stand):
     assert told in " ".join(cli("run", "t5b", "--quiet")[1].split())
     stand.outcome = stand.an_outcome(V_n_m_per_s=0.3, V_bn_m_per_s=0.1)
     assert "strikes again" not in cli("run", "t5b", "--quiet")[1]
+
+
+def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
+    """A blunt end on a rigid plane excites shapes that the modes do not hold."""
+    flat = ("--set", "impact.angle=0 deg", "--set", "effects=auto,barrier-rigid")
+    said = cli("run", "quick", *flat, "--out", "flat")[1]
+    listed = said.split("E_0 = ")[1].split("not accounted")[0]
+    shares = [float(part) for part in re.findall(r"([\d.]+) %", listed)]
+    assert "vibration above its modes" in said
+    assert sum(shares) == pytest.approx(100, abs=0.02)
+    assert "above its modes" not in cli("run", "quick", "--out", "inclined")[1]

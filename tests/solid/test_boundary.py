@@ -13,6 +13,8 @@ from fem_impact.fem.boundary import RADIATION, radiating_share, spread_boundary
 from fem_impact.fem.elements import lame_constants, lumped_mass
 from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
 from fem_impact.reference.waves import radiation_resistance
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight
 from fem_impact.solid.march import advance, evaluate
 from meshes import OUTER
@@ -176,3 +178,12 @@ def test_weight_and_its_potential():
     weight.add(state)
     assert state.force == pytest.approx([-3.0, 0.0, -4.0, 0.0])
     assert weight.energies(state)[0] == pytest.approx(3.0 * 0.1 + 4.0 * 0.3)
+
+
+@pytest.mark.parametrize("name", ["t5b", "tube"])
+def test_a_face_that_lands_flat_gets_no_motion_to_the_side(name):
+    """Springs about the edge that was taken for the contact gave mu = -.0016 and a spin of .06 rad/s."""
+    flat = {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "accuracy.tip_size": "1.2 mm"}
+    found = simulate(replace_all(load(name), flat))
+    assert found.motion.Omega == pytest.approx(0, abs=1e-8)
+    assert found.restitution.mu == pytest.approx(0, abs=1e-9)

@@ -119,7 +119,7 @@ def test_a_thick_rod_on_coarse_cells_is_not_resolved(thick):
     withheld = reduce(replace(result, plan=plan(shipped.replace(thick, "accuracy.unresolved", "withhold"))))
     for value in (withheld.restitution.mu, withheld.restitution.edge.e, withheld.energy.rigid):
         assert "the contact was not resolved" in value.reason
-        assert "Give accuracy.tip_size = 0.17 mm or less" in value.reason
+        assert "Give accuracy.tip_size = 0.11 mm or less" in value.reason
     assert not any(words.startswith(("e = ", "mu = ")) for words in withheld.validity.warnings)
 
 
