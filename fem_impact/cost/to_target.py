@@ -20,14 +20,15 @@ from fem_impact.cost.own_ladder import ALONE, OwnLadder, achieved_error
 from fem_impact.cost.quantities import TARGETED
 from fem_impact.cost.settings import Mesh, placed
 from fem_impact.cost.times import longest_s, wall_seconds
+from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
+from fem_impact.physics.beam import max_time
 from fem_impact.physics.contact import approach, projectile, sliding
-from fem_impact.plan.choose import active
+from fem_impact.plan.choose import active, resolved
 from fem_impact.plan.measured import summary, yardsticks
-from fem_impact.plan.plan import plan
 from fem_impact.run import simulate as run
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
@@ -122,7 +123,7 @@ def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
 
 def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
     """Return the largest difference over the allowed one, and its name; infinite for another model."""
-    latest, its_latest = (plan(one, "modal").max_time for one in (scene, other))
+    latest, its_latest = (max_time(bodies_of(resolved(one))) for one in (scene, other))
     for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
         ("effects", active(scene), active(other)),

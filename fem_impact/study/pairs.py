@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING
 
 from fem_impact.cost.limits import mesh_limits
 from fem_impact.cost.settings import can_be_made
+from fem_impact.effects.slots import bodies_of
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.plan import plan
+from fem_impact.plan.choose import resolved
+from fem_impact.plan.zones import zones_of
 from fem_impact.scene.shipped import replace_all
 
 if TYPE_CHECKING:
@@ -28,7 +30,7 @@ def resized(scene: Scene, factor: float) -> Scene:
 
     A contact that larger elements do not resolve is reported all the same: it counts for the band alone.
     """
-    zones = plan(scene, "modal").zones
+    zones = zones_of(bodies_of(resolved(scene)))
     sizes = {"tip_size": zones.tip_size, "barrier_size": zones.barrier_size}
     changes = {f"accuracy.{key}": f"{factor * size * 1e3:g} mm" for key, size in sizes.items()}
     return replace_all(scene, {**changes, **(COARSE if factor > 1 else {}), "save.frames": 0})

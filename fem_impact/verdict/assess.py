@@ -129,20 +129,20 @@ def assess(
     """
     _check(fidelity, tolerance, budget_s)
     reduced = fidelity == "modal" or not not_reduced(scene)
+    elsewhere = reduced or not_reduced(scene) == FLAT_FACE  # a face that lands flat does so at 0 deg alone
     quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(not_reduced(scene))])
     here, used, more = quick, "modal", "--fidelity solid"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        least = LEAST_PAIRS if fidelity == "solid" else int(not reduced)
+        least = LEAST_PAIRS if fidelity == "solid" else int(not elsewhere)
         solid, told, more = _solid(scene, least, tolerance, (budget_s, workers), quick, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
     if here is None:
         raise RunError(" ".join(notes))
-    elsewhere = reduced or not_reduced(scene) == FLAT_FACE  # a face that lands flat does so at 0 deg alone
     worst, not_known = _over_angles(scene) if elsewhere else (None, ((), ""))
     return Verdict(
         scene,

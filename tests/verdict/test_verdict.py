@@ -11,8 +11,10 @@ from own_bodies import taper, write
 from wide_contact import WIDE
 
 from fem_impact.cost import lanes
+from fem_impact.cost.own_ladder import OwnLadder
 from fem_impact.cost.settings import FAMILY, ladder, on_mesh
-from fem_impact.errors import SceneError
+from fem_impact.cost.to_target import settle
+from fem_impact.errors import RunError, SceneError
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.plan.cells import ERROR, expected_cells
 from fem_impact.plan.choose import active
@@ -645,3 +647,11 @@ def test_the_published_limit_says_nothing_of_a_straight_impact():
     straight = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
     assert "nothing of a straight impact" in screening(straight).sentence
     assert "rebounds as a rigid body" in screening(load("t5b")).sentence
+
+
+def test_a_face_that_lands_flat_keeps_to_the_budget_and_a_wanted_error():
+    """No reduced model answers, and the first mesh would take longer than the budget: it does not run."""
+    flat = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
+    with pytest.raises(RunError, match=r"no reduced model of a flat face .* A first mesh would take about"):
+        assess(flat, budget_s=0.01)
+    assert isinstance(settle(replace_all(flat, {"accuracy": "5 %"}), budget_s=5.0), OwnLadder)
