@@ -80,13 +80,14 @@ def _again(outcome: Outcome) -> list[str]:
 def _listed(outcome: Outcome) -> dict[str, Num]:
     """Return the shares of E_0 in this run by their labels."""
     energy, listed = outcome.energy, dict[str, Num]()
+    modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
+    above = 0.0 if modes is None or whole is None else whole - modes
     for share in shares("terminal"):
         name, value = share.key.path[-1], share.of(energy)
         if not (isinstance(value, Unknown) and name in _IF_ON):
             listed[_label(share, energy)] = value
-        modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
-        if name == "vibration" and modes is not None and whole is not None and whole - modes > _SEEN:
-            listed["vibration above its modes"] = whole - modes  # without it the shares do not add up
+        if name == "vibration" and above > _SEEN:
+            listed["vibration above its modes"] = above  # without it the shares do not add up
     return listed
 
 

@@ -15,6 +15,7 @@ from fem_impact.jobs.job import Job
 from fem_impact.plan.cells import body_cell, levels_of, rod_cell
 from fem_impact.plan.choose import active, resolved
 from fem_impact.plan.plan import plan
+from fem_impact.scene.projectile import ACROSS
 from fem_impact.scene.shipped import replace_all
 
 if TYPE_CHECKING:
@@ -51,7 +52,6 @@ class Mesh:
         return tip, body_cell(plain_scene) / 2 ** (below + self.finer)
 
 
-ACROSS = 8  # cells over the diameter, of a scene that states no more
 RUNGS = tuple(Mesh(finer) for finer in (-1, 0, 1, 2))  # from coarse to fine, each with cells half as large
 FAMILY = RUNGS[:3]
 """The meshes of a scene of which all `RUNGS` can be made, see `family`."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 
 POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
+_OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
 MOST_CELLS = 3e5  # largest number of cells of a block before refinement: about 1 GB
 # size of the ellipsoid in which cells may yield, over that of the ellipsoid inscribed in the fine
 # zone's box; cells in the corners of the box stay elastic. In the 13 sets on 0.59 mm, and four on 0.30 mm,
@@ -119,9 +120,6 @@ def rest_points(scene: Scene, start: float) -> Array:
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 
-OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
-
-
 def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
     body, across = projectile(scene), scene.across
@@ -142,7 +140,7 @@ def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
         assert isinstance(body, Projectile), "a body with facets has a mesh of its own"
         return meshes.rod(body.meridian(), body.length, across, None, zones, contact=lowest, buffer=BUFFER)
     except meshes.MeshError as error:
-        raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=OTHERWISE) from None
+        raise SceneError(f"cannot be meshed: {error}.", key="projectile", remedy=_OTHERWISE) from None
 
 
 def _require_tip_first(points: Array, base: float) -> None:

@@ -159,7 +159,7 @@ def _change(data: dict[str, Any], key: str, value: Any) -> None:
     if path[-2:] == ["material", "rate"]:
         _open_rate(_section(data, path[:-1], key), last)
     if not path and last not in data:
-        _refusebare(key, data)
+        _refuse_bare(key, data)
     table = _section(data, path, key)
     # an SI key replaces the key with a unit: ``length_m`` replaces ``length``
     table.pop(bare(last) if bare(last) in table else last, None)
@@ -206,7 +206,7 @@ def titled(title: str, changes: Mapping[str, Any]) -> str:
     return f"{title}{', ' if _CHANGED in title else _CHANGED}{told}"[:_LONGEST]
 
 
-def _refusebare(key: str, data: dict[str, Any]) -> None:
+def _refuse_bare(key: str, data: dict[str, Any]) -> None:
     """Refuse a key without its section that one of a section comes near to, such as ``lenght``."""
     sections = ((name, table) for name, table in data.items() if isinstance(table, dict))
     whole = {inner: f"{name}.{inner}" for name, table in sections for inner in table}

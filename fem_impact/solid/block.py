@@ -24,12 +24,14 @@ class ElasticBlockParts:
     linear : the item of its linear part
     stiffness : (size, size) of all its cells, N/m
     springs, pots : (size, size), N/m, and (size,), N s/m, of the half-space
+    middle : place along t where the block is struck, m
     """
 
     linear: ElasticBlock
     stiffness: sp.csr_matrix
     springs: sp.dia_matrix
     pots: Array
+    middle: float
 
 
 def elastic_block(
@@ -60,15 +62,14 @@ def elastic_block(
     K = sp.csr_matrix(linear + springs)
     K.eliminate_zeros()  # nodes inside the yielding zone have no linear part
     item = ElasticBlock(NodeProduct.of(K, shifted[~body.mesh.is_hanging], x[place]), place, effect)
-    return ElasticBlockParts(item, linear + stiffness_of(body, body.yields, n, place.start), springs, pots)
+    whole = linear + stiffness_of(body, body.yields, n, place.start)
+    return ElasticBlockParts(item, whole, springs, pots, middle)
 
 
-def dashpots(
-    body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts, middle: float = 0.0
-) -> Dashpots:
-    """Return the dashpots around a block struck at t = ``middle``, m, which take the radiated energy."""
+def dashpots(body: MeshedBody, layout: DofLayout, inverse_mass: Array, block: ElasticBlockParts) -> Dashpots:
+    """Return the dashpots around a block, which take the radiated energy."""
     place, (m, _) = layout.barrier_slice, body.parts[-1]  # slow waves are far longer than layers are thick
-    nearest = np.linalg.norm(body.points - [middle, 0.0, 0.0], axis=1) + body.mesh.is_hanging
+    nearest = np.linalg.norm(body.points - [block.middle, 0.0, 0.0], axis=1) + body.mesh.is_hanging
     loaded = int(body.places[int(nearest.argmin()), 2]) - place.start
     fixed, K = inverse_mass[place] == 0, sp.csr_matrix(block.stiffness + block.springs)
     damping = block.pots * radiating_share(K, block.pots, fixed, loaded, (m.E, m.nu, m.rho))

