@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
+from .chord import chord
 from .errors import ShapeError, refuse
 from .slenderness import slenderness
 from .turned import CORNER
@@ -132,6 +133,12 @@ class Faceted:
         lengths = np.hypot(*before), np.hypot(*after)
         turn = math.acos(float(np.clip(before @ after / (lengths[0] * lengths[1]), -1.0, 1.0)))
         return float(min(lengths)) / turn if 0.0 < turn < CORNER else 0.0
+
+    def reaches(self, alpha: float, height: float) -> tuple[float, float]:
+        """As `Projectile.reaches`, of the convex outline."""
+        highest = int(np.argmax(self._outline[:, 1]))
+        around = np.roll(self._outline, -highest, axis=0)
+        return chord(np.vstack([around, around[:1]]), alpha, height)
 
     def curvature_around(self, alpha: float) -> float:
         """Radius of curvature, m, across the plane of motion at the lowest point; inf along a straight edge.

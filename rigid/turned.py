@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
+from .chord import chord
 from .errors import ShapeError, TooLongError, refuse
 from .slenderness import slenderness
 
@@ -196,6 +197,14 @@ class Turned:
     def tip_curvature(self, alpha: float) -> float:
         """Radius of curvature, m, of the meridian at the lowest point; 0 on an edge."""
         return float(self._bends()[self._touching(np.array(alpha))])
+
+    def reaches(self, alpha: float, height: float) -> tuple[float, float]:
+        """As `Projectile.reaches`; a face ends at its bore."""
+        side = self.outline
+        if self.bore is not None and self.bore[0, 1] <= 0.0:
+            rim = self.bore[:1]
+            return chord(np.vstack([rim, side[(side > rim).any(axis=1)]]), alpha, height)
+        return chord(np.vstack([side[:0:-1] * [-1, 1], side]), alpha, height)
 
     def flank(self, alpha: float) -> tuple[float, float]:
         """Length of the straight side next to the lowest point, and its far end's height over the barrier, m.

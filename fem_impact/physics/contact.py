@@ -6,12 +6,13 @@ Local contact of principal radii R1 (meridian) and R2 (around the rod) under the
 
 at the approach v_n of the contact point either Hertzian, 8/15 E* sqrt(R) d^(5/2) = m* v_n^2 / 2, or fully
 plastic with the limiting pressure p = 2.8 sigma_y of the softer body, pi p R d^2 = m* v_n^2 / 2 (Thornton
-1997, doi:10.1115/1.2787319; Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2).
+1997, doi:10.1115/1.2787319; Johnson, Contact Mechanics, 1985), R = sqrt(R1 R2). Where the tip is wider at the
+depth d than R1 says, as behind a sharp edge, R1 is that of the parabola as wide there, w^2 / (8 d).
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf, pi, sin, sqrt
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
 SECTION = 1.8412  # first zero of J1': cut-off k R of shear modes within the round section
+FLAT = 2.0  # depths, within which a face or a flank lies flat on the barrier
+ROUNDS = 12  # of depth and width, each of which moves the depth a quarter of the last
 FLATTEST = 0.2  # m, upper limit of R2, which is infinite for a contact on a flat face
 
 
@@ -59,13 +62,20 @@ class ContactBodies:
 
 @dataclass(frozen=True, slots=True)
 class ContactEstimate:
-    """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa."""
+    """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa.
+
+    R1, R2, m, are the radii of the round surface that is as wide as the tip at this depth; its middle lies
+    ``shift``, m, down the slope from the point that touches first.
+    """
 
     depth: float
     a_t: float
     a_b: float
     duration: float
     pressure: float
+    R1: float
+    R2: float
+    shift: float = 0.0
 
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
@@ -194,20 +204,45 @@ def contact_modulus(bodies: ContactBodies) -> float:
 
 def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
     """Return the size of the first contact."""
-    R1, R2 = principal_radii(bodies.scene)
+    size = as_round = round_contact(bodies)
+    R1, R2 = size.R1, size.R2
+    body, alpha = projectile(bodies.scene), bodies.scene.impact.angle
+    for _ in range(ROUNDS):
+        down, up = body.reaches(alpha, size.depth)
+        wide = (down + up) ** 2 / (8 * size.depth)
+        if wide <= R1:
+            break
+        size = replace(_estimate(bodies, wide, max(R2, wide)), shift=max(0.0, 0.5 * (down - up)))
+    # of a face nearly flat all may touch, whatever the depth
+    return as_round if body.face > 0 and nearly_flat(bodies.scene, size.depth) else size
+
+
+def round_contact(bodies: ContactBodies) -> ContactEstimate:
+    """Return the size of the first contact of a tip that is round everywhere as where it touches first."""
+    return _estimate(bodies, *principal_radii(bodies.scene))
+
+
+def _estimate(bodies: ContactBodies, R1: float, R2: float) -> ContactEstimate:
+    """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
     R, v_n = sqrt(R1 * R2), max(approach(bodies.scene), 1e-6)
     energy, E_star = 0.5 * effective_mass(bodies) * v_n**2, contact_modulus(bodies)
     depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
-    elastic = ContactEstimate(
-        depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, 4 / (3 * pi) * E_star * sqrt(depth / R)
-    )
+    pressure = 4 / (3 * pi) * E_star * sqrt(depth / R)
     limit = LIMIT_PRESSURE * min((m.yield_stress for m in bodies.yielding), default=inf)
-    if elastic.pressure <= limit:
-        return elastic
+    if pressure <= limit:
+        return ContactEstimate(
+            depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, pressure, R1, R2
+        )
     depth = sqrt(energy / (pi * limit * R))
     return ContactEstimate(
-        depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit
+        depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit, R1, R2
     )
+
+
+def nearly_flat(scene: Scene, depth: float) -> bool:
+    """Return whether the middle of the face stands so low that all of it may touch at a depth, m."""
+    rho, _ = projectile(scene).contact_point(scene.impact.angle)
+    return float(rho) * sin(scene.impact.angle) <= FLAT * depth
 
 
 def barrier_conforms(bodies: ContactBodies) -> bool:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from math import inf, pi, sqrt
 from typing import TYPE_CHECKING, NamedTuple
 
-from fem_impact.physics.contact import LIMIT_PRESSURE, ContactBodies, contact_modulus, principal_radii
+from fem_impact.physics.contact import LIMIT_PRESSURE, ContactBodies, contact_estimate, contact_modulus
 
 if TYPE_CHECKING:
     from fem_impact.scene.material import Material
@@ -54,8 +54,8 @@ def softer(bodies: ContactBodies) -> Material | None:
 
 def contact_law(bodies: ContactBodies) -> ContactLaw:
     """Return the contact law of two bodies."""
-    R1, R2 = principal_radii(bodies.scene)
-    R, E_star, soft = sqrt(R1 * R2), contact_modulus(bodies), softer(bodies)
+    size = contact_estimate(bodies)
+    R, E_star, soft = sqrt(size.R1 * size.R2), contact_modulus(bodies), softer(bodies)
     limit = LIMIT_PRESSURE * soft.yield_stress if soft else inf
     stiffness = 4 / 3 * E_star * sqrt(R)
     depth = (pi * limit / (2 * E_star)) ** 2 * R

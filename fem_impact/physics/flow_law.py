@@ -24,7 +24,6 @@ from fem_impact.physics.contact import (
     barrier_conforms,
     contact_estimate,
     contact_modulus,
-    principal_radii,
 )
 from fem_impact.physics.contact_law import shear_stiffness, softer
 from fem_impact.physics.hardening import Hardening, strain_rate
@@ -72,9 +71,9 @@ def flow_law(bodies: ContactBodies, rod: Hardening | None, barrier: Hardening | 
 
     The softer body flows, at the strain rate of the indentation, if the first contact reaches its hardness.
     """
-    R1, R2 = principal_radii(bodies.scene)
-    soft, E_star = softer(bodies), contact_modulus(bodies)
-    flows = soft is not None and contact_estimate(bodies).pressure >= LIMIT_PRESSURE * soft.yield_stress
+    size, soft, E_star = contact_estimate(bodies), softer(bodies), contact_modulus(bodies)
+    R1, R2 = size.R1, size.R2
+    flows = soft is not None and size.pressure >= LIMIT_PRESSURE * soft.yield_stress
     of_soft = [(barrier, bodies.scene.barrier.struck), (rod, bodies.scene.projectile.material)]
     curve = next((law for law, metal in of_soft if law and metal == soft), Hardening(inf, 0.0, 0.0))
     faster = curve.rate.factor(strain_rate(bodies)) if curve.rate else 1.0

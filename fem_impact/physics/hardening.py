@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_impact.physics.contact import ContactBodies, contact_estimate, principal_radii
+from fem_impact.physics.contact import ContactBodies, contact_estimate
 from fem_impact.scene.material import JohnsonCookRate
 
 if TYPE_CHECKING:
@@ -180,8 +180,8 @@ def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
 
 def strain_rate(bodies: ContactBodies) -> float:
     """Return the strain rate of the indentation, 1/s: 0.2 a/R (Tabor 1951) gained in half the contact."""
-    size, (R1, R2) = contact_estimate(bodies), principal_radii(bodies.scene)
-    return 0.2 * sqrt(size.a_t * size.a_b / (R1 * R2)) / (0.5 * size.duration)
+    size = contact_estimate(bodies)
+    return 0.2 * sqrt(size.a_t * size.a_b / (size.R1 * size.R2)) / (0.5 * size.duration)
 
 
 def rate_gain(metal: Material, rate: float) -> float:

@@ -9,11 +9,12 @@ from dataclasses import replace
 from fem_impact.effects.slots import bodies_of
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import (
+    FLAT,
     ContactBodies,
     contact_estimate,
     lands_flat,
-    principal_radii,
     projectile,
+    round_contact,
     touch_point,
 )
 from fem_impact.plan.choose import resolved
@@ -26,7 +27,6 @@ from rigid import Faceted, Projectile
 
 BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
 FLAT_FACE = "a flat face that lands all at once"
-FLAT = 2.0  # estimated indentations, within which a flank lies flat on the barrier
 # Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
 LENGTHS = (0.08, 0.24)
 DIAMETER = 0.019
@@ -194,7 +194,7 @@ def require_point(bodies: ContactBodies) -> None:
     if isinstance(body, Faceted):
         _require_tip(bodies, body)
         return
-    size, (length, height) = contact_estimate(bodies), body.flank(scene.impact.angle)
+    size, (length, height) = round_contact(bodies), body.flank(scene.impact.angle)
     flat = FLAT * size.depth
     if length <= 2 * size.a_t or height >= flat:
         return
@@ -274,12 +274,12 @@ def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> No
 
 def _require_tip(bodies: ContactBodies, body: Faceted) -> None:
     """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
-    scene, size = bodies.scene, contact_estimate(bodies)
+    scene, size = bodies.scene, round_contact(bodies)
     value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
     if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
         problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
         raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
-    _, flank, _ = body.spread(scene.impact.angle, FLAT * size.depth, principal_radii(scene))
+    _, flank, _ = body.spread(scene.impact.angle, FLAT * size.depth, (size.R1, size.R2))
     if flank > 2 * size.a_t:
         problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
         raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)

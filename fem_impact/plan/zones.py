@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, cos, floor, log2, sin, sqrt
+from math import ceil, cos, floor, log2, sqrt
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import (
+    FLAT,
     ContactBodies,
     ContactEstimate,
     approach,
     barrier_conforms,
     contact_estimate,
-    principal_radii,
+    nearly_flat,
     projectile,
     sliding,
 )
@@ -43,8 +44,6 @@ BUFFER = 1  # whole cells between two levels
 # at least over the half-width along t, because the surface is dragged along in front of a rod that sticks
 # (at 17 to 37 degrees, where 1.1 to 1.3 half-widths left the edge flowing by up to 0.5 %)
 SLIDE, DRAG = 5.0, 0.6
-# a flat face whose middle is no higher than this many depths may touch as a whole
-FLAT = 2.0
 # under a tip that sticks the plate shears in a layer some 0.05 mm thick: so many rows at its skin are drawn
 # together, each to half the height of the next; the first no lower than a share of the indentation, or it is
 # crushed at the edge of the contact
@@ -199,16 +198,16 @@ def skin_rows(bodies: ContactBodies, h: float) -> int:
 def face_reach(bodies: ContactBodies) -> tuple[float, float]:
     """Return how far the fine zone must follow a face that nearly lies flat, along -t and to the side, m.
 
-    The face of a turned body rises from the contact by tan(alpha); if its middle stands no higher than `FLAT`
-    depths of the estimated indentation, all of it may touch. Of a body with facets, all nodes up to that
-    height may that lie further out than those of the round surface of the estimate.
+    Of a turned body's face all may touch where it nearly lies flat, else as much as is pressed in. Of a body
+    with facets, all nodes no higher than `FLAT` depths of the estimated indentation may that lie further out
+    than those of the round surface of the estimate.
     """
     size, alpha = contact_estimate(bodies), posture(bodies.scene)
     body, rho = projectile(bodies.scene), float(lowest_point(bodies.scene)[0])
     if isinstance(body, Faceted):
-        reach, _, side = body.spread(alpha, FLAT * size.depth, principal_radii(bodies.scene))
+        reach, _, side = body.spread(alpha, FLAT * size.depth, (size.R1, size.R2))
         return reach, side + AROUND * size.a_b if side > 0 else 0.0
-    return (2 * rho * cos(alpha), rho) if rho * sin(alpha) <= FLAT * size.depth else (0.0, 0.0)
+    return (2 * rho * cos(alpha), rho) if nearly_flat(bodies.scene, size.depth) else (2 * size.shift, 0.0)
 
 
 def slide(bodies: ContactBodies, t: float) -> float:

@@ -15,8 +15,9 @@ from fem_impact.physics.contact import contact_estimate, contact_modulus, effect
 from fem_impact.physics.contact_law import thornton
 from fem_impact.plan.choose import active, choices, neglected, resolved
 from fem_impact.plan.plan import plan
+from fem_impact.plan.zones import zones_of
 from fem_impact.scene.read import read_dict
-from fem_impact.scene.shipped import load
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
 from fem_impact.scene.write import to_dict
 from fem_impact.solid.build import build
@@ -83,7 +84,8 @@ RUN = """
 import sys
 from dataclasses import replace
 from fem_impact.plan.plan import plan
-from fem_impact.scene.shipped import load
+from fem_impact.plan.zones import zones_of
+from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.run import solve
 
 base = load("t5b")
@@ -321,3 +323,37 @@ def test_a_soft_plate_limits_the_pressure():
 def test_edge_radii_of_profile_b():
     """The 3 mm edge at 45 degrees has principal radii 3 and 12.2 mm."""
     assert principal_radii(load("t5b")) == pytest.approx((3e-3, 12.2e-3), rel=5e-3)
+
+
+SHARP = {
+    "projectile.tip": "plain",
+    "projectile.tip_radius": "0 mm",
+    "projectile.length": "200 mm",
+    "impact.height": "1 m",
+}
+
+
+@pytest.mark.parametrize("angle", [8, 20, 45])
+def test_a_sharp_edge_is_pressed_in_as_the_parabola_that_is_as_wide(angle):
+    stated = replace_all(load("t5b"), SHARP | {"impact.angle": f"{angle} deg"})
+    found, tangent = contact_estimate(bodies(stated)), np.tan(np.radians(angle))
+    assert 2 * found.a_t == pytest.approx(found.depth * (1 / tangent + tangent), rel=1e-5)
+    assert found.a_t == pytest.approx(sqrt(2 * found.R1 * found.depth))
+    assert found.shift == pytest.approx(0.5 * found.depth * (1 / tangent - tangent), abs=1e-9, rel=1e-5)
+    work = pi * found.pressure * sqrt(found.R1 * found.R2) * found.depth**2
+    assert work == pytest.approx(0.5 * effective_mass(bodies(stated)) * stated.impact.v_n**2)
+    low, high = zones_of(bodies(stated)).whole
+    assert low[0] < -found.depth / tangent and high[0] > found.depth * tangent
+
+
+@pytest.mark.parametrize("name", ["t2", "t4", "t5d", "t6-17", "t6-60", "t3-machined-tip-a"])
+def test_the_measured_tips_are_pressed_in_as_round_as_they_are(name):
+    found = contact_estimate(bodies(load(name)))
+    assert (found.R1, found.R2, found.shift) == (*principal_radii(load(name)), 0.0)
+
+
+def test_a_face_that_nearly_lies_flat_keeps_the_estimate_of_its_edge():
+    flat = replace_all(load("t5b"), {"impact.angle": "0.5 deg"})
+    found = contact_estimate(bodies(flat))
+    assert (found.R1, found.shift) == (3e-3, 0.0)
+    assert zones_of(bodies(flat)).reach > 0.012
