@@ -36,7 +36,11 @@ def assess(options: Options) -> int:
         from fem_impact.scene.write import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
-    verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
+    try:
+        verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
+    except KeyboardInterrupt:
+        remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
+        raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
     found = document(verdict, _command(options))
     if case is not None:
         from fem_impact.verdict.transfer import transfer

@@ -63,7 +63,7 @@ def _guarded(handler: Callable[[Options], int], options: Options) -> int:
     except FemImpactError as error:
         return _complain(str(error), error.exit_code, options)
     except KeyboardInterrupt as stop:
-        return _complain(f"what was computed so far is kept. {stop}".strip(), 130, options)
+        return _complain(str(stop) or "what was computed so far is kept.", 130, options)
     except MemoryError:
         remedy = "Use a larger accuracy.tip_size or fewer workers."
         return _complain(f"out of memory. {remedy}", RunError.exit_code, options)

@@ -53,6 +53,8 @@ def run(options: Options) -> int:
     chosen = _setting(scene, options)
     _say_plan(scene, chosen.sentence if chosen else "", options)
     out = checked_out(options.out or _default_out(scene, options))
+    if options.resume and scene.accuracy.target is None and not (out / CHECKPOINT).exists():
+        sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     from fem_impact.commands.outcome import print_outcome
     from fem_impact.cost.to_target import simulate
 
@@ -61,7 +63,7 @@ def run(options: Options) -> int:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"Results: {out}; {_way_on(out)}") from None
+        raise KeyboardInterrupt(f"what was computed so far is kept. Results: {out}; {_way_on(out)}") from None
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:

@@ -96,7 +96,8 @@ def _load(path: Path) -> str:
             "there is no such file.", source=str(path), remedy=library.nearest_scene(path.stem)
         ) from None
     except IsADirectoryError:
-        remedy = f"Name the file, such as {path / 'scene.toml'}."
+        inside = path / "scene.toml"
+        remedy = f"Name the file, such as {inside}." if inside.is_file() else "Name a scene file."
         raise SceneError("is a directory, not a scene file.", source=str(path), remedy=remedy) from None
     except UnicodeDecodeError:
         raise SceneError("is not UTF-8 text.", source=str(path), remedy=_TOML) from None
@@ -143,7 +144,7 @@ def read_scene(data: Table) -> Scene:
     rubs = "friction" in effects or ("auto" in effects and "-friction" not in effects)
     restitution = parse_number(data["restitution"], "restitution") if "restitution" in data else None
     parts: dict[str, Callable[[], Any]] = {
-        "id": lambda: needed(data, "id"),
+        "id": lambda: needed(data, "id", '"my-rod", a name for the scene'),
         "projectile": lambda: within(data, "projectile", _projectile),
         "barrier": lambda: within(data, "barrier", _barrier),
         "surface": lambda: within(data, "surface", _surface) if "surface" in data or rubs else SMOOTH,
@@ -301,7 +302,10 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
     return ProjectileSpec(
-        tip=needed(table, "tip"), material=within(table, "material", _material), **numbers, **own
+        tip=needed(table, "tip", '"A", "B" or "plain"'),
+        material=within(table, "material", _material),
+        **numbers,
+        **own,
     )
 
 
@@ -354,7 +358,7 @@ def _material(table: Table | str) -> Material:
     }
     law = {"law": table["law"]} if "law" in table else {}
     rate = within(table, "rate", _rate) if "rate" in table else None
-    made = Material(name=needed(table, "name"), **stated, **law, rate=rate)
+    made = Material(name=needed(table, "name", '"my-steel", a name of its own'), **stated, **law, rate=rate)
     known = library.materials().get(made.name)
     if known is not None and known != made:
         raise SceneError(
@@ -393,7 +397,11 @@ def _surface(table: Table) -> Surface:
 
 
 def _custom_surface(table: Table) -> Surface:
-    f = needed(table, "friction")
+    f = needed(table, "friction", "0.3, Coulomb's coefficient")
     wanted = (*fields.SURFACE, *fields.SKIN)
     numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
-    return Surface(state="custom", source=needed(table, "source"), **numbers)
+    return Surface(
+        state="custom",
+        source=needed(table, "source", '"our own tests", where the friction is known from'),
+        **numbers,
+    )

@@ -12,6 +12,14 @@ from fem_impact.scene.units import parse_number, parse_quantity
 T = TypeVar("T")
 Table = Mapping[str, Any]
 UNKNOWN_KEY = "is not a known key."
+OTHER_NAMES = {
+    "density": "rho",
+    "modulus": "E",
+    "young": "E",
+    "poisson": "nu",
+    "yield_strength": "yield_stress",
+}
+"""Keys by other words for the same."""
 
 
 def numbers_of(
@@ -68,12 +76,11 @@ def listed(tables: Any, key: str, read: Callable[[Table], T], example: str) -> t
     return tuple(one(number, table) for number, table in enumerate(tables, 1))
 
 
-def needed(table: Table, key: str) -> Any:
-    """Return the value of a key that must be there."""
+def needed(table: Table, key: str, example: str = "") -> Any:
+    """Return the value of a key that must be there; ``example`` is one such as could be written."""
     if key not in table:
-        raise SceneError(
-            "is missing.", key=key, remedy="`fem-impact scenes` lists complete scenes to start from."
-        )
+        lists = "`fem-impact scenes` lists complete scenes to start from."
+        raise SceneError("is missing.", key=key, remedy=f"Write {key} = {example}." if example else lists)
     return table[key]
 
 
@@ -81,7 +88,10 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
     """Refuse a key that is not known, and name the nearest, or those ``shown``."""
     for key in table:
         if key not in known:
-            remedy = did_you_mean(str(key), known, f"Known here: {', '.join(shown or known)}.")
+            near = next(
+                (name for word, name in OTHER_NAMES.items() if word in key and name in known), str(key)
+            )
+            remedy = did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")
             raise SceneError(UNKNOWN_KEY, key=str(key), remedy=remedy)
 
 

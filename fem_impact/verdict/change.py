@@ -97,6 +97,13 @@ class Change:
             error=f"{self.model}, and {other.model} within",
         )
 
+    def at_least(self, off: float) -> Change:
+        """Return the change with a band no smaller than ``off``, an error that finite elements showed."""
+        if off <= self.band:
+            return self
+        told = f"At the scene's own inclination it is off by {off:.2g}: so much counts at all others."
+        return replace(self, band=off, source=f"{self.source} {told}")
+
     @property
     def told(self) -> str:
         """Value and band as text."""
@@ -311,7 +318,7 @@ def largest(changes: Sequence[Change]) -> Change:
 
 def _bands(coarse: Energy, fine: Energy, ratio: float) -> dict[str, float]:
     """Return how far the limits of two meshes may lie from the shares of the finer one."""
-    names = [share.key.path[-1] for share in SHARES]
+    names = [*(share.key.path[-1] for share in SHARES), "skin"]
     pairs = {name: (or_none(getattr(fine, name)), or_none(getattr(coarse, name))) for name in names}
     limits = {
         name: (a, *pair_limit(a, b, ratio))

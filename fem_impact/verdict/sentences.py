@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import degrees, inf, isclose
 from typing import Any
 
-from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
@@ -72,8 +71,8 @@ def _anywhere(v: Verdict) -> str:
         return "For other inclinations the answer is not known: change impact.angle and assess them, too."
     by = " by the reduced model" if v.fidelity == "solid" else ""
     everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
-    if isclose(v.worst.angle, v.scene.impact.angle):
-        return f"No other inclination has a larger change{doubt(v.worst)}{by}{everywhere}."
+    if v.worst is v.here:
+        return f"No other inclination has a larger change{by}{everywhere}."
     return (
         f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes e by {v.worst.told}"
         f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
@@ -85,8 +84,11 @@ def _vibration(v: Verdict) -> str:
     share = f"{100 * here.E_vib:.2g} % of the energy"
     if or_none(here.free.energy.below_floor):
         return f"{share}, which is below the numerical floor of the model"
-    half = f"± {100 * here.E_vib_band:.2g} %: " if here.E_vib_band < inf else "error "
-    return f"{share} ({half}{here.error})"
+    if here.E_vib_band == inf:
+        return f"{share} (error {here.error})"
+    least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
+    range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {100 * here.E_vib_band:.2g} %"
+    return f"{share} ({range_}: {here.error})"
 
 
 def _rest(v: Verdict) -> str:
@@ -101,7 +103,7 @@ def _rest(v: Verdict) -> str:
     ]
     kind = f"± {here.error}" if here.errors else f"by {here.model}"
     thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
-    return f"{', '.join(listed)} ({kind}); {thick}{_heating(energy)}"
+    return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
 
 
 def _half(here: Change, name: str) -> str:
@@ -111,13 +113,15 @@ def _half(here: Change, name: str) -> str:
     return "" if error is None else f" ± {100 * error:.2g}"
 
 
-def _heating(energy: Energy) -> str:
+def _heating(here: Change) -> str:
     """Return what can heat the contact."""
+    energy = here.free.energy
     skin, friction = energy.skin, or_none(energy.friction) or 0.0
     if not isinstance(skin, Unknown):
         alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
         of = "the softer body" if alone else "both bodies"
-        return f"{100 * skin:.0f} % can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
+        share = f"{100 * skin:.0f}{_half(here, 'skin')} %"
+        return f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
     plastic = or_none(energy.plastic) or 0.0
     return (
         f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
@@ -150,14 +154,14 @@ def _heat(run: Outcome) -> str:
     if isinstance(heat.temperature, Unknown):
         return f"the mean temperature of the patch is {heat.temperature.reason}."
     spot = (
-        f"what single spots reach is {heat.bound.reason}"
+        f"What single spots reach is {heat.bound.reason}"
         if isinstance(heat.bound, Unknown)
-        else f"no spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
+        else f"No spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
     )
     return (
-        f"the patch reaches {heat.temperature:.0f} K in the mean (friction alone; conduction of heat into "
-        "both bodies: Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), by this mesh: its error is "
-        f"not known, and finer elements may give more; {spot}."
+        f"the patch reaches {heat.temperature:.0f} K in the mean, by friction alone. {spot}. The error of "
+        "this mesh is not known: finer elements may give more. Method: conduction of heat into both bodies "
+        "(Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035)."
     )
 
 
@@ -202,9 +206,9 @@ def _motion(run: Outcome) -> str:
 
 
 def _other_angles(v: Verdict) -> Iterator[Line]:
-    if v.worst is not None:
-        told = f"by the reduced model at every 5 degrees. {v.worst.source}" if v.fidelity == "solid" else ""
-        yield "other inclinations", told or "by the reduced model at every 5 degrees, with the same error."
+    if v.elsewhere is not None:
+        error = v.elsewhere.source if v.fidelity == "solid" else "Its error is the same."
+        yield "other inclinations", f"by the reduced model at every 5 degrees. {error}"
     angles, why = v.not_known
     if angles:
         listed = ", ".join(f"{degrees(angle):.0f}" for angle in angles)

@@ -138,9 +138,32 @@ def test_a_missing_file_says_so(tmp_path):
 
 
 def test_a_directory_is_no_scene(tmp_path):
-    told = refusal(tmp_path)
-    assert "is a directory" in told
-    assert "scene.toml" in told
+    assert "is a directory, not a scene file. Name a scene file." in refusal(tmp_path)
+    (tmp_path / "scene.toml").write_text("")
+    assert f"such as {tmp_path / 'scene.toml'}." in refusal(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("left_out", "remedy"),
+    [
+        ('source = "own"', 'Write source = "our own tests"'),
+        ("friction = 0.3", "Write friction = 0.3, Coulomb's"),
+    ],
+)
+def test_what_a_surface_of_ones_own_lacks_is_said_with_an_example(tmp_path, left_out, remedy):
+    own = '[surface]\nstate = "custom"\nfriction = 0.3\nsource = "own"\n'
+    stated = to_toml(load("t5b"))
+    start = stated.index("[surface]")
+    end = stated.index("[", start + 1)
+    path = tmp_path / "own.toml"
+    path.write_text(stated[:start] + own.replace(left_out, "") + stated[end:])
+    assert remedy in refusal(path)
+
+
+def test_a_key_by_another_word_for_it_is_proposed(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(to_toml(load("t5b")).replace("rho =", "density =", 1))
+    assert "density: is not a known key. Did you mean rho?" in refusal(path)
 
 
 @pytest.mark.parametrize("text", ["length = = 3", 'id = "a"\nid = "b"', "[" * 3000, "x = " + "1" * 9999])
