@@ -49,7 +49,11 @@ def headed(scene_id: str, title: str) -> str:
 
 def read_changes(changes: Sequence[str]) -> dict[str, Any]:
     """Return key and value of each ``key=value``; a value is TOML where it can be, text otherwise."""
-    return dict(_one(change) for change in changes)
+    read = [_one(change) for change in changes]
+    keys = [key for key, _ in read]
+    if twice := [key for key in keys if keys.count(key) > 1]:
+        raise UsageError("is given twice.", key=f"--set {twice[0]}", remedy="Keep one of the two.")
+    return dict(read)
 
 
 def _one(change: str) -> tuple[str, Any]:

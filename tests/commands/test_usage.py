@@ -21,6 +21,7 @@ DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")
         (("run", "t5bb"), "Did you mean t5b?"),
         (("check", "nowhere/qick.toml"), "there is no such file. Did you mean quick?"),
         (("run", "t5b", "--set", "accuracy.tip_size"), "is not of the form key=value"),
+        (("check", "t5b", "--set", "impact.angle=30 deg", "--set", "impact.angle=40 deg"), "is given twice."),
         (("run", "t5b", "--fidelity", "modal", "--resume"), "--resume: is for finite elements only: a modal"),
         (("assess", "t5b", "--fidelity", "modal", "--budget", "30 s"), "--fidelity modal runs none"),
         (("run", "t5b", "--fidelity", "rigid", "--budget", "30 s"), "--fidelity rigid runs none"),
