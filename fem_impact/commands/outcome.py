@@ -10,7 +10,7 @@ from fem_impact.commands.common import headed
 from fem_impact.outcome.groups import Energy
 from fem_impact.outcome.keys import Num, Unknown, known, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.outcome.shares import ADDED, EnergyShare, shares
+from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.run.common import strikes_again
 from fem_impact.tables.text import wrapped
 
@@ -27,8 +27,6 @@ _BARRIER = (
 _TURNED = (("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"),)
 HEATING = "friction + top 0.1 mm of both"
 """Label of the work that can heat the contact."""
-_SEEN = 5e-4
-"""Least share that is listed of the vibration that the modes do not hold."""
 _IF_ON = ("damping", "contact", "plate", "barrier")
 """Shares that are left out where they are not known: their effects are off."""
 
@@ -80,14 +78,12 @@ def _again(outcome: Outcome) -> list[str]:
 def _listed(outcome: Outcome) -> dict[str, Num]:
     """Return the shares of E_0 in this run by their labels."""
     energy, listed = outcome.energy, dict[str, Num]()
-    modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
-    above = 0.0 if modes is None or whole is None else whole - modes
     for share in shares("terminal"):
         name, value = share.key.path[-1], share.of(energy)
         if not (isinstance(value, Unknown) and name in _IF_ON):
             listed[_label(share, energy)] = value
-        if name == "vibration" and above > _SEEN:
-            listed["vibration above its modes"] = above  # without it the shares do not add up
+        if name == "vibration" and (above := above_modes(energy)):
+            listed[ABOVE] = above
     return listed
 
 

@@ -11,7 +11,7 @@ from fem_impact.figures.panels import Look, Panel, Picture, Series
 from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.outcome.shares import EnergyShare, shares
+from fem_impact.outcome.shares import ABOVE, EnergyShare, above_modes, shares
 from fem_impact.tables.csv import COMPARISON
 from fem_impact.tables.table import Table
 
@@ -27,17 +27,28 @@ def partition_picture(outcome: Outcome) -> Picture:
     Shares that are not known are left out (the record holds the reasons).
     """
     listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
-    values = [known(outcome.estimate(share.key)[0]) for share in listed]
-    names = [share.key.name.removesuffix("_over_E_0") for share in listed]
+    rows = [
+        (
+            share.label,
+            share.key.name.removesuffix("_over_E_0"),
+            known(outcome.estimate(share.key)[0]),
+            share.colour,
+            _label(share, outcome),
+        )
+        for share in listed
+    ]
+    if above := above_modes(outcome.energy):
+        at = [row[0] for row in rows].index("vibration") + 1
+        rows.insert(at, (ABOVE, "E_vib_above_modes", above, "night", percent(above)))
+    labels, names, values, colours, texts = zip(*rows, strict=True)
     # bars below UNSEEN are 0: the number beside a negative one would cover its name
     widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
     bars = tuple(
-        Series("", [width], [at], "bars", share.colour, texts=(_label(share, outcome),))
-        for at, (width, share) in enumerate(zip(widths, listed, strict=True))
+        Series("", [width], [at], "bars", colour, texts=(text,))
+        for at, (width, colour, text) in enumerate(zip(widths, colours, texts, strict=True))
     )
     right = 1.3 * max([*widths, 1e-3])  # leaves room for the numbers
-    rows = tuple(share.label for share in listed)
-    panel = Panel("", AXIS, "", bars, rows=rows, x_range=(min(0.0, *widths), right))
+    panel = Panel("", AXIS, "", bars, rows=labels, x_range=(min(0.0, *widths), right))
     numbers = Table.of(("account", "fraction_of_E_0"), zip(names, values, strict=True))
     return Picture("partition", "Shares of E₀ after the last separation.", (panel,), 1, numbers)
 

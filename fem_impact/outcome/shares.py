@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fem_impact.outcome.groups import Energy
-from fem_impact.outcome.keys import Key, Num
+from fem_impact.outcome.keys import Key, Num, or_none
 from fem_impact.outcome.record import KEY_TABLE
 
 Place = Literal["terminal", "figure", "comparison", "report", "study"]
@@ -70,6 +70,21 @@ ADDED = _share("W_gravity", "added by gravity", "grey")
 def shares(place: Place) -> tuple[EnergyShare, ...]:
     """Return the shares that a place lists."""
     return tuple(share for share in SHARES if place in share.shown)
+
+
+ABOVE = "vibration above its modes"
+"""Label of what stands beside the vibration where its modes do not hold all of it."""
+_SEEN = 5e-4
+
+
+def above_modes(energy: Energy) -> float:
+    """Return the share of E_0 that vibrates above the modes, 0 where it is not known or hardly any.
+
+    Without it the shares do not add up: E_vib counts the modes alone.
+    """
+    modes, whole = or_none(energy.vibration), or_none(energy.vibration_check)
+    above = 0.0 if modes is None or whole is None else whole - modes
+    return above if above > _SEEN else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -116,6 +116,20 @@ def test_unknown_share_is_left_out(record):
     assert len(accounts) == len(shares("figure")) - 2  # nor damping, which is off
 
 
+def test_vibration_that_the_modes_do_not_hold_has_a_bar_beside_them(record):
+    """A blunt end's bars missed up to 6 % of E_0."""
+    plain = Outcome.from_dict(record)
+    before = known(plain.energy.vibration)
+    picture = partition_picture(altered(plain, E_vib_check_over_E_0=before + 0.02))
+    table = picture.table()
+    at = table.texts("account").index("E_vib_above_modes")
+    assert table.texts("account")[at - 1] == "E_vib"
+    assert table.numbers("fraction_of_E_0")[at] == pytest.approx(0.02)
+    assert "vibration above its modes" in picture.panels[0].rows
+    same = partition_picture(altered(plain, E_vib_check_over_E_0=before + 1e-4))
+    assert "E_vib_above_modes" not in same.table().texts("account")
+
+
 def test_same_data_give_the_same_bytes(history, tmp_path):
     first = draw(ledger_picture(history, 0.4), tmp_path / "a.svg").read_bytes()
     assert draw(ledger_picture(history, 0.4), tmp_path / "b.svg").read_bytes() == first
