@@ -64,8 +64,8 @@ class ContactBodies:
 class ContactEstimate:
     """Depth d and semi-axes a_t, a_b of the contact ellipse, m; duration, s; mean pressure, Pa.
 
-    R1, R2, m, are the radii of the round surface that is as wide as the tip at this depth; its middle lies
-    ``shift``, m, down the slope from the point that touches first.
+    R1, R2, m, are the radii of the round surface that is as wide as the tip at this depth, and ``wider`` is
+    its R1 over that of the tip where it touches first. Its middle lies ``shift``, m, down the slope from it.
     """
 
     depth: float
@@ -76,6 +76,7 @@ class ContactEstimate:
     R1: float
     R2: float
     shift: float = 0.0
+    wider: float = 1.0
 
 
 def principal_radii(scene: Scene) -> tuple[float, float]:
@@ -212,7 +213,8 @@ def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
         wide = (down + up) ** 2 / (8 * size.depth)
         if wide <= R1:
             break
-        size = replace(_estimate(bodies, wide, max(R2, wide)), shift=max(0.0, 0.5 * (down - up)))
+        size = _estimate(bodies, wide, max(R2, wide))
+        size = replace(size, shift=max(0.0, 0.5 * (down - up)), wider=wide / R1)
     # of a face nearly flat all may touch, whatever the depth
     return as_round if body.face > 0 and nearly_flat(bodies.scene, size.depth) else size
 

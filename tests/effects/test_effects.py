@@ -342,7 +342,9 @@ def test_a_sharp_edge_is_pressed_in_as_the_parabola_that_is_as_wide(angle):
     assert found.shift == pytest.approx(0.5 * found.depth * (1 / tangent - tangent), abs=1e-9, rel=1e-5)
     work = pi * found.pressure * sqrt(found.R1 * found.R2) * found.depth**2
     assert work == pytest.approx(0.5 * effective_mass(bodies(stated)) * stated.impact.v_n**2)
-    low, high = zones_of(bodies(stated)).whole
+    zones = zones_of(bodies(stated))
+    low, high = zones.whole
+    assert zones.half[0] >= 2.2 * 2.0 * found.a_t  # steel flows along the flanks of an edge
     assert low[0] < -found.depth / tangent and high[0] > found.depth * tangent
 
 
