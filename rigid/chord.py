@@ -26,6 +26,11 @@ def chord(outline: Floats, alpha: float, height: float) -> tuple[float, float]:
     return _reach(t[low::-1], over[low::-1]), _reach(t[low:], over[low:])
 
 
+def both_sides(side: Floats) -> Floats:
+    """Return the outline of a body of revolution from one side (k, 2), (rho, z), which starts on the axis."""
+    return np.vstack([side[:0:-1] * [-1, 1], side])
+
+
 def _reach(t: Floats, over: Floats) -> float:
     """Return how far, m, a line goes from its first place, below 0, to where it first rises above 0."""
     after = int(np.argmax(over > 0.0))

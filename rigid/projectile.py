@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, corner_arms, point_arms
 from .arrays import Floats, floats
-from .chord import chord
+from .chord import both_sides, chord
 from .errors import ShapeError, refuse
 from .nose import SHAPES, Nose
 from .slenderness import slenderness
@@ -132,7 +132,7 @@ class Projectile:
     def reaches(self, alpha: float, height: float) -> tuple[float, float]:
         """How far, m, it goes down and up the slope at a `height` > 0, m, over the lowest point."""
         side = np.vstack([self.meridian(), [self.diameter / 2, self.length]])
-        return chord(np.vstack([side[:0:-1] * [-1, 1], side]), alpha, height)
+        return chord(both_sides(side), alpha, height)
 
     def other_edges(self, alpha: float) -> list[tuple[str, float, float, float]]:
         """Round edges that do not touch first but may touch later: name, (x, z) of the centre and radius, m.

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from .arms import Arms, point_arms
 from .arrays import Floats, floats
-from .chord import chord
+from .chord import both_sides, chord
 from .errors import ShapeError, TooLongError, refuse
 from .slenderness import slenderness
 
@@ -204,7 +204,7 @@ class Turned:
         if self.bore is not None and self.bore[0, 1] <= 0.0:
             rim = self.bore[:1]
             return chord(np.vstack([rim, side[(side > rim).any(axis=1)]]), alpha, height)
-        return chord(np.vstack([side[:0:-1] * [-1, 1], side]), alpha, height)
+        return chord(both_sides(side), alpha, height)
 
     def flank(self, alpha: float) -> tuple[float, float]:
         """Length of the straight side next to the lowest point, and its far end's height over the barrier, m.

@@ -48,7 +48,7 @@ class Geometry:
     skin_rows : number of thin rows of cells at the top of the barrier
     may_yield : for ``rod`` and ``barrier``, (m,) bool, cells that yield if the material does
     touching : (m,) bool, cells of the rod that may touch a meshed barrier
-    middle : place along t of the middle of a face that lands flat, m; 0 of a contact about a point
+    middle : place along t of the middle of a face that is pressed in, m; 0 of a contact about a point
     """
 
     rod: RodMesh

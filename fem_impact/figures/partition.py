@@ -39,7 +39,7 @@ def partition_picture(outcome: Outcome) -> Picture:
     ]
     if above := above_modes(outcome.energy):
         at = [row[0] for row in rows].index("vibration") + 1
-        rows.insert(at, (ABOVE, "E_vib_above_modes", above, "night", percent(above)))
+        rows.insert(at, (ABOVE, "E_vib_above_modes", above, rows[at - 1][3], percent(above)))
     labels, names, values, colours, texts = zip(*rows, strict=True)
     # bars below UNSEEN are 0: the number beside a negative one would cover its name
     widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]

@@ -75,6 +75,7 @@ def shares(place: Place) -> tuple[EnergyShare, ...]:
 ABOVE = "vibration above its modes"
 """Label of what stands beside the vibration where its modes do not hold all of it."""
 _SEEN = 5e-4
+"""Least share that is listed of it."""
 
 
 def above_modes(energy: Energy) -> float:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from math import inf, pi, sin, sqrt
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
@@ -203,17 +203,26 @@ def contact_modulus(bodies: ContactBodies) -> float:
     return 1 / sum((1 - m.nu**2) / m.E for m in bodies.elastic)
 
 
+class _Blow(NamedTuple):
+    """What presses a tip in: energy, J, speed, m/s, E*, Pa, and the limiting pressure, Pa."""
+
+    energy: float
+    speed: float
+    E_star: float
+    limit: float
+
+
 def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
     """Return the size of the first contact."""
-    size = as_round = round_contact(bodies)
-    R1, R2 = size.R1, size.R2
+    blow, (R1, R2) = _blow(bodies), principal_radii(bodies.scene)
+    size = as_round = _pressed_in(blow, R1, R2)
     body, alpha = projectile(bodies.scene), bodies.scene.impact.angle
     for _ in range(ROUNDS):
         down, up = body.reaches(alpha, size.depth)
         wide = (down + up) ** 2 / (8 * size.depth)
         if wide <= R1:
             break
-        size = _estimate(bodies, wide, max(R2, wide))
+        size = _pressed_in(blow, wide, max(R2, wide))
         size = replace(size, shift=max(0.0, 0.5 * (down - up)), wider=wide / R1)
     # of a face nearly flat all may touch, whatever the depth
     return as_round if body.face > 0 and nearly_flat(bodies.scene, size.depth) else size
@@ -221,24 +230,26 @@ def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
 
 def round_contact(bodies: ContactBodies) -> ContactEstimate:
     """Return the size of the first contact of a tip that is round everywhere as where it touches first."""
-    return _estimate(bodies, *principal_radii(bodies.scene))
+    return _pressed_in(_blow(bodies), *principal_radii(bodies.scene))
 
 
-def _estimate(bodies: ContactBodies, R1: float, R2: float) -> ContactEstimate:
-    """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
-    R, v_n = sqrt(R1 * R2), max(approach(bodies.scene), 1e-6)
-    energy, E_star = 0.5 * effective_mass(bodies) * v_n**2, contact_modulus(bodies)
-    depth = (energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
-    pressure = 4 / (3 * pi) * E_star * sqrt(depth / R)
+def _blow(bodies: ContactBodies) -> _Blow:
+    speed = max(approach(bodies.scene), 1e-6)
     limit = LIMIT_PRESSURE * min((m.yield_stress for m in bodies.yielding), default=inf)
-    if pressure <= limit:
-        return ContactEstimate(
-            depth, sqrt(R1 * depth), sqrt(R2 * depth), 2.94 * depth / v_n, pressure, R1, R2
-        )
-    depth = sqrt(energy / (pi * limit * R))
-    return ContactEstimate(
-        depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), 0.5 * pi * depth / v_n * 1.3, limit, R1, R2
-    )
+    return _Blow(0.5 * effective_mass(bodies) * speed**2, speed, contact_modulus(bodies), limit)
+
+
+def _pressed_in(blow: _Blow, R1: float, R2: float) -> ContactEstimate:
+    """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
+    R = sqrt(R1 * R2)
+    depth = (blow.energy / (8 / 15 * blow.E_star * sqrt(R))) ** 0.4
+    pressure = 4 / (3 * pi) * blow.E_star * sqrt(depth / R)
+    if pressure <= blow.limit:
+        duration = 2.94 * depth / blow.speed
+        return ContactEstimate(depth, sqrt(R1 * depth), sqrt(R2 * depth), duration, pressure, R1, R2)
+    depth = sqrt(blow.energy / (pi * blow.limit * R))
+    duration = 0.5 * pi * depth / blow.speed * 1.3
+    return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), duration, blow.limit, R1, R2)
 
 
 def nearly_flat(scene: Scene, depth: float) -> bool:

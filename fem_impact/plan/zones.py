@@ -62,7 +62,7 @@ class Zones:
     base : edge of the barrier's cells; rod_base : of the rod's, at the contact, the same but in a user's mesh
     rod, barrier : for each level of splitting, the coarsest first: half-widths along t and b, depth along n
     half : those of the zone in which cells may yield
-    reach : how far the rod's zone follows its flat face along -t; along : how far the barrier's goes along -t
+    reach : how far the rod's zone follows its face along -t; along : how far the barrier's goes along -t
     conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
     skin_rows : thin rows of cells at the top of the barrier
     edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
@@ -200,7 +200,7 @@ def skin_rows(bodies: ContactBodies, h: float) -> int:
 
 
 def face_reach(bodies: ContactBodies) -> tuple[float, float]:
-    """Return how far the fine zone must follow a face that nearly lies flat, along -t and to the side, m.
+    """Return how far the fine zone must follow a face that is pressed in, along -t and to the side, m.
 
     Of a turned body's face all may touch where it nearly lies flat, else as much as is pressed in. Of a body
     with facets, all nodes no higher than `FLAT` depths of the estimated indentation may that lie further out

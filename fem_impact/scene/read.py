@@ -301,12 +301,8 @@ def _rod(table: Table, own: dict[str, Any]) -> ProjectileSpec:
     refuse_as_tip(table.get("tip"))
     plain = {"tip_radius": 0.0} if table.get("tip") == "plain" else {}
     numbers = numbers_of(table, fields.PROJECTILE, ("tip", "material"), plain)
-    return ProjectileSpec(
-        tip=needed(table, "tip", '"A", "B" or "plain"'),
-        material=within(table, "material", _material),
-        **numbers,
-        **own,
-    )
+    tip = needed(table, "tip", '"A", "B" or "plain"')
+    return ProjectileSpec(tip=tip, material=within(table, "material", _material), **numbers, **own)
 
 
 def _barrier(table: Table) -> Barrier:
@@ -400,8 +396,5 @@ def _custom_surface(table: Table) -> Surface:
     f = needed(table, "friction", "0.3, Coulomb's coefficient")
     wanted = (*fields.SURFACE, *fields.SKIN)
     numbers = numbers_of(table, wanted, ("state", "source"), {"friction_low": f, "friction_high": f})
-    return Surface(
-        state="custom",
-        source=needed(table, "source", '"our own tests", where the friction is known from'),
-        **numbers,
-    )
+    source = needed(table, "source", '"our own tests", where the friction is known from')
+    return Surface(state="custom", source=source, **numbers)

@@ -89,7 +89,7 @@ def check_keys(table: Table, known: Iterable[str], shown: Iterable[str] = ()) ->
     for key in table:
         if key not in known:
             near = next(
-                (name for word, name in OTHER_NAMES.items() if word in key and name in known), str(key)
+                (name for word, name in OTHER_NAMES.items() if word in str(key) and name in known), str(key)
             )
             remedy = did_you_mean(near, known, f"Known here: {', '.join(shown or known)}.")
             raise SceneError(UNKNOWN_KEY, key=str(key), remedy=remedy)

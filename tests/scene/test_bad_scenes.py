@@ -166,6 +166,11 @@ def test_a_key_by_another_word_for_it_is_proposed(tmp_path):
     assert "density: is not a known key. Did you mean rho?" in refusal(path)
 
 
+def test_a_key_that_is_no_text_is_refused():
+    with pytest.raises(SceneError, match="5: is not a known key"):
+        read_dict(to_dict(load("t5b")) | {5: 1})
+
+
 @pytest.mark.parametrize("text", ["length = = 3", 'id = "a"\nid = "b"', "[" * 3000, "x = " + "1" * 9999])
 def test_unreadable_toml_says_where(tmp_path, text):
     assert "TOML" in refusal(write(tmp_path, text))
