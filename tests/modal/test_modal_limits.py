@@ -100,7 +100,7 @@ def test_a_face_pressed_in_beyond_its_edge_counts_as_wide_as_it_is(rod, angle):
     outcome = outcome_of(replace_all(load("t5b"), (own if rod == "sharp" else {}) | turned))
     e, E_vib = FLAT_FACES[rod, angle]
     assert outcome.restitution.edge.e == pytest.approx(e, abs=0.035)
-    assert outcome.energy.vibration == pytest.approx(E_vib, abs=0.012)
+    assert outcome.energy.vibration == pytest.approx(E_vib, rel=0.1, abs=0.005)
 
 
 def test_an_open_ledger_fails_a_run_of_the_reduced_model():
