@@ -20,21 +20,21 @@ from typing import TYPE_CHECKING
 from fem_impact.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from fem_impact.cost.to_target import simulate
+    from fem_impact.answers.sweep import sweep
+    from fem_impact.answers.sweep_results import Results
+    from fem_impact.answers.verdict.assess import Verdict, assess
+    from fem_impact.answers.wanted_error import simulate
+    from fem_impact.case.plan import Plan
+    from fem_impact.case.plan import plan as make_plan
     from fem_impact.files.fields_read import read_fields
     from fem_impact.options import RunOptions
     from fem_impact.outcome.keys import Unknown, known
     from fem_impact.outcome.record import Outcome
-    from fem_impact.plan.plan import Plan
-    from fem_impact.plan.plan import plan as make_plan
     from fem_impact.scene import units
     from fem_impact.scene.shipped import load, replace, replace_all
     from fem_impact.scene.types import Scene
     from fem_impact.scene.units import format_quantity, parse_quantity
-    from fem_impact.study.results import Results
-    from fem_impact.study.sweep import sweep
     from fem_impact.tables.history import read_history
-    from fem_impact.verdict.assess import Verdict, assess
 
 __all__ = [
     "Outcome",
@@ -61,24 +61,24 @@ __all__ = [
 
 _PLACES = {
     "Outcome": "outcome.record:Outcome",
-    "Plan": "plan.plan:Plan",
-    "Results": "study.results:Results",
+    "Plan": "case.plan:Plan",
+    "Results": "answers.sweep_results:Results",
     "RunOptions": "options:RunOptions",
     "Scene": "scene.types:Scene",
     "Unknown": "outcome.keys:Unknown",
-    "Verdict": "verdict.assess:Verdict",
-    "assess": "verdict.assess:assess",
+    "Verdict": "answers.verdict.assess:Verdict",
+    "assess": "answers.verdict.assess:assess",
     "format_quantity": "scene.units:format_quantity",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
-    "make_plan": "plan.plan:plan",  # the package `fem_impact.plan` has the name itself
+    "make_plan": "case.plan:plan",  # the package `fem_impact.case` has the name itself
     "parse_quantity": "scene.units:parse_quantity",
     "read_fields": "files.fields_read:read_fields",
     "read_history": "tables.history:read_history",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",
-    "simulate": "cost.to_target:simulate",
-    "sweep": "study.sweep:sweep",
+    "simulate": "answers.wanted_error:simulate",
+    "sweep": "answers.sweep:sweep",
     "units": "scene.units:",  # the module itself
 }
 

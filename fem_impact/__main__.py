@@ -4,6 +4,6 @@ from __future__ import annotations
 
 import sys
 
-from fem_impact.commands.main import main
+from fem_impact.cli.main import main
 
 sys.exit(main())

@@ -10,7 +10,7 @@ group                what the name stands for
 ==================== ==========================================================================
 fem_impact.materials a table of values with their units and a table ``sources``, as in materials.toml
 fem_impact.shapes    a function that makes a `rigid.Nose` from the radii of rod and tip, m
-fem_impact.effects   a `fem_impact.effects.slots.Effect` of the same name
+fem_impact.effects   a `fem_impact.case.effects.slots.Effect` of the same name
 ==================== ==========================================================================
 """
 

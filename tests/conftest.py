@@ -3,7 +3,7 @@
 import pytest
 import result_maker
 
-from fem_impact.commands.main import main
+from fem_impact.cli.main import main
 
 HEADER = "test,v_n_m_per_s,v_t_m_per_s,V_n_m_per_s,V_t_m_per_s,Omega_rad_per_s"
 

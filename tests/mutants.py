@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from fem_impact.commands.page import checked_page, write_page
+from fem_impact.cli.page import checked_page, write_page
 
 ROOT = Path(__file__).parents[1]
 COPIED = ("fem_impact", "meshes", "rigid", "tests", "pyproject.toml", "README.md")
@@ -37,7 +37,7 @@ FACET = """\
         n_t, n_b = u_b * w_n - u_n * w_b, u_n * w_t - u_t * w_n
         n_n = u_t * w_b - u_b * w_t
 """
-SPHERE = "tests/verify/test_verify_oblique_sphere.py"
+SPHERE = "tests/evidence/problems/test_verify_oblique_sphere.py"
 RUNS, YIELDING = "tests/solid/test_runs.py", "tests/solid/test_yielding.py"
 HEATING = "tests/physics/test_heating.py"
 LAST = "            n_n += w[a] * normals[node, 2]\n"
@@ -174,14 +174,14 @@ MUTANTS = (
         "fem_impact/fem/layout.py",
         "np.sqrt(round_moment / moment)",
         "np.sqrt(moment / moment)",
-        "tests/verify/test_verify_modes.py::test_modes_of_the_short_rod",
+        "tests/evidence/problems/test_verify_modes.py::test_modes_of_the_short_rod",
     ),
     Mutant(
         "torsion with masses drawn in along the wrong coordinate",
         "fem_impact/fem/layout.py",
         "(0, 1, 0), (1, 0, 1)",
         "(0, 1, 0), (0, 1, 0)",
-        "tests/verify/test_verify_modes.py::test_modes_of_the_short_rod",
+        "tests/evidence/problems/test_verify_modes.py::test_modes_of_the_short_rod",
     ),
     Mutant(
         "viscous friction: nodes that should stick creep, rigid plane",
@@ -202,7 +202,7 @@ MUTANTS = (
         "fem_impact/solid/contact/impulses.py",
         "share = min(1.0, f * pressed / size)",
         "share = min(1.0, 1.02 * f * pressed / size)",
-        "tests/verify/test_verify_oblique_rod.py::test_a_coarse_tip_on_a_block_leans_and_bends",
+        "tests/evidence/problems/test_verify_oblique_rod.py::test_a_coarse_tip_on_a_block_leans_and_bends",
     ),
     Mutant(
         "friction 0.5 % too strong between a sliding ball and a block",
@@ -216,70 +216,70 @@ MUTANTS = (
         "fem_impact/solid/contact/plane.py",
         "v[n] += inverse_mass[n] * p\n",
         "v[n] += 1.001 * inverse_mass[n] * p\n",
-        "tests/verify/test_verify_bar.py::test_one_strike_and_a_few_bounces",
+        "tests/evidence/problems/test_verify_bar.py::test_one_strike_and_a_few_bounces",
     ),
     Mutant(
         "steel that flows without hardening",
         "fem_impact/solid/plastic_return.py",
         "        new = flow * _power(growth * dp, n)\n        miss",
         "        new = flow\n        miss",
-        "tests/verify/test_verify_hardness.py::test_both_codes_agree_on_cells_of_one_size",
+        "tests/evidence/problems/test_verify_hardness.py::test_both_codes_agree_on_cells_of_one_size",
     ),
     Mutant(
         "shear modulus 0.4 % too low",
         "fem_impact/fem/elements.py",
         "E / (2 * (1 + nu))\n",
         "0.996 * E / (2 * (1 + nu))\n",
-        "tests/verify/test_verify_modes.py::test_modes_of_a_short_bar",
+        "tests/evidence/problems/test_verify_modes.py::test_modes_of_a_short_bar",
     ),
     Mutant(
         "friction 5 % too strong on a rigid plane",
         "fem_impact/solid/contact/plane.py",
         "share = min(1.0, f * p *",
         "share = min(1.0, 1.05 * f * p *",
-        "tests/verify/test_verify_tilted_bar.py::test_hard_contact_is_the_limit_of_stiff_springs",
+        "tests/evidence/problems/test_verify_tilted_bar.py::test_hard_contact_is_the_limit_of_stiff_springs",
     ),
     Mutant(
         "dashpots of the block's boundary 6 % too strong",
         "fem_impact/fem/boundary.py",
         "/ (2 * pi * G * sqrt(G / rho)) / absorbed",
         "* 1.06 / (2 * pi * G * sqrt(G / rho)) / absorbed",
-        "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space",
+        "tests/evidence/problems/test_verify_tips.py::test_a_coarse_sphere_on_a_block_radiates_as_into_a_half_space",
     ),
     Mutant(
         "cells of a ball counted over its diameter, not where it touches",
-        "fem_impact/verify/spheres.py",
+        "fem_impact/evidence/problems/spheres.py",
         "levels = levels_for_radius(meshes.pole_edge(R, across), touch",
         "levels = levels_for_radius(base, touch",
-        "tests/verify/test_verify_tips.py::test_the_fewest_cells_are_enough",
+        "tests/evidence/problems/test_verify_tips.py::test_the_fewest_cells_are_enough",
     ),
     Mutant(
         "elements 1 % too stiff",
         "fem_impact/fem/elements.py",
         "lame=lame[0], G=lame[1])",
         "lame=1.01 * lame[0], G=1.01 * lame[1])",
-        "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
+        "tests/evidence/problems/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
     ),
     Mutant(
         "elements 1 % too soft",
         "fem_impact/fem/elements.py",
         "lame=lame[0], G=lame[1])",
         "lame=0.99 * lame[0], G=0.99 * lame[1])",
-        "tests/verify/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
+        "tests/evidence/problems/test_verify_tips.py::test_a_coarse_sphere_on_a_plane_is_a_finite_ball",
     ),
     Mutant(
         "cells of a rod's tip counted over its diameter, not where it touches",
-        "fem_impact/verify/sears_rod.py",
+        "fem_impact/evidence/problems/sears_rod.py",
         "if levels_for_radius(edge, touch,",
         "if levels_for_radius(2 * R / p['across'] / 2 ** len(zones), touch,",
-        "tests/verify/test_verify_sears.py::test_the_cells_are_counted_where_it_touches",
+        "tests/evidence/problems/test_verify_sears.py::test_the_cells_are_counted_where_it_touches",
     ),
     Mutant(
         "yield stress of a linear hardening 2 % too high",
         "fem_impact/physics/hardening.py",
         "return Hardening(yield_stress, modulus / yield_stress, 1.0)",
         "return Hardening(1.02 * yield_stress, modulus / yield_stress, 1.0)",
-        "tests/verify/test_verify_taylor.py::test_another_metal_shape_and_speed",
+        "tests/evidence/problems/test_verify_taylor.py::test_another_metal_shape_and_speed",
     ),
     Mutant(
         "steps of the reduced model by its modes alone",
@@ -293,7 +293,7 @@ MUTANTS = (
         "fem_impact/fem/forms.py",
         "return w.G / r * along_and_across",
         "return w.G / (3 * r) * along_and_across",
-        "tests/verify/test_verify_sears.py::test_a_rod_is_sears",
+        "tests/evidence/problems/test_verify_sears.py::test_a_rod_is_sears",
     ),
     Mutant(
         "rates that soften: sign of the rate term in the radial return",
@@ -346,10 +346,10 @@ MUTANTS = (
     ),
     Mutant(
         "the impedance of a plate beside its mesh, which bends by itself",
-        "fem_impact/plan/plan.py",
+        "fem_impact/case/plan.py",
         "slots.plate, slots.bending = None, plate_waves(bodies)[0]",
         "slots.bending = plate_waves(bodies)[0]",
-        "tests/plan/test_plates.py::test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong",
+        "tests/case/test_plates.py::test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong",
     ),
     Mutant(
         "dashpots that turn the edge of a plate as if its nodes lay evenly through it",

@@ -18,10 +18,10 @@ from skfem import ElementHex1, ElementVector
 from skfem.models.elasticity import lame_parameters
 
 import rigid
+from fem_impact.case.plan import plan
 from fem_impact.fem import forms
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 
 EFFECTS = ("vibration", "friction", "barrier-rigid")  # what this file computes

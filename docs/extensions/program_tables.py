@@ -9,17 +9,17 @@ from typing import get_args
 
 from sphinx.util.docutils import SphinxDirective
 
-from fem_impact.commands.about_studies import REPORT, STUDIES
-from fem_impact.commands.parser import build_parser, every_command
-from fem_impact.effects.registry import EFFECTS
+from fem_impact.case.effects.registry import EFFECTS
+from fem_impact.cli.about_studies import REPORT, STUDIES
+from fem_impact.cli.parser import build_parser, every_command
 from fem_impact.errors import EXIT_CODES
+from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table
 from fem_impact.outcome.record import KEYS
 from fem_impact.scene import fields, library
 from fem_impact.scene.parameter import Parameter
 from fem_impact.scene.units import DIMENSIONS
 from fem_impact.tables.table import Table
-from fem_impact.verify.catalogue import PROBLEMS, problem
 
 WIDTH = 100  # of the help of a command
 

@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
+from fem_impact.case.plan import Plan
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
@@ -25,7 +26,6 @@ from fem_impact.fem.rest import RestOfBarrier, rest_of
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
 from fem_impact.physics.contact import pressure_speed, projectile
-from fem_impact.plan.plan import Plan
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh

@@ -11,12 +11,12 @@ import numpy as np
 
 import meshes
 from fem_impact.arrays import Array, Bools
+from fem_impact.case.cells import posture
+from fem_impact.case.layers import block_of, moved_rows
+from fem_impact.case.size import no_rest
+from fem_impact.case.zones import BUFFER, Corners, Zones, lowest_point
 from fem_impact.errors import SceneError
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.cells import posture
-from fem_impact.plan.layers import block_of, moved_rows
-from fem_impact.plan.size import no_rest
-from fem_impact.plan.zones import BUFFER, Corners, Zones, lowest_point
 from meshes import HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
 

@@ -13,9 +13,9 @@ from math import sqrt
 import numpy as np
 
 from fem_impact.arrays import Array, Bools
+from fem_impact.case.zones import Zones
 from fem_impact.fem.hexmodes import CORNERS, reference_gradients
 from fem_impact.physics.contact import pressure_speed
-from fem_impact.plan.zones import Zones
 from fem_impact.scene.material import Material
 from meshes import HexMesh
 

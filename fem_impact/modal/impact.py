@@ -10,6 +10,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.plan import Plan
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import drop
 from fem_impact.modal.motion import (
@@ -37,7 +38,6 @@ from fem_impact.physics.beam import horizon
 from fem_impact.physics.contact import contact_estimate, fall
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.flow_law import FlowLaw, flow_law
-from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling, setting_up
 
 STEPS = 1000  # over the estimated contact

@@ -9,10 +9,10 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.plan import plan
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Others
 from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
-from fem_impact.plan.plan import plan
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.arrays import Array
+from fem_impact.case.plan import Plan
 from fem_impact.outcome.groups import (
     ArmCoefficients,
     BarrierMotion,
@@ -24,7 +25,6 @@ from fem_impact.outcome.record import installed_versions, utc_now
 from fem_impact.physics.contact import ContactBodies, approach, arms, fall, projectile
 from fem_impact.physics.contact_law import softer
 from fem_impact.physics.flash import Flash, flash_bound
-from fem_impact.plan.plan import Plan
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import melting
 from fem_impact.scene.write import digest

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from fem_impact.case.measured import reduced_table
+from fem_impact.case.plan import Plan
 from fem_impact.modal.impact import ModalResult, solve
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import ContactBodies, between
-from fem_impact.plan.measured import reduced_table
-from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress
 from fem_impact.run.common import (
     CUT_OFF,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from fem_impact.case.plan import Plan
 from fem_impact.files.atomic import write_text
 from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import (
@@ -23,7 +24,6 @@ from fem_impact.modal.motion import (
     V_N_ROW,
     V_T_ROW,
 )
-from fem_impact.plan.plan import Plan
 from fem_impact.run.common import rod_flows
 from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.table import Table

@@ -6,10 +6,10 @@ from dataclasses import fields, replace
 from math import pi, sqrt
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from fem_impact.case.cells import LEAST, advice, contact_edge, contact_radius, kind
 from fem_impact.outcome.groups import ARMS, Heat, Markers
 from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.cells import LEAST, advice, contact_edge, contact_radius, kind
 
 if TYPE_CHECKING:
     from fem_impact.outcome.groups import ArmCoefficients, Energy

@@ -32,7 +32,7 @@ from fem_impact.run.common import (
 from fem_impact.run.doubts import doubts
 
 if TYPE_CHECKING:
-    from fem_impact.plan.plan import Plan
+    from fem_impact.case.plan import Plan
     from fem_impact.scene.types import Scene
 
 

@@ -11,8 +11,8 @@ from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 
 if TYPE_CHECKING:
+    from fem_impact.case.plan import Plan
     from fem_impact.outcome.record import Outcome
-    from fem_impact.plan.plan import Plan
     from fem_impact.scene.types import Scene
 
 
@@ -36,7 +36,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         If the fidelity is unknown.
     SceneError
         If the fidelity cannot compute the scene, or the scene states an error instead of a mesh, which is the
-        business of `fem_impact.cost.to_target.simulate`.
+        business of `fem_impact.answers.wanted_error.simulate`.
     ResultError
         If the checkpoint is damaged, or of another scene or program.
     OutputPathError
@@ -44,11 +44,11 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
     RunError
         If the run cannot go on; what was computed stays in ``options.out``.
     """
-    from fem_impact.plan.plan import plan
+    from fem_impact.case.plan import plan
     from fem_impact.run.tests import tests_of
 
     if scene.accuracy.target is not None:
-        remedy = "Give a mesh, or call fem_impact.cost.to_target.simulate, which chooses one."
+        remedy = "Give a mesh, or call fem_impact.answers.wanted_error.simulate, which chooses one."
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )

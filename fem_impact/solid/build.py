@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
+from fem_impact.case.plan import Plan
 from fem_impact.fem.body import (
     Elastic,
     MeshedBodies,
@@ -24,7 +25,6 @@ from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
 from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.physics.hardening import Hardening
-from fem_impact.plan.plan import Plan
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
 from fem_impact.solid.contact.plane import PlaneContact

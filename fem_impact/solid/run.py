@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.plan import Plan
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 from fem_impact.physics.contact import approach, effective_mass
-from fem_impact.plan.plan import Plan
 from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint

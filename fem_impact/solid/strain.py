@@ -17,7 +17,7 @@ from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
-    from fem_impact.plan.plan import Plan
+    from fem_impact.case.plan import Plan
 
 HELD = 0.999  # share of the vibration energy in the modes that are stored for the free flight
 

@@ -29,7 +29,7 @@ from fem_impact.tables.csv import HISTORY
 from fem_impact.tables.growing import HistoryWriter
 
 if TYPE_CHECKING:
-    from fem_impact.plan.plan import Plan
+    from fem_impact.case.plan import Plan
     from fem_impact.scene.types import Scene
     from fem_impact.solid.heatwatch import HeatWatch
 

@@ -20,16 +20,16 @@ import numpy as np
 from calculix import Strike, run
 
 import meshes
+from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed, rigid_of
+from fem_impact.evidence.problems.catalogue import problem
+from fem_impact.evidence.problems.rod_drop import Change, RodDrop
+from fem_impact.evidence.problems.setups import rod_scene
+from fem_impact.evidence.problems.square_bars import NodeSprings, node_areas
+from fem_impact.evidence.problems.watch import Until
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight
 from fem_impact.physics.contact import projectile
 from fem_impact.solid.march import evaluate, march
-from fem_impact.verify.bodies import FreeBody, body_model, placed, rigid_of
-from fem_impact.verify.catalogue import problem
-from fem_impact.verify.rod_drop import Change, RodDrop
-from fem_impact.verify.setups import rod_scene
-from fem_impact.verify.square_bars import NodeSprings, node_areas
-from fem_impact.verify.watch import Until
 
 STICK, GAP = 0.1, 1e-7
 

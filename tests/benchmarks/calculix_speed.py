@@ -26,8 +26,8 @@ from calculix import last_table, numbered
 from kernel_speed import LEDGER_EVERY, cpu_ns, plain_stiffness
 
 import meshes
+from fem_impact.evidence.problems.bodies import FreeBody, body_model
 from fem_impact.solid.march import advance, evaluate
-from fem_impact.verify.bodies import FreeBody, body_model
 
 LENGTH, RADIUS, E, NU, RHO = 0.24, 0.0095, 206e9, 0.29, 7850.0
 SPANS = (1e-5, 4e-5)  # s of motion

@@ -13,11 +13,11 @@ from math import cos, sin
 import numpy as np
 from calculix import Strike, run
 
+from fem_impact.evidence.problems.bodies import placed
+from fem_impact.evidence.problems.catalogue import problem, verify
+from fem_impact.evidence.problems.square_bars import square_bar
+from fem_impact.evidence.problems.tilted_bar import ANGLE, SPEED
 from fem_impact.fem.elements import lumped_mass
-from fem_impact.verify.bodies import placed
-from fem_impact.verify.catalogue import problem, verify
-from fem_impact.verify.square_bars import square_bar
-from fem_impact.verify.tilted_bar import ANGLE, SPEED
 
 END = 3e-4  # s
 

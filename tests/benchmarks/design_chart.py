@@ -2,8 +2,8 @@
 
 Run ``python tests/benchmarks/design_chart.py`` (about 3 min of processor time): it computes rods of three
 diameters and three metals, elastic and yielding, at five inclinations and four coefficients of friction, each
-beside its twin that cannot vibrate, and writes ``fem_impact/verdict/data/design-chart.csv``, which `assess`
-draws. Its first line says when and by which commit it was made.
+beside its twin that cannot vibrate, and writes ``fem_impact/answers/verdict/data/design-chart.csv``, which
+`assess` draws. Its first line says when and by which commit it was made.
 """
 
 from __future__ import annotations
@@ -15,7 +15,11 @@ from itertools import product
 from math import cos, radians, sin
 from pathlib import Path
 
+from fem_impact.answers.verdict.change import modal_pair, unfinished
+from fem_impact.answers.verdict.chart import COLUMNS, TABLE
+from fem_impact.answers.verdict.screening import screening
 from fem_impact.errors import SceneError
+from fem_impact.evidence.studies.rods import BODY, TIP, length_of
 from fem_impact.files.atomic import write_text
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import utc_now
@@ -23,11 +27,7 @@ from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import materials
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene, Surface
-from fem_impact.study.rods import BODY, TIP, length_of
 from fem_impact.tables.table import Table
-from fem_impact.verdict.change import modal_pair, unfinished
-from fem_impact.verdict.chart import COLUMNS, TABLE
-from fem_impact.verdict.screening import screening
 
 ROOT = Path(__file__).parents[2]
 GAMMAS, DIAMETERS, ANGLES = (

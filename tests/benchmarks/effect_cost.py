@@ -18,10 +18,10 @@ from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from fem_impact.effects.registry import BARRIERS
+from fem_impact.case.effects.registry import BARRIERS
+from fem_impact.case.plan import plan
 from fem_impact.figures.style import PALETTE, QUIET, figure
 from fem_impact.files.atomic import write_text
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import Scene
 from fem_impact.solid.build import build

@@ -1,8 +1,8 @@
 """How far the quick estimates of what an effect changes are off, beside the finite elements.
 
 Run ``python tests/benchmarks/estimate_error.py``: it compares the estimates that ``check`` prints with the
-stored runs of the measured sets that leave one effect out (``plan/data/summary.json``), and writes the
-largest differences as ``plan/data/estimate-error.csv``, where ``check`` reads them.
+stored runs of the measured sets that leave one effect out (``case/data/summary.json``), and writes the
+largest differences as ``case/data/estimate-error.csv``, where ``check`` reads them.
 """
 
 from __future__ import annotations
@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections import defaultdict
 from pathlib import Path
 
+from fem_impact.case.choose import choices
+from fem_impact.case.measured import summary
 from fem_impact.files.atomic import write_text
-from fem_impact.plan.choose import choices
-from fem_impact.plan.measured import summary
 from fem_impact.scene.read import read_dict
 from fem_impact.tables.table import Table
 
-TABLE = Path(__file__).parents[2] / "fem_impact" / "plan" / "data" / "estimate-error.csv"
+TABLE = Path(__file__).parents[2] / "fem_impact" / "case" / "data" / "estimate-error.csv"
 COLUMNS = ("effect", "scenes", "e", "E_vib_over_E_0")
 SOFTER = "with an elastic barrier"  # the setting that stands for leaving barrier-elastoplastic out
 

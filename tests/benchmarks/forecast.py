@@ -10,8 +10,8 @@ from math import exp, log
 from pathlib import Path
 from statistics import fmean
 
-from fem_impact.cost.settings import RUNGS, placed
-from fem_impact.cost.times import cpu_seconds, pace, planned_s
+from fem_impact.answers.refine.levels import RUNGS, placed
+from fem_impact.answers.refine.times import cpu_seconds, pace, planned_s
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import MEASURED_SETS

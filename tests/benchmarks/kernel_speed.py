@@ -19,16 +19,16 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 import meshes
+from fem_impact.case.plan import plan
+from fem_impact.evidence.problems.bodies import FreeBody, body_model
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.sparse import assemble, tie_operator
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.yielding import YieldingZone
-from fem_impact.verify.bodies import FreeBody, body_model
 
 Row = tuple[str, int, float, float]  # part, elements, ns an element-step, over the CSR product's
 ACROSS, SLICES = 12, 144  # cells across and along the bar

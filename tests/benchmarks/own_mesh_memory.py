@@ -36,8 +36,8 @@ def half_box(folder, nx, ny, nz):
 
 def measure(folder, sizes):
     """Print the memory of one box, measured and planned, MB."""
+    from fem_impact.case.plan import plan
     from fem_impact.fem.body import MeshedBodies
-    from fem_impact.plan.plan import plan
 
     planned = plan(half_box(folder, *sizes))
     MeshedBodies(planned).rod_modes()

@@ -19,9 +19,9 @@ import sys
 from math import exp, log
 from pathlib import Path
 
-from fem_impact.cost.limits import truths
-from fem_impact.cost.quantities import QUANTITIES, TARGETED
-from fem_impact.cost.settings import FAMILY, FEW, PLACES, Mesh
+from fem_impact.answers.refine.extrapolate import truths
+from fem_impact.answers.refine.levels import FAMILY, FEW, PLACES, Mesh
+from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 

@@ -8,7 +8,7 @@ import pytest
 from page_blocks import PAGES, ROOT, blocks, marked, without_code
 
 import rigid
-from fem_impact.commands.parser import build_parser, every_command, read_line
+from fem_impact.cli.parser import build_parser, every_command, read_line
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
@@ -74,7 +74,7 @@ def test_every_command_line_is_understood(line, capsys):
         assert (stop.value.code, "usage:" in capsys.readouterr().out) == (0, True)
         return
     options = read_line(words)
-    assert options.version or options.handler.startswith("fem_impact.commands.")
+    assert options.version or options.handler.startswith("fem_impact.cli.")
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import re
 import pytest
 from page_blocks import BLOCKS, README, ROOT, marked
 
-from fem_impact.commands.parser import read_line
+from fem_impact.cli.parser import read_line
 
 OF_README = [block for block in BLOCKS if block.page == "README.md"]
 

@@ -8,13 +8,13 @@ import pytest
 from own_package.my_impact_parts import LUNAR_GRAVITY as EFFECT
 from own_package.my_impact_parts import MOON
 
-from fem_impact.effects import registry as effect_names
-from fem_impact.effects.registry import EFFECTS
+from fem_impact.case import choose
+from fem_impact.case.choose import active, choices, neglected
+from fem_impact.case.effects import registry as effect_names
+from fem_impact.case.effects.registry import EFFECTS
+from fem_impact.case.plan import plan
 from fem_impact.options import RunOptions
 from fem_impact.physics.contact import projectile
-from fem_impact.plan import choose
-from fem_impact.plan.choose import active, choices, neglected
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed

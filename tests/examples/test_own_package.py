@@ -75,7 +75,7 @@ def test_without_the_package_its_names_are_refused():
     ],
 )
 def test_what_cannot_be_added_is_refused_with_the_package_named(tmp_path, group, entry, words):
-    code = "import sys\nfrom fem_impact.commands.main import main\nsys.exit(main(['check', 't5b']))"
+    code = "import sys\nfrom fem_impact.cli.main import main\nsys.exit(main(['check', 't5b']))"
     done = run(code, installed(tmp_path, {group: entry}))
     assert done.returncode == 2, done.stderr
     assert words in done.stderr

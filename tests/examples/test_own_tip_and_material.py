@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import SHAPES, Nose
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.plan.plan import plan
+from fem_impact.case.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.fem.mass_scaling import MOST_REMOVED, crossing_times, scaled_rod
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build

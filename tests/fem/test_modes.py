@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import RunError
 from fem_impact.fem import eigen
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight, rigid_motion
 from fem_impact.physics.beam import bending_frequencies
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.scene.shipped import replace as changed
 from fem_impact.solid.build import build

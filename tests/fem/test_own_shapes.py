@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.stepped_beam import beam_modes
-from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict
 
 WAY = [["0 mm", "6 mm"], ["200 mm", "6 mm"]]

@@ -194,6 +194,6 @@ def test_a_share_has_as_many_places_as_its_band(band, text):
 
 
 def test_import_stays_light():
-    code = "import sys, fem_impact.figures, fem_impact.render, fem_impact.report; print(*sys.modules)"
+    code = "import sys, fem_impact.figures, fem_impact.films, fem_impact.pages; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"matplotlib", "pyvista", "vtkmodules", "h5py", "PIL", "plotly"} & set(done.stdout.split())

@@ -74,7 +74,7 @@ def test_a_new_run_takes_the_place_of_the_stated_files(run):
 
 
 def test_the_report_says_that_a_history_is_of_another_run(runs, run, monkeypatch, capsys):
-    from fem_impact.commands.main import main
+    from fem_impact.cli.main import main
 
     shutil.copy(runs / "t5a" / "history.csv", run)
     monkeypatch.chdir(run.parent)

@@ -29,7 +29,7 @@ with directory_lock(Path(sys.argv[1])):
 WRITER = """
 import sys, time
 import fem_impact.files.fields_write as fields
-from fem_impact.commands.main import main
+from fem_impact.cli.main import main
 write_mesh = fields.write_mesh
 def slowly(*arguments):
     write_mesh(*arguments)

@@ -13,9 +13,9 @@ import outcome_maker
 import pytest
 
 import fem_impact
-from fem_impact.commands.options import Options
-from fem_impact.commands.outcome import print_outcome
-from fem_impact.commands.terminal import chosen_meter, printable_streams
+from fem_impact.cli.options import Options
+from fem_impact.cli.outcome import print_outcome
+from fem_impact.cli.terminal import chosen_meter, printable_streams
 from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.fields_write import FieldWriter
@@ -80,7 +80,7 @@ def test_a_forged_record_prints_no_control_character(capsys):
 def test_every_text_of_the_program_passes_one_place():
     """Nothing but a stream of the command writes to standard output or error."""
     for path in Path(fem_impact.__file__).parent.rglob("*.py"):
-        if path.parent.name != "commands":
+        if path.parent.name != "cli":
             assert not re.search(r"print\(|sys\.std(out|err)\.", _code(path)), path
 
 

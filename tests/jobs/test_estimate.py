@@ -8,11 +8,11 @@ from hypothesis import strategies as st
 from outcome_maker import outcome
 from scale_tasks import Acting, Here, job, record
 
-from fem_impact.commands.study import _estimate_text
+from fem_impact.case.plan import plan
+from fem_impact.cli.study import _estimate_text
 from fem_impact.jobs.forecast import estimate
 from fem_impact.jobs.job import GUESS, REFUSED, Failure, Job
 from fem_impact.jobs.run import Eta, Pace, expected_costs, makespan, run_jobs
-from fem_impact.plan.plan import plan
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace
 

@@ -197,7 +197,7 @@ def test_the_digest_covers_what_makes_numbers():
         "run/markers.py",
         "fem/eigen.py",
         "scene/data/surfaces.toml",
-        "plan/data/summary.json",
+        "case/data/summary.json",
     )
     assert {f"fem_impact/{name}" for name in wanted} <= names
     assert {"meshes/rod.py", "rigid/experiments/data/sets.toml"} <= names
@@ -206,7 +206,7 @@ def test_the_digest_covers_what_makes_numbers():
         "commands/run.py",
         "jobs/run.py",
         "tables/text.py",
-        "plan/data/effect-cost.csv",
+        "case/data/effect-cost.csv",
     )
     assert not {f"fem_impact/{name}" for name in others} & names
     assert stamp(load("t5b")) != stamp(load("t5c"))
@@ -215,11 +215,11 @@ def test_the_digest_covers_what_makes_numbers():
 @pytest.mark.parametrize(
     ("file", "moves"),
     [
-        ("fem_impact/plan/data/summary.json", True),
+        ("fem_impact/case/data/summary.json", True),
         ("fem_impact/scene/data/materials.toml", True),
         ("rigid/massive.py", True),
         ("fem_impact/tables/text.py", False),
-        ("fem_impact/plan/data/effect-cost.csv", False),
+        ("fem_impact/case/data/effect-cost.csv", False),
     ],
 )
 def test_the_digest_follows_the_files_that_make_numbers(tmp_path, monkeypatch, file, moves):

@@ -7,7 +7,7 @@ from collections import Counter
 
 from hypothesis import strategies as st
 
-from fem_impact.commands.main import main
+from fem_impact.cli.main import main
 
 INF = float("inf")
 TRIED = Counter()

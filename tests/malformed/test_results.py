@@ -8,15 +8,15 @@ import pytest
 import result_maker
 from damage import TRIED, answered, call
 
-import fem_impact.render.film as films
+import fem_impact.films.film as films
+from fem_impact.answers.report import Request, Sheet, StudyReport, publish
+from fem_impact.case.plan import plan
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.signed_json import CHECKSUM, signed
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import keys_of
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
-from fem_impact.study.document import Request, Sheet, StudyReport, publish
 from fem_impact.tables.table import Table
 
 COUNTS = [pytest.param(40, id="few"), pytest.param(1500, id="many", marks=pytest.mark.slow)]

@@ -6,6 +6,7 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.modal.furrow import indent
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import drop
@@ -26,7 +27,6 @@ from fem_impact.modal.motion import (
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
 from fem_impact.physics.flow_law import FlowLaw
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 
 NU, R = 0.29, 9.5e-3

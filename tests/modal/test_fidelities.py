@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from fem_impact.answers.compare import compare
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.options import RunOptions
@@ -14,14 +16,12 @@ from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam import HORIZON, horizon
 from fem_impact.physics.contact import effective_mass, projectile
-from fem_impact.plan.plan import plan
 from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.scene.write import digest, to_dict
-from fem_impact.study.compare import compare
 from rigid import solve
 
 REDUCED = ("rigid", "modal")

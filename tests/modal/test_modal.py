@@ -9,13 +9,13 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fem_impact.modal.impact as impact
+from fem_impact.case.plan import plan
+from fem_impact.evidence.references.hertz import SpringRow, tangential_ratio
+from fem_impact.evidence.references.oblique import oblique_drop, oblique_rod
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import ALONE
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.contact import contact_modulus, projectile
-from fem_impact.plan.plan import plan
-from fem_impact.reference.hertz import SpringRow, tangential_ratio
-from fem_impact.reference.oblique import oblique_drop, oblique_rod
 from fem_impact.run import modal as record
 from fem_impact.scene.shipped import load, replace_all
 

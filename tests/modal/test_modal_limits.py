@@ -6,13 +6,13 @@ from math import cos, radians, sin
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import F_N_ROW
 from fem_impact.modal.rod import modal_rod
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import plan
 from fem_impact.run.modal import reduce
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import solid_scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.physics.contact import arms, contact_estimate
 from fem_impact.physics.flash import (
     Half,
@@ -17,7 +18,6 @@ from fem_impact.physics.flash import (
     short_rise,
     sliding_speed,
 )
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.inputs import inputs, melting

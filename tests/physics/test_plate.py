@@ -6,9 +6,12 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.effects.barrier import compliance_share
-from fem_impact.effects.slots import bodies_of
+from fem_impact.case.choose import resolved
+from fem_impact.case.effects.barrier import compliance_share
+from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
+from fem_impact.evidence.references.zener import zener_impact
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import drop
 from fem_impact.modal.motion import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start
@@ -16,9 +19,6 @@ from fem_impact.physics.contact import contact_estimate
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
-from fem_impact.plan.choose import resolved
-from fem_impact.plan.plan import plan
-from fem_impact.reference.zener import zener_impact
 from fem_impact.scene.shipped import load, replace_all
 
 ZENER = {0.05: (0.9178, 3.247, 1.087), 0.3: (0.6059, 3.429, 0.871), 1.0: (0.1841, 4.388, 0.556)}

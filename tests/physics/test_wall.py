@@ -4,16 +4,16 @@ import math
 
 import pytest
 
-from fem_impact.effects.vibration import number
+from fem_impact.answers.verdict.screening import screening
+from fem_impact.case.choose import resolved
+from fem_impact.case.effects.vibration import number
+from fem_impact.case.plan import plan
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.physics.beam import bending_period
 from fem_impact.physics.wall import ovalling_period
-from fem_impact.plan.choose import resolved
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
-from fem_impact.verdict.screening import screening
 
 RING = {"length": "60 mm", "diameter": "60 mm", "tip_radius": "3 mm"}
 

@@ -7,11 +7,11 @@ import pytest
 from own_bodies import taper, write
 
 import meshes
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.stepped_beam import beam_modes
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
 

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import material, materials
 from fem_impact.scene.material import Material

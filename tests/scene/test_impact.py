@@ -4,8 +4,8 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace, replace_all

@@ -4,8 +4,8 @@ from math import inf
 
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import digest, to_dict, to_toml

@@ -5,13 +5,13 @@ import tomllib
 
 import pytest
 
-from fem_impact.effects.plasticity import hardening_of
+from fem_impact.case.choose import active
+from fem_impact.case.effects.plasticity import hardening_of
+from fem_impact.case.metals import flow_stresses, unknowns
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.physics.flash import Half, halves, thermal
 from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, rate_gain, rate_law, tabor_stress
-from fem_impact.plan.choose import active
-from fem_impact.plan.metals import flow_stresses, unknowns
-from fem_impact.plan.plan import plan
 from fem_impact.scene.library import intervals_of, materials
 from fem_impact.scene.material import CowperSymondsRate, JohnsonCookRate, Material
 from fem_impact.scene.read import read_dict

@@ -2,8 +2,8 @@
 
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.modal.impact import solve
-from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from own_bodies import box, taper, write
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, stretching_period
 from fem_impact.physics.contact import arms, projectile
-from fem_impact.plan.plan import plan
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.read import read_dict, read_toml

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.plan.plan import plan
+from fem_impact.case.plan import plan
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shapes import NEEDS
 

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.effects.registry import BARRIERS
+from fem_impact.case.effects.registry import BARRIERS
 from fem_impact.errors import SceneError
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import Boundary, Element, FineZone, YieldingElement

@@ -9,8 +9,8 @@ from math import copysign, radians
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import ResultError, SceneError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.read import read_dict, read_toml
 from fem_impact.scene.shapes import read_points
 from fem_impact.scene.shipped import replace

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError, UsageError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.inputs import STATED, inputs, materials_of

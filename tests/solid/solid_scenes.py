@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 
-from fem_impact.plan.plan import plan
+from fem_impact.case.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.run import solve

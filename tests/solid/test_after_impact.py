@@ -10,11 +10,11 @@ import pytest
 import solid_scenes as scenes
 
 import rigid
+from fem_impact.case.plan import plan
 from fem_impact.errors import RunError
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
 from fem_impact.outcome.keys import Unknown
-from fem_impact.plan.plan import plan
 from fem_impact.run.markers import WINDOW, lever_of, replay
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce

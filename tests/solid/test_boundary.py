@@ -9,10 +9,10 @@ import scipy.sparse as sp
 import solid_shapes as shapes
 
 import meshes
+from fem_impact.evidence.references.waves import radiation_resistance
 from fem_impact.fem.boundary import RADIATION, radiating_share, spread_boundary
 from fem_impact.fem.elements import lame_constants, lumped_mass
 from fem_impact.fem.sparse import Hanging, NodeProduct, assemble, assemble_mass, tie_operator
-from fem_impact.reference.waves import radiation_resistance
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.elastic import Dashpots, ElasticBlock, Weight

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import rod_modes
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from meshes import OUTER

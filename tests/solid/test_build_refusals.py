@@ -2,8 +2,8 @@
 
 import pytest
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
 

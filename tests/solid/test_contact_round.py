@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.physics.contact import barrier_conforms
-from fem_impact.plan.plan import plan
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.book import ACTIVE

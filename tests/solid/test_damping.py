@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 import solid_scenes
 
+from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.solid.elastic import ModalDamping
 from fem_impact.solid.march import march
-from fem_impact.verify.bodies import rigid_of
 
 LOSS = 0.05
 EFFECTS = ("vibration", "barrier-rigid", "large-rotation", "material-damping")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import known
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build

@@ -5,7 +5,7 @@ from math import cos, pi
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.plan.plan import plan
+from fem_impact.case.plan import plan
 from fem_impact.run.solid import reduce
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve

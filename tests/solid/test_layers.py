@@ -7,10 +7,10 @@ import pytest
 import scipy.sparse as sp
 
 import meshes
+from fem_impact.case.plan import plan
 from fem_impact.fem.body import MeshedBodies, assemble_masses, make_body, of_materials, stiffness_of
 from fem_impact.fem.layout import number
 from fem_impact.physics.contact import pressure_speed
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import materials
 from fem_impact.scene.read import read_dict

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 import meshes
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.fem.boundary import plate_edges
 from fem_impact.outcome.keys import or_none
 from fem_impact.physics.plate import zener_number
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build

@@ -6,10 +6,10 @@ from math import cos, radians, sin
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.plan.plan import plan
 from fem_impact.run.solid import reduce
 from fem_impact.scene import shipped
 from fem_impact.scene.barrier import Barrier

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.effects.registry import NAMES
+from fem_impact.case.effects.registry import NAMES
+from fem_impact.case.plan import plan
 from fem_impact.errors import ResultError
 from fem_impact.files.fields_read import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
-from fem_impact.plan.plan import plan
 from fem_impact.run.program import stamp
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import solid_scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import arms, projectile
-from fem_impact.plan.plan import plan
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold

@@ -8,13 +8,13 @@ import pytest
 import solid_scenes as scenes
 from threadpoolctl import threadpool_info, threadpool_limits
 
+from fem_impact.case.plan import plan
 from fem_impact.errors import RunError
 from fem_impact.fem import body
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
 from fem_impact.physics.contact import projectile
-from fem_impact.plan.plan import plan
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.plan import plan
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
-from fem_impact.plan.plan import plan
 from fem_impact.solid.rodview import RodState
 from fem_impact.solid.run import solve
 from fem_impact.solid.strain import Sections, StrainWatch, _held, _in_plane

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.plan import plan
+from fem_impact.case.zones import DRAG, LOW, SLIDE, half_widths
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.physics.contact import contact_estimate
-from fem_impact.plan.plan import plan
-from fem_impact.plan.zones import DRAG, LOW, SLIDE, half_widths
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all

@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.commands.main import main
+from fem_impact.cli.main import main
 from fem_impact.scene.types import MEASURED_SETS
 
 

@@ -1,11 +1,11 @@
 """The shares of E_0 and the accounts over time stand in one list each."""
 
+from fem_impact.answers.compare import UNSEEN
+from fem_impact.answers.report import LEDGER
+from fem_impact.evidence.studies.convergence import QUANTITIES
 from fem_impact.figures.style import PALETTE
 from fem_impact.outcome.record import KEYS
 from fem_impact.outcome.shares import ACCOUNTS, SHARES, shares
-from fem_impact.study.compare import UNSEEN
-from fem_impact.study.convergence import QUANTITIES
-from fem_impact.study.document import LEDGER
 from fem_impact.tables.csv import HISTORY
 
 

@@ -2,7 +2,7 @@
 
 from math import hypot, pi
 
-from fem_impact.effects.slots import Effect, Harm, bodies_of
+from fem_impact.case.effects.slots import Effect, Harm, bodies_of
 from fem_impact.physics.contact import contact_estimate
 from rigid import Nose
 

@@ -1,0 +1,1 @@
+"""Meshes from coarse to fine until an error is reached or time is used up."""

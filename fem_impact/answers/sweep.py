@@ -1,0 +1,235 @@
+"""One scene with values varied in all combinations: table, figures, report, and a store to go on from."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import nullcontext
+from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, Row, row_of
+from fem_impact.answers.vary import cases, in_unit, measure
+from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.figures.panels import Panel, Picture, Series
+from fem_impact.files.atomic import make_directory
+from fem_impact.files.lock import directory_lock
+from fem_impact.files.signed_json import checksum
+from fem_impact.jobs.executors import LocalProcesses
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import run_jobs
+from fem_impact.jobs.store import STORE
+from fem_impact.options import FIDELITIES
+from fem_impact.outcome.record import KEY_TABLE
+from fem_impact.progress import NullMeter
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest
+
+if TYPE_CHECKING:
+    from fem_impact.progress import ProgressMeter
+
+
+FIDELITY = "modal"
+"""Fidelity of a sweep unless stated: a run takes some ten milliseconds."""
+
+SHOWN = {
+    "e_edge": "coefficient of restitution e",
+    "mu": "impulse ratio mu",
+    "Omega_rad_per_s": "Omega, rad/s",
+    "E_vib_over_E_0": "vibration over E_0",
+}
+"""Columns that are drawn, with the labels of their axes."""
+EXPLAINED = (
+    "`sweep.csv` holds every number of each outcome after the varied keys; `e_edge` is e at the point of the "
+    "tip that touches first; `fem-impact schema` explains every other column."
+)
+MOST_CURVES, MOST_ROWS = 8, 50
+CELLS = ("tip_size_m", "barrier_size_m")
+
+
+def sweep(
+    scene: Scene,
+    vary: Mapping[str, Sequence[Any]],
+    fidelity: str = FIDELITY,
+    out: str | Path | None = None,
+    workers: int = 1,
+    progress: ProgressMeter | None = None,
+    executor: Executor | None = None,
+) -> Results:
+    """Compute a scene with values varied in all combinations.
+
+    Parameters
+    ----------
+    scene : Scene
+    vary : values by key, such as ``{"impact.angle": ["15 deg", "30 deg"], "surface.friction": [0.2, 0.4]}``
+    fidelity : rigid, modal or solid
+    out : directory with the store of the outcomes, from which a second call goes on; a temporary one if None
+    workers : runs at a time; more than one start processes, so call from under ``if __name__ == "__main__":``
+    progress : told after each run
+    executor : where the runs are done instead, such as what `fem_impact.jobs.executors.on_scheduler` lends
+
+    Returns
+    -------
+    Results
+        One row a case; a case that cannot run is a row with its reason.
+
+    Raises
+    ------
+    UsageError, SceneError
+        Before any run: the fidelity is unknown, nothing varies, or no combination is a scene.
+    OutputPathError
+        ``out`` cannot be written, or another process writes to it.
+    """
+    if fidelity not in FIDELITIES:
+        hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
+        raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+    made = cases(scene, vary)
+    jobs = [Job(case.name, case.scene, fidelity) for case in made if case.scene is not None]
+    with tempfile.TemporaryDirectory() as spare:
+        place = Path(out) if out is not None else Path(spare)
+        make_directory(place)
+        # an executor that is lent stays open
+        with directory_lock(place), nullcontext(executor) if executor else _engine(workers) as engine:
+            found = run_jobs(jobs, place / STORE, progress or NullMeter(), engine)
+    return Results(dict(vary), tuple(row_of(case, found.get(case.name)) for case in made))
+
+
+def _engine(workers: int) -> Executor:
+    """Return this process for one run at a time, else local processes."""
+    return ThreadPoolExecutor(1) if workers == 1 else LocalProcesses(workers)
+
+
+def cases_digest(scene: Scene, vary: Mapping[str, Sequence[Any]], fidelity: str) -> str:
+    """Return the SHA-256 of what a sweep computes: scene, values and fidelity."""
+    return checksum({"scene": digest(scene), "vary": dict(vary), "fidelity": fidelity})
+
+
+def publish_sweep(
+    results: Results, title: str, line: str, out: Path, columns: Sequence[str] = (), cases: str = ""
+) -> StudyResult:
+    """Write table, figures with their data, summary and study.json of a sweep; Parquet where it can be.
+
+    The table has every column; the summary shows ``columns``, `SHORT` where none are named. A report in
+    ``out`` of a sweep with other ``cases`` (`cases_digest`) is set aside.
+
+    Raises
+    ------
+    UsageError
+        A name is no column of an outcome.
+    """
+    drawn = [name for name in columns if KEY_TABLE[name].kind == "number"] if columns else list(SHOWN)
+    runs = {row.case.name: row.outcome or Failure(row.case.name, row.reason) for row in results}
+    effects = {name for row in results if row.outcome for name in row.outcome.provenance.effects}
+    report = StudyReport(
+        "sweep",
+        f"Sweep: {title}",
+        [*_findings(results, drawn), *_not_known(results, columns or SHORT), *_cells(results), EXPLAINED],
+        pictures=_pictures(results, drawn),
+        sheets=[_sheet(results, columns)],
+        sources=sorted(effects),
+    )
+    made = publish(report, Request(out, line=line, cases=cases), runs)
+    if find_spec("pandas") and find_spec("pyarrow"):
+        results.to_dataframe().to_parquet(out / "sweep.parquet")
+    return made
+
+
+def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
+    """Return the table of all columns; the summary shows the chosen ones, or those known of `SHORT`."""
+    whole = results.table()
+    names = columns or [name for name in SHORT if any(whole.texts(name))]
+    stopped = ["reason"] if any(whole.texts("reason")) else []
+    own = [name for name in whole.names if name not in (*COLUMNS, "reason")]
+    places = [whole.names.index(name) for name in (*own, *stopped, *names)]
+    rows = tuple(tuple(row[at] for at in places) for row in whole.rows[:MOST_ROWS])
+    brief = replace(whole, columns=tuple(whole.columns[at] for at in places), rows=rows)
+    caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
+    return Sheet("sweep", caption, whole, brief=brief)
+
+
+def _not_known(results: Results, columns: Sequence[str]) -> list[str]:
+    """Return which columns are not known in which cases, with the reason in the first of them."""
+    reasons = {row.case.name: row.outcome.reasons for row in results if row.outcome}
+    groups: dict[tuple[tuple[str, ...], str], list[str]] = {}
+    for name in columns:
+        cases = tuple(case for case, why in reasons.items() if name in why)
+        if cases:
+            groups.setdefault((cases, reasons[cases[0]][name].rstrip(".")), []).append(f"`{name}`")
+    return [
+        f"Not known in {_share(cases, len(reasons))}: {', '.join(names)} ({why})."
+        for (cases, why), names in groups.items()
+    ]
+
+
+def _share(cases: Sequence[str], count: int) -> str:
+    if len(cases) == count:
+        return "any case"
+    return f"{len(cases)} of {count} cases, the first of them {cases[0]}"
+
+
+def _cells(results: Results) -> list[str]:
+    """Return whether the cells of the meshes differ from case to case."""
+    ends = {}
+    for name in CELLS:
+        sizes = results.numbers(name)
+        if np.isfinite(sizes).any() and np.nanmax(sizes) > (1 + 1e-6) * np.nanmin(sizes):
+            ends[name] = f"`{name}` {1e3 * np.nanmin(sizes):.3g} to {1e3 * np.nanmax(sizes):.3g} mm"
+    if not ends:
+        return []
+    return [
+        f"The cells of the meshes differ between the cases ({', '.join(ends.values())}), as they follow the "
+        "scene: a part of each difference is the mesh's. State accuracy.tip_size for equal cells."
+    ]
+
+
+def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
+    """Return how many cases failed, and where each drawn quantity is smallest and largest."""
+    failed = sum(row.outcome is None for row in results)
+    sentences = [f"{len(results)} cases of {', '.join(results.vary)}; {failed} failed."]
+    for name in drawn:
+        values, label = results.numbers(name), SHOWN.get(name, name)
+        if np.isfinite(values).any():
+            ends = (int(np.nanargmin(values)), int(np.nanargmax(values)))
+            low, high = (f"{values[at]:.4g} ({_stated(results.rows[at])})" for at in ends)
+            titled = f"{label[0].upper()}{label[1:]} (`{name}`)" if name in SHOWN else f"`{name}`"
+            sentences.append(f"{titled}: from {low} to {high}.")
+    return sentences
+
+
+def _stated(row: Row, without: str = "") -> str:
+    return ", ".join(f"{key} = {value}" for key, value in row.case.values.items() if key != without)
+
+
+def _pictures(results: Results, drawn: Sequence[str]) -> list[Picture]:
+    """Return each drawn quantity over the key with most values, a curve for each choice of the others."""
+    key = max(results.vary, key=lambda name: len(results.vary[name]))
+    unit = measure(results.vary[key][0])[1]
+    along = [in_unit(row.case.values[key], unit) for row in results]
+    if len(results.vary[key]) < 2 or any(isinstance(x, str) for x in along):
+        return []
+    curves: dict[str, list[int]] = {}
+    for at, row in enumerate(results):
+        curves.setdefault(_stated(row, key) or "all", []).append(at)
+    label = f"{key}, {unit}" if unit else key
+    panels = [_panel(results, name, label, along, curves) for name in drawn]
+    told = tuple(panel for panel in panels if panel.series)
+    left_out = "" if len(curves) <= MOST_CURVES else f" The first {MOST_CURVES} of {len(curves)} curves."
+    return [Picture("sweep", f"What changes with {key}.{left_out}", told)] if told else []
+
+
+def _panel(
+    results: Results, name: str, label: str, along: list[Any], curves: Mapping[str, list[int]]
+) -> Panel:
+    values, series = results.numbers(name), []
+    for title, places in list(curves.items())[:MOST_CURVES]:
+        known = [at for at in places if np.isfinite(values[at])]
+        if known:
+            series.append(Series(title, [along[at] for at in known], values[known], "joined"))
+    title = SHOWN.get(name, name)
+    return Panel(title, label, title, tuple(series))

@@ -1,0 +1,204 @@
+"""The results of a sweep: rows of values and outcomes, a table, a data frame, a choice by value."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.answers.vary import Case, in_unit, measure
+from fem_impact.errors import MissingLibraryError, UsageError, did_you_mean
+from fem_impact.jobs.job import Failure
+from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.tables.table import Cell, Table
+
+if TYPE_CHECKING:
+    import pandas
+
+    from fem_impact.arrays import Array
+
+
+STATE = ("finished", "reason")
+"""Columns of how a run ended: whether it came to its end, and why not."""
+COLUMNS = tuple(
+    key.name
+    for key in KEYS
+    if key.kind in ("number", "count", "flag", "text", "entries")
+    and key.name not in ("schema_version", "effect_choices", "finished", "stopped_because")
+)
+"""Columns of an outcome: every number, count, flag and text of it by its key; of its contacts, how many."""
+UNIT = re.compile(r"_(over_E_0|rad_per_s|m_per_s|W_per_m2|[a-zA-Z]{1,2}2?)$")
+"""End of a column's name that states its unit."""
+SHORT = (
+    *("e_edge", "mu", "Omega_rad_per_s", "E_vib_over_E_0", "W_skin_over_E_0"),
+    *("flash_temperature_K", "contacts", "strikes_again"),
+)
+"""Columns that are shown unless others are chosen."""
+
+
+def require_columns(names: Sequence[str]) -> None:
+    """Refuse a name that is no column of an outcome.
+
+    Raises
+    ------
+    UsageError
+        With the nearest name, units left out.
+    """
+    for name in names:
+        if name not in COLUMNS:
+            meant = did_you_mean(name, COLUMNS, "", lambda text: UNIT.sub("", text).lower())
+            remedy = f"{meant} `fem-impact schema` lists and explains them.".lstrip()
+            raise UsageError("is no column of an outcome.", key="columns", value=name, remedy=remedy)
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One case of a sweep: the values that it states, its outcome, or None and the reason."""
+
+    case: Case
+    outcome: Outcome | None
+    reason: str
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Results(Sequence[Row]):
+    """The cases of a sweep in the order of their values, the last key changing fastest.
+
+    Attributes
+    ----------
+    vary : the values by key, as stated
+    rows : one a case, failed ones too
+
+    Examples
+    --------
+    >>> import fem_impact
+    >>> found = fem_impact.sweep(fem_impact.load("t5b"), {"surface.friction": [0.2, 0.4]}, fidelity="rigid")
+    >>> [round(row.outcome.restitution.mu, 2) for row in found]
+    [0.2, 0.4]
+    >>> len(found.select({"surface.friction": 0.4}))
+    1
+    """
+
+    vary: Mapping[str, Sequence[Any]]
+    rows: tuple[Row, ...]
+
+    def __len__(self) -> int:
+        return len(self.rows)
+
+    def __iter__(self) -> Iterator[Row]:
+        return iter(self.rows)
+
+    def __getitem__(self, at: Any) -> Any:
+        return self.rows[at]
+
+    def __repr__(self) -> str:
+        failed = sum(row.outcome is None for row in self.rows)
+        return f"Results({len(self.rows)} cases of {', '.join(self.vary)}; {failed} failed)"
+
+    def _repr_html_(self) -> str:
+        table = self.table(SHORT)  # names stay as `numbers` and `to_dataframe` take them
+        named = tuple(replace(column, label=f"`{column.name}`") for column in table.columns)
+        return replace(table, columns=named).html(repr(self))
+
+    def select(self, values: Mapping[str, Any]) -> Results:
+        """Return the cases with given values, such as ``{"impact.angle": "30 deg"}``, in any unit.
+
+        Raises
+        ------
+        UsageError
+            A key does not vary, or no case has the value.
+        """
+        rows = self.rows
+        for key, value in values.items():
+            if key not in self.vary:
+                remedy = did_you_mean(key, self.vary, f"Varied are: {', '.join(self.vary)}.")
+                raise UsageError("is not varied in this sweep.", key=key, remedy=remedy)
+            rows = tuple(row for row in rows if _same(row.case.values[key], value))
+            if not rows:
+                listed = ", ".join(map(str, self.vary[key]))
+                raise UsageError(
+                    "is no value of this sweep.", key=key, value=value, remedy=f"There are: {listed}."
+                )
+        return Results(self.vary, rows)
+
+    def numbers(self, name: str) -> Array:
+        """Return a column of the table as floats (n,), NaN where it is not known.
+
+        Raises
+        ------
+        UsageError
+            There is no such column.
+        """
+        import numpy as np
+
+        table = self.table((name,) if name in COLUMNS else ())
+        if name not in table.names:
+            names = (*table.names, *COLUMNS)
+            raise UsageError("is no column.", key=name, remedy=did_you_mean(name, names, f"{names}."))
+        cells = table.cells(name)
+        return np.array([float("nan") if cell is None else float(cell) for cell in cells])  # type: ignore[arg-type]
+
+    def table(self, columns: Sequence[str] = COLUMNS) -> Table:
+        """Return one row a case: values, unit in the header, how it ended, and columns of its outcome.
+
+        Raises
+        ------
+        UsageError
+            A name is no column of an outcome.
+        """
+        require_columns(columns)
+        units = {key: measure(values[0])[1] for key, values in self.vary.items()}
+        heads = [f"{key} [{unit}]" if unit else key for key, unit in units.items()]
+        rows = [
+            [
+                row.case.name,
+                *(in_unit(row.case.values[key], unit) for key, unit in units.items()),
+                *_ended(row, columns),
+            ]
+            for row in self.rows
+        ]
+        return Table.of(("case", *heads, *STATE, *columns), rows)
+
+    def to_dataframe(self, columns: Sequence[str] = COLUMNS) -> pandas.DataFrame:
+        """Return the table as a data frame of pandas, of every column of an outcome or of chosen ones.
+
+        Raises
+        ------
+        UsageError
+            A name is no column of an outcome.
+        MissingLibraryError
+            pandas is not installed.
+        """
+        try:
+            import pandas
+        except ImportError:
+            problem = "A data frame needs pandas: pip install 'fem-impact[frames]'. The table needs nothing."
+            raise MissingLibraryError(problem) from None
+        table = self.table(columns)
+        return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
+
+
+def _same(stated: Any, wanted: Any) -> bool:
+    """Return whether two values are one, to the precision of a change of units."""
+    unit = measure(stated)[1]
+    a, b = in_unit(stated, unit), in_unit(wanted, unit)
+    if isinstance(a, str) or isinstance(b, str):
+        return a == b
+    return abs(a - b) <= 1e-9 * max(abs(a), abs(b))
+
+
+def _ended(row: Row, columns: Sequence[str]) -> list[Cell]:
+    if row.outcome is None:
+        return [False, row.reason, *([None] * len(columns))]
+    values, validity = row.outcome.to_dict(), row.outcome.validity
+    reason = row.outcome.reasons.get("e_edge", "") if validity.finished else validity.stopped_because
+    cells = (values[name] for name in columns)
+    return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
+
+
+def row_of(case: Case, result: Outcome | Failure | None) -> Row:
+    """Return the row of a case from what its job gave."""
+    if isinstance(result, Outcome):
+        return Row(case, result, "")
+    return Row(case, None, result.reason if result else case.refused)

@@ -1,0 +1,296 @@
+"""One verdict on a scene: may rigid theory be used, what does vibration take, where does the rest go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import isclose
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.answers.refine.times import LONGER, about_s
+from fem_impact.answers.verdict.change import (
+    Answer,
+    Change,
+    Ladder,
+    largest,
+    modal_change,
+    modal_pair,
+    unfinished,
+)
+from fem_impact.answers.verdict.reliability import known_error
+from fem_impact.answers.verdict.screening import Screening, screening
+from fem_impact.answers.verdict.twins import inclined
+from fem_impact.case.limits import FLAT_FACE, not_reduced
+from fem_impact.errors import RunError, SceneError
+from fem_impact.tables.text import plain
+
+if TYPE_CHECKING:
+    from fem_impact.answers.refine.levels import Mesh
+    from fem_impact.scene.types import Scene
+
+
+TOLERANCE = 0.05
+"""Change of e that may be neglected, unless stated."""
+BUDGET = 60.0
+"""Wall time, s, that the finite elements of a verdict may take, unless stated."""
+FIDELITIES = ("auto", "modal", "solid")
+ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
+"""Inclinations among which the worst one is looked for, rad."""
+LEAST_PAIRS = 2
+"""Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
+
+LACKING = "There is no reduced model of {}: finite elements alone answer."
+COUNT = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth")
+
+Tell = Callable[[str], object]
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Verdict:
+    """The verdict on a scene.
+
+    Attributes
+    ----------
+    scene : Scene
+    tolerance : change of e that may be neglected
+    fidelity : modal or solid, of ``here``
+    screening : closed-form estimates
+    here : the change of e at the scene's inclination
+    elsewhere : the largest change of the reduced model over other inclinations, None where none is known
+    not_known : inclinations, rad, where the reduced model has no answer, with the reason of the first
+    over_friction : smallest and largest change of e within the stated interval of f by the reduced model;
+        None where f has no interval or no effect
+    notes : what the reader should know about how the verdict was found
+    more : options of ``fem-impact assess`` that may decide what is undecided, empty where none are known
+    """
+
+    scene: Scene
+    tolerance: float
+    fidelity: str
+    screening: Screening
+    here: Change
+    elsewhere: Change | None
+    not_known: tuple[tuple[float, ...], str]
+    over_friction: tuple[float, float] | None
+    notes: tuple[str, ...]
+    more: str
+
+    def __repr__(self) -> str:
+        return (
+            f"Verdict({self.scene.id!r}: rigid theory {self.answer}, e changes by {self.here.told}, "
+            f"vibration takes {100 * self.here.E_vib:.2g} % of E_0; {self.fidelity})"
+        )
+
+    @property
+    def answer(self) -> Answer:
+        """May rigid theory be used at the scene's inclination."""
+        return self.here.answer(self.tolerance)
+
+    @property
+    def worst(self) -> Change | None:
+        """The largest change over all inclinations, None where only this one is known."""
+        return None if self.elsewhere is None else largest([self.here, self.elsewhere])
+
+    @property
+    def worst_answer(self) -> Answer:
+        """May it be used at any inclination: no where it may not at this one."""
+        both = {self.answer, self.elsewhere.answer(self.tolerance) if self.elsewhere else "undecided"}
+        if "no" in both:
+            return "no"
+        return "yes" if both == {"yes"} and not self.not_known[0] else "undecided"
+
+
+def assess(
+    scene: Scene,
+    fidelity: str = "auto",
+    tolerance: float = TOLERANCE,
+    budget_s: float = BUDGET,
+    workers: int = 1,
+    tell: Tell = lambda sentence: None,
+) -> Verdict:
+    """Say whether rigid theory may be used for a scene, beside its twin that cannot vibrate.
+
+    Parameters
+    ----------
+    scene : Scene
+        Any rod and barrier; a mesh or target error that it states is not used.
+    fidelity : "auto", "modal" or "solid"
+        ``auto`` takes the reduced model with its known error, and finite elements where that error leaves the
+        answer open, or is that of scenes unlike this one, and the budget allows. Other inclinations than the
+        scene's are computed with the reduced model.
+    tolerance : change of e that may be neglected
+    budget_s : wall time of the finite elements, s
+    workers : runs at a time, 1 or 2
+    tell : called with a sentence before something that takes long
+
+    Raises
+    ------
+    SceneError
+        The scene, tolerance or budget cannot be used, or ``solid`` is asked of a scene that has no mesh.
+    RunError
+        No model gives a restitution at the scene's inclination.
+    """
+    _check(fidelity, tolerance, budget_s)
+    reduced = fidelity == "modal" or not not_reduced(scene)
+    elsewhere = reduced or not_reduced(scene) == FLAT_FACE  # a face that lands flat does so at 0 deg alone
+    quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(not_reduced(scene))])
+    here, used, more = quick, "modal", "--fidelity solid"
+    # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
+    unlike = quick is not None and not known_error(scene).alike
+    open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
+    if fidelity == "solid" or (fidelity == "auto" and open_still):
+        least = LEAST_PAIRS if fidelity == "solid" else int(not elsewhere)
+        solid, told, more = _solid(scene, least, tolerance, (budget_s, workers), quick, tell)
+        here, used = (solid, "solid") if solid else (quick, "modal")
+        notes += told
+        more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
+    if here is None:
+        raise RunError(" ".join(notes))
+    off = 0.0 if quick is None else abs(quick.value - here.value)
+    others, not_known = _over_angles(scene, off) if elsewhere else (None, ((), ""))
+    return Verdict(
+        scene,
+        tolerance,
+        used,
+        screening(scene),
+        here,
+        others,
+        not_known,
+        None if quick is None else _over_friction(scene),
+        tuple(notes),
+        more if here.answer(tolerance) == "undecided" else "",
+    )
+
+
+def _quick(scene: Scene, tell: Tell) -> tuple[Change | None, list[str]]:
+    """Return what the reduced model says, None where it has no answer; and notes."""
+    tell("the reduced model, at this inclination and at others ...")
+    pair = modal_pair(scene)
+    if failed := unfinished(pair):
+        return None, [f"The reduced model has no answer here: {failed}"]
+    return modal_change(scene, pair), []
+
+
+def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
+    if fidelity not in FIDELITIES:
+        remedy = f"Use one of {', '.join(FIDELITIES)}."
+        raise SceneError("is not a fidelity of a verdict.", key="fidelity", value=fidelity, remedy=remedy)
+    if not 0.0 < tolerance < 1.0:
+        remedy = "It is the change of e that may be neglected: give one such as 0.05."
+        raise SceneError("must lie between 0 and 1.", key="tolerance", value=tolerance, remedy=remedy)
+    if not 0.0 < budget_s < 1e6:
+        raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
+
+
+def _solid(
+    scene: Scene, least: int, tolerance: float, means: tuple[float, int], quick: Change | None, tell: Tell
+) -> tuple[Change | None, list[str], str]:
+    """Return what finite elements say, None where the budget allows no mesh or no run gives an e.
+
+    Notes on it follow, and the options with which another mesh would run. ``least`` meshes run whatever the
+    budget. One mesh alone counts where the reduced model, ``quick``, bears it out.
+    """
+    ladder, notes, more = Ladder.of(scene, *means), list[str](), ""
+    if refused := ladder.refused():
+        if quick is None or least:
+            raise refused
+        return None, [f"Finite elements have no answer here: {refused}"], ""
+    while not _decided(ladder, tolerance, quick, least):
+        mesh = ladder.following()
+        if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):
+            told, more = _stopped(ladder, mesh)
+            notes.append(told)
+            break
+        which = COUNT[len(ladder.pairs)]
+        tell(f"finite elements, {which} mesh, about {about_s(ladder.expected_s(mesh))} ...")
+        try:
+            failed = ladder.climb(mesh)
+        except SceneError as error:  # a mesh that folds is found when it is made
+            if quick is None and not ladder.pairs:
+                raise
+            failed = str(error)
+        if failed:
+            notes.append(f"Finite elements give no result on the {which} mesh: {failed}")
+            break
+    return _found(ladder, quick, tolerance, notes), notes, more
+
+
+def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int) -> bool:
+    """Say whether the meshes that ran are enough for an answer."""
+    if not ladder.pairs or len(ladder.pairs) < least:
+        return False
+    change = ladder.change()
+    supported = len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance)
+    return supported and change.answer(tolerance) != "undecided"
+
+
+def _bears_out(quick: Change | None, change: Change, tolerance: float) -> bool:
+    """Say whether the reduced model agrees with one mesh, and is known well enough for that to count."""
+    return quick is not None and quick.band <= tolerance and quick.meets(change)
+
+
+def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[str]) -> Change | None:
+    """Return what the ladder says; the band of one mesh that nothing bears out holds the reduced model's."""
+    if not ladder.pairs:
+        return None
+    change = ladder.change()
+    if len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance):
+        return change
+    if quick is None:
+        notes.append("One mesh alone does not tell its error, and no reduced model bears it out.")
+        return ladder.doubted()
+    notes.append(
+        f"One mesh of finite elements says {change.value:+.3f} ± {change.band:.3f}, the reduced model "
+        f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
+    )
+    return change.widened(quick)
+
+
+def _stopped(ladder: Ladder, mesh: Mesh | None) -> tuple[str, str]:
+    """Return why no other mesh runs, and the options with which one would."""
+    if mesh is None:
+        return "No finer mesh is tried: none of the family has finer cells at the contact.", ""
+    more, limit_s, spent_s = ladder.expected_s(mesh), ladder.budget.limit_s, ladder.budget.spent_s
+    left, enough = max(limit_s - spent_s, 0.0), about_s(spent_s + LONGER * more)
+    told = (
+        f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
+        f"{about_s(more)} more, and {plain(left, 2)} s are left of the budget of {limit_s:g} s. "
+        f'For it give --budget "{enough}".'
+    )
+    return told, f'--budget "{enough}"'
+
+
+def _over_angles(scene: Scene, off: float) -> tuple[Change | None, tuple[tuple[float, ...], str]]:
+    """Return the largest change of the reduced model over other inclinations, and where it has no answer.
+
+    ``off`` is its error at the scene's own inclination, as far as finite elements show it.
+    """
+    changes, missing, why = list[Change](), list[float](), ""
+    for angle in (float(angle) for angle in ANGLES if not isclose(angle, scene.impact.angle)):
+        try:
+            one = inclined(scene, angle)
+            pair = modal_pair(one)
+            failed = unfinished(pair)
+        except SceneError as error:
+            failed = str(error)
+        if failed:
+            missing.append(angle)
+            why = why or failed
+        else:
+            changes.append(modal_change(one, pair).at_least(off))
+    return (largest(changes) if changes else None), (tuple(missing), why)
+
+
+def _over_friction(scene: Scene) -> tuple[float, float] | None:
+    """Return the range of the change of e over the ends of the interval of f, by the reduced model."""
+    surface = scene.surface
+    if surface.friction_low == surface.friction_high:
+        return None
+    values = []
+    for f in (surface.friction_low, surface.friction, surface.friction_high):
+        one = replace(scene, surface=replace(surface, state="custom", friction=f))
+        pair = modal_pair(one)
+        values += [] if unfinished(pair) else [modal_change(one, pair).value]
+    return (min(values), max(values)) if values else None

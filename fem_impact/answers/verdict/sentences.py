@@ -1,0 +1,307 @@
+"""A verdict in words: the three lines of its box, what it rests on, what it does not cover; and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import degrees, inf, isclose
+from typing import Any
+
+from fem_impact.answers.verdict.assess import Verdict
+from fem_impact.answers.verdict.change import Answer, Change
+from fem_impact.answers.verdict.screening import Screening
+from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.record import Outcome, installed_versions
+from fem_impact.outcome.shares import SHARES
+from fem_impact.physics.contact import projectile
+from fem_impact.run.common import RESIDUAL_LIMIT
+from fem_impact.run.doubts import ROUND_OFF
+from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.shapes import NamedShape
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest, to_dict
+from fem_impact.tables.text import wrapped
+
+SCHEMA = "fem-impact/verdict/1"
+LEAST_SHARE = 0.005
+"""Shares of E_0 below it are not named among those of the rest."""
+
+FIRST_ONLY = (
+    "The first impact only: the rod keeps the rest of its energy and may strike again.",
+    "Fracture, chipping and wear of rod and barrier; chemical heat.",
+    "Supports and other bodies that the rod or the barrier may touch.",
+)
+
+THERE: Mapping[Answer, str] = {
+    "yes": "rigid theory may be used there",
+    "no": "rigid theory may not be used there",
+    "undecided": "whether rigid theory may be used there is undecided",
+}
+Line = tuple[str, str]
+
+
+def box(v: Verdict) -> tuple[Line, Line, Line]:
+    """Return title and sentence of the three lines that come first."""
+    return (
+        ("May rigid theory be used here?", _may(v)),
+        ("Vibration takes", _vibration(v)),
+        ("The rest goes to", _rest(v)),
+    )
+
+
+def _may(v: Verdict) -> str:
+    return (
+        f"{v.answer.upper()}: at this inclination, {degrees(v.scene.impact.angle):.4g} degrees, vibration "
+        f"changes e by {v.here.told}{doubt(v.here)}, by {v.here.models} (allowed: {v.tolerance:g}). "
+        f"{_anywhere(v)}"
+    )
+
+
+def doubt(change: Change) -> str:
+    """Return e of both twins where one of them is out of the range of a plain impact, else nothing."""
+    free, stiff = (known(run.restitution.edge.e) for run in (change.free, change.stiff))
+    if all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
+        return ""
+    return f" (doubtful: e is {free:.3f} with vibration and {stiff:.3f} without it, outside 0 to 1)"
+
+
+def _anywhere(v: Verdict) -> str:
+    """Say what holds for other inclinations of the same projectile at the same speed."""
+    if v.worst is None:
+        return "For other inclinations the answer is not known: change impact.angle and assess them, too."
+    by = " by the reduced model" if v.fidelity == "solid" else ""
+    everywhere = "; rigid theory may be used at every inclination" if v.worst_answer == "yes" else ""
+    if v.worst is v.here:
+        return f"No other inclination has a larger change{by}{everywhere}."
+    return (
+        f"At the worst inclination, {degrees(v.worst.angle):.0f} degrees, it changes e by {v.worst.told}"
+        f"{doubt(v.worst)}{by}{everywhere or f'; {THERE[v.worst.answer(v.tolerance)]}'}."
+    )
+
+
+def _vibration(v: Verdict) -> str:
+    here = v.here
+    share = f"{100 * here.E_vib:.2g} % of the energy"
+    if or_none(here.free.energy.below_floor):
+        return f"{share}, which is below the numerical floor of the model"
+    if here.E_vib_band == inf:
+        return f"{share} (error {here.error})"
+    least, most = here.E_vib - here.E_vib_band, here.E_vib + here.E_vib_band
+    range_ = f"0 to {100 * most:.2g} %" if least < 0 else f"± {100 * here.E_vib_band:.2g} %"
+    return f"{share} ({range_}: {here.error})"
+
+
+def _rest(v: Verdict) -> str:
+    here, plate = v.here, v.scene.barrier.bends
+    energy = here.free.energy
+    named = [(share, or_none(share.of(energy)) or 0.0) for share in SHARES if share.label != "vibration"]
+    listed = [
+        f"{share.label.replace('barrier', 'plate') if plate else share.label} "
+        f"{100 * part:.0f}{_half(here, share.key.path[-1])} %"
+        for share, part in named
+        if part > LEAST_SHARE
+    ]
+    kind = f"± {here.error}" if here.errors else f"by {here.model}"
+    thick = f"the plate is {1e3 * (v.scene.barrier.thickness or 0.0):g} mm thick; " if plate else ""
+    return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
+
+
+def _half(here: Change, name: str) -> str:
+    """Return the half-width of a share in per cent, if it is known; for one body that of all plastic work."""
+    total = here.errors.get("plastic") if name.startswith("plastic_") else None
+    error = here.errors.get(name, total)
+    return "" if error is None else f" ± {100 * error:.2g}"
+
+
+def _heating(here: Change) -> str:
+    """Return what can heat the contact."""
+    energy = here.free.energy
+    skin, friction = energy.skin, or_none(energy.friction) or 0.0
+    if not isinstance(skin, Unknown):
+        alone = isinstance(energy.skin_rod, Unknown) or isinstance(energy.skin_barrier, Unknown)
+        of = "the softer body" if alone else "both bodies"
+        share = f"{100 * skin:.0f}{_half(here, 'skin')} %"
+        return f"{share} can heat the contact (friction, and plastic work of {of} down to 0.1 mm)"
+    plastic = or_none(energy.plastic) or 0.0
+    return (
+        f"{100 * friction:.0f} % (friction alone) to {100 * (friction + plastic):.0f} % (with all plastic "
+        "work) can heat the contact"
+    )
+
+
+def basis(v: Verdict) -> tuple[Line, ...]:
+    """Return what the verdict rests on: title and sentence."""
+    free, stiff = v.here.free, v.here.stiff
+    return (
+        ("case", case_sentence(v.scene)),
+        ("T1/tau and gamma", f"{v.screening.sentence}."),
+        ("with vibration", _motion(free)),
+        ("the same scene with a rod that cannot vibrate", _motion(stiff)),
+        ("fidelity", f"{v.fidelity}. {v.here.source}"),
+        ("heat of the contact", _heat(free)),
+        *_other_angles(v),
+        _friction(v),
+        *(("note", note) for note in v.notes),
+    )
+
+
+def _heat(run: Outcome) -> str:
+    """Return how hot the contact becomes, or why that is not known."""
+    heat = run.heat
+    if isinstance(heat.power, Unknown):
+        elsewhere = " (--fidelity solid)" if run.provenance.fidelity == "modal" else ""
+        return f"not known: {heat.power.reason}{elsewhere}."
+    if isinstance(heat.temperature, Unknown):
+        return f"the mean temperature of the patch is {heat.temperature.reason}."
+    spot = (
+        f"What single spots reach is {heat.bound.reason}"
+        if isinstance(heat.bound, Unknown)
+        else f"No spot exceeds {heat.bound:.0f} K, under the assumptions of the report"
+    )
+    return (
+        f"the patch reaches {heat.temperature:.0f} K in the mean, by friction alone. {spot}. The error of "
+        "this mesh is not known: finer elements may give more. Method: conduction of heat into both bodies "
+        "(Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035)."
+    )
+
+
+def case_sentence(scene: Scene) -> str:
+    """Return the scene in one sentence: rod, material, barrier, impact."""
+    rod, impact = scene.projectile, scene.impact
+    return (
+        f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {_materials(rod)}, "
+        f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {struck(scene.barrier)}, "
+        f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
+        f"{scene.surface.friction:g} ({scene.surface.state})."
+    )
+
+
+def struck(barrier: Barrier) -> str:
+    """Return what is struck: layers and material, of a plate its thickness and support."""
+    layers = "".join(f"{1e3 * one.thickness:g} mm of {one.material.name} on " for one in barrier.layers)
+    if barrier.thickness is None:
+        return f"{layers}{barrier.material.name}"
+    support = "free underneath" if barrier.bends else "bonded to a base"
+    return f"{layers}a plate of {1e3 * barrier.thickness:g} mm of {barrier.material.name} ({support})"
+
+
+def _materials(rod: ProjectileSpec) -> str:
+    """Return the material, of a rod of segments each with its end, m from the tip."""
+    parts = [f"{one.material.name} to {1e3 * one.to:g} mm" for one in rod.segments]
+    return ", ".join(parts) or rod.material.name
+
+
+def _form(rod: ProjectileSpec) -> str:
+    if rod.shape is None:
+        round_nose = rod.tip == "B" and isclose(2 * rod.tip_radius, rod.diameter)
+        return "hemispherical nose" if round_nose else f"tip {rod.tip}"
+    return rod.shape.name if isinstance(rod.shape, NamedShape) else "mesh" if rod.own_mesh else "profile"
+
+
+def _motion(run: Outcome) -> str:
+    return (
+        f"e {known(run.restitution.edge.e):.3f}, mu {known(run.restitution.mu):.3f}, Omega "
+        f"{known(run.motion.Omega):.3g} rad/s, E_r {100 * known(run.energy.rigid):.3g} % of E_0."
+    )
+
+
+def _other_angles(v: Verdict) -> Iterator[Line]:
+    if v.elsewhere is not None:
+        error = v.elsewhere.source if v.fidelity == "solid" else "Its error is the same."
+        yield "other inclinations", f"by the reduced model at every 5 degrees. {error}"
+    angles, why = v.not_known
+    if angles:
+        listed = ", ".join(f"{degrees(angle):.0f}" for angle in angles)
+        yield (
+            "not known",
+            f"at {listed} degrees the reduced model gives no answer; at the first of them {why}",
+        )
+
+
+def _friction(v: Verdict) -> Line:
+    surface, title = v.scene.surface, "uncertain friction"
+    ends = f"f from {surface.friction_low:g} to {surface.friction_high:g}"
+    if "friction" not in v.here.free.provenance.effects:
+        return title, "none: the scene has no friction."
+    if surface.friction_low == surface.friction_high:
+        told = (
+            f"f = {surface.friction:g} is stated without an interval and counts as exact; give friction_low "
+            "and friction_high to see what its uncertainty does."
+        )
+        return title, told
+    if v.over_friction is None:
+        told = (
+            f"what {ends} does is not known without the reduced model: assess both ends (surface.friction)."
+        )
+        return title, told
+    low, high = v.over_friction
+    return title, f"over {ends} the reduced model's change of e runs from {low:+.3f} to {high:+.3f}."
+
+
+def not_covered(v: Verdict) -> tuple[str, ...]:
+    """Return what the verdict does not cover: limits of the model, and of what was measured."""
+    validity = v.here.free.validity
+    return (*FIRST_ONLY, *validity.outside, *validity.warnings, *validity.assumptions)
+
+
+def lines_of(titled: Iterable[Sequence[str]], indent: str) -> list[str]:
+    """Return titled sentences as lines of a terminal."""
+    return [line for title, sentence in titled for line in wrapped(f"{title}: {sentence}", indent)]
+
+
+def screening_lines(screening: Screening, scene: str) -> tuple[Line, ...]:
+    """Return the closed-form screening of a scene and the command that gives the verdict on it."""
+    return (
+        ("may rigid theory be used (estimate)", f"{screening.sentence}."),
+        ("the verdict", f"fem-impact assess {scene}"),
+    )
+
+
+def document(v: Verdict, command: str = "fem-impact assess") -> dict[str, Any]:
+    """Return the verdict as plain JSON; ``command`` is that which gives it again."""
+    return {
+        "schema": SCHEMA,
+        "scene": to_dict(v.scene),
+        "scene_digest": digest(v.scene),
+        "versions": installed_versions(),
+        "tolerance": v.tolerance,
+        "fidelity": v.fidelity,
+        "answer": v.answer,
+        "answer_any_angle": v.worst_answer,
+        "here": _change_entry(v.here),
+        "worst": _change_entry(v.worst) if v.worst else None,
+        "not_known_rad": list(v.not_known[0]),
+        "change_of_e_over_friction": list(v.over_friction) if v.over_friction else None,
+        "screening": {
+            "T1_s": v.screening.period,
+            "tau_s": v.screening.duration,
+            "T1_over_tau": v.screening.ratio,
+            "gamma_per_m0_3815": v.screening.gamma,
+            "published": v.screening.published,
+        },
+        "box": [list(line) for line in box(v)],
+        "next_step": f"{command} {v.more}" if v.more else None,
+        "basis": [list(line) for line in basis(v)],
+        "not_covered": list(not_covered(v)),
+        "with_vibration": v.here.free.to_dict(),
+        "without_vibration": v.here.stiff.to_dict(),
+    }
+
+
+def _or_null(half: float) -> float | None:
+    """Return a half-width, None where it is not known."""
+    return half if half < inf else None
+
+
+def _change_entry(change: Change) -> dict[str, Any]:
+    return {
+        "angle_rad": change.angle,
+        "change_of_e": change.value,
+        "band": _or_null(change.band),
+        "rests_on": change.models,
+        "E_vib_over_E_0": change.E_vib,
+        "E_vib_band": _or_null(change.E_vib_band),
+        "energy_rests_on": change.model,
+        "errors_over_E_0": dict(change.errors),
+        "source": change.source,
+    }

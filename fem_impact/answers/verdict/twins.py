@@ -1,0 +1,51 @@
+"""A scene beside its twin: the same contact under a rod that cannot vibrate, at any inclination."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import cos, hypot, sin
+
+from fem_impact.case.choose import active
+from fem_impact.case.effects.registry import NAMES, grounded
+from fem_impact.errors import SceneError
+from fem_impact.scene.types import Scene
+
+VIBRATION = "vibration"
+ROUNDING = 1e-9  # of angles, rad
+UNFELT = "contact-heating"
+"""It watches the motion, which does not feel it: the twin has no need of it."""
+
+
+def twins(scene: Scene) -> tuple[Scene, Scene]:
+    """Return the scene with a rod that vibrates, and the same scene with one that cannot.
+
+    Both have the effects that the scene calls for; vibration is in the first one even where the scene would
+    leave it out as small, because its size is the question. No field is kept of either, and the heat of the
+    contact is followed in the first one alone.
+
+    Raises
+    ------
+    SceneError
+        A spin lifts the contact point off the barrier.
+    """
+    on = {*active(scene), VIBRATION}
+    free = tuple(name for name in NAMES if name in on)
+    stiff = tuple(grounded([name for name in free if name not in (VIBRATION, UNFELT)]))
+    plain = replace(scene, measured=None, save=replace(scene.save, frames=0))
+    return replace(plain, effects=free), replace(plain, effects=stiff)
+
+
+def inclined(scene: Scene, angle: float) -> Scene:
+    """Return the scene at another inclination, rad: rod and velocity are turned together, the spin stays.
+
+    Raises
+    ------
+    SceneError
+        The turned velocity points up the slope, as no scene's may.
+    """
+    impact = scene.impact
+    speed, way = hypot(impact.v_n, impact.v_t), angle + impact.beside
+    if way < -ROUNDING:
+        raise SceneError("would point up the slope, as no scene's velocity may.", key="impact.v_t")
+    turned = replace(impact, angle=angle, v_n=-speed * cos(way), v_t=min(-speed * sin(way), 0.0))
+    return replace(scene, impact=turned, measured=None)

@@ -1,0 +1,102 @@
+"""Yielding of the rod's tip (J2, isotropic hardening)."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import atan, sqrt
+from typing import TYPE_CHECKING
+
+from fem_impact.case.effects.slots import Effect, ModelSpec, bodies_of
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import LIMIT_PRESSURE, contact_estimate
+
+if TYPE_CHECKING:
+    from fem_impact.physics.hardening import Hardening
+    from fem_impact.scene.material import Material
+    from fem_impact.scene.types import Scene
+
+
+DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
+SOURCE = (
+    "first yield of a Hertzian contact below the surface (Johnson 1985, eq 6.9) or, with friction, on it "
+    "(sec 7.1); the other body's limit pressure 2.8 sigma_y caps the pressure"
+)
+
+
+def first_yield_ratio(scene: Scene, material: Material, other: Material) -> float:
+    """Return the peak pressure over that of first yield, min(1.6, 1/(sqrt(3) f)) sigma_y.
+
+    The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
+    """
+    bodies, peak = bodies_of(scene), _peak(scene, other)
+    first = min(DEEP, 1 / (sqrt(3) * bodies.f)) if bodies.f > 0 else DEEP
+    return peak / (first * material.yield_stress)
+
+
+def buried_yield_ratio(scene: Scene, material: Material, depth: float) -> float:
+    """Return von Mises' stress over the yield stress of a material under layers, at ``depth``, m.
+
+    Stresses are those of Hertz's contact on a body of the first layer alone (Johnson 1985, eq 3.45).
+    """
+    size = contact_estimate(replace(bodies_of(scene), rod_yields=False, barrier_yields=False))
+    z, nu = depth / sqrt(size.a_t * size.a_b), scene.barrier.struck.nu
+    across = (1 + nu) * (1 - z * atan(1 / z)) - 0.5 / (1 + z * z)
+    stress = abs(1 / (1 + z * z) - across) * _peak(scene, scene.projectile.material)
+    return stress / material.yield_stress
+
+
+def _peak(scene: Scene, other: Material) -> float:
+    """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
+    bodies = bodies_of(scene)
+    peak = 1.5 * contact_estimate(replace(bodies, rod_yields=False, barrier_yields=False)).pressure
+    if bodies.compliant:
+        peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
+    return peak
+
+
+def hardening_of(material: Material) -> Hardening:
+    """Return the hardening law of a material: linear by its modulus, or through ultimate stress or hardness.
+
+    Raises
+    ------
+    SceneError
+        If the material never yields, no power law reaches the ultimate stress, or the hardness stands for
+        less than the yield stress.
+    """
+    from fem_impact.physics.hardening import hardness_hardening, linear_hardening, power_hardening
+
+    if not material.yields:
+        remedy = "Give it, or leave the effect by which the body yields out of effects."
+        raise SceneError("is not stated.", key=f"yield_stress of {material.name}", remedy=remedy)
+    if material.hardening is not None:
+        return linear_hardening(material.yield_stress, material.hardening)
+    key, value = "ultimate_stress", f"{material.ultimate_stress / 1e6:g} MPa"
+    try:
+        if material.law == "hardness" and material.hardness is not None:
+            key, value = "hardness", f"{material.hardness:g}"
+            return hardness_hardening(material.E, material.yield_stress, material.hardness)
+        return power_hardening(material.E, material.yield_stress, material.ultimate_stress)
+    except ValueError as error:
+        raise SceneError(str(error), key=f"{key} of {material.name}", value=value) from None
+
+
+def number(scene: Scene) -> float:
+    """Return the peak pressure over that of first yield in the rod."""
+    return first_yield_ratio(scene, scene.projectile.material, scene.barrier.struck)
+
+
+def fill(scene: Scene, spec: ModelSpec) -> None:
+    """Let the rod's tip yield."""
+    spec.rod_law = hardening_of(scene.projectile.material)
+
+
+EFFECT = Effect(
+    "rod-plasticity",
+    "The rod's tip yields (J2, hardening through yield and ultimate stress).",
+    "The rod stays elastic.",
+    "peak pressure over first yield of the rod, (v/v_yield)^0.4",
+    1.0,
+    SOURCE,
+    number,
+    fill,
+)

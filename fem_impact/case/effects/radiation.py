@@ -1,0 +1,67 @@
+"""Waves that leave through the outer boundary of a meshed barrier, by dashpots beside its springs."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from fem_impact.case.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import approach
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+
+
+def number(scene: Scene) -> float:
+    """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter).
+
+    Nothing leaves a block with fixed faces, and what leaves a plate that bends are bending waves.
+    """
+    if scene.barrier.boundary == "fixed" or scene.barrier.bends:
+        return 0.0
+    plate = scene.barrier.material
+    return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
+
+
+def harm(scene: Scene) -> Harm:
+    """Return the radiated share as the change of e; the vibration of the rod does not change."""
+    return Harm(number(scene), 0.0)
+
+
+def fill(scene: Scene, spec: ModelSpec) -> None:
+    """Put dashpots on the outer boundary of the block.
+
+    Raises
+    ------
+    SceneError
+        If the block's faces are fixed, or the barrier is a plate that bends.
+    """
+    if scene.barrier.bends:
+        raise SceneError(
+            "lets bending waves out, which are the effect plate-bending, not radiation into a half-space.",
+            key="barrier.support",
+            value="infinite",
+            remedy='Leave "radiation" out of the effects.',
+        )
+    if scene.barrier.boundary == "fixed":
+        raise SceneError(
+            "lets no waves out, which radiation asks for.",
+            key="barrier.boundary",
+            value="fixed",
+            remedy='Leave "radiation" out of the effects, or "fixed" out of the scene.',
+        )
+    spec.radiating = True
+
+
+EFFECT = Effect(
+    "radiation",
+    "Waves leave the barrier block through its outer boundary.",
+    "Waves stay in the barrier block.",
+    "1.127 (v_n/c0)^0.6, radiated share of an elastic strike",
+    0.01,
+    "Hunter 1957, J. Mech. Phys. Solids 5, 162; a share w of the normal energy changes e by about w",
+    number,
+    fill,
+    harm,
+    needs=("barrier-elastic", "barrier-elastoplastic"),
+)

@@ -1,0 +1,117 @@
+"""All effects, in the order in which a scene names them and in which they fill a model."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from fem_impact.case.effects import (
+    barrier,
+    damping,
+    friction,
+    gravity,
+    heating,
+    plasticity,
+    plate,
+    radiation,
+    rate,
+    rotation,
+    skin,
+    vibration,
+)
+from fem_impact.case.effects.slots import Effect
+from fem_impact.errors import SceneError, did_you_mean
+from fem_impact.plugins import added, wrong
+
+EFFECTS: dict[str, Effect] = {
+    effect.name: effect
+    for effect in (
+        vibration.EFFECT,
+        friction.EFFECT,
+        plasticity.EFFECT,
+        barrier.RIGID,
+        barrier.ELASTIC,
+        barrier.ELASTOPLASTIC,
+        rate.EFFECT,
+        skin.EFFECT,
+        radiation.EFFECT,
+        plate.EFFECT,
+        gravity.EFFECT,
+        rotation.EFFECT,
+        damping.EFFECT,
+        heating.EFFECT,
+    )
+}
+
+for _name, _effect in added("effects", EFFECTS).items():
+    if not isinstance(_effect, Effect) or _effect.name != _name:
+        raise wrong(_name, "effects", "is no Effect of that name.")
+    EFFECTS[_name] = _effect
+
+AUTO = "auto"
+NAMES = tuple(EFFECTS)
+BARRIERS = tuple(
+    effect.name for effect in (barrier.RIGID, barrier.ELASTIC, barrier.ELASTOPLASTIC)
+)  # by strength
+_REMEDY = (
+    f'Write "auto", ["auto", "NAME", "-NAME"], or the list of all effects wanted, out of: {", ".join(NAMES)}.'
+)
+
+
+def grounded(names: Sequence[str]) -> list[str]:
+    """Drop effects whose prerequisite (`Effect.needs`) is absent."""
+    return [name for name in names if not EFFECTS[name].needs or set(names) & set(EFFECTS[name].needs)]
+
+
+def check_effects(names: Sequence[str]) -> None:
+    """Refuse what a scene states of its effects.
+
+    Raises
+    ------
+    SceneError
+        For an unknown or repeated name, no barrier or two, or an effect without what it needs.
+    """
+    for name in names:
+        _check_known(name, AUTO in names)
+    plain = [name.removeprefix("-") for name in names]
+    if len(set(plain)) < len(plain):
+        raise SceneError("names an effect twice.", key="effects", value=list(names))
+    _check_barrier(names, AUTO in names)
+    _check_needs(names)
+
+
+def _check_known(name: str, auto: bool) -> None:
+    allowed = (*NAMES, *((AUTO, *(f"-{n}" for n in NAMES if n not in BARRIERS)) if auto else ()))
+    if name in allowed:
+        return
+    hint = did_you_mean(name, allowed, _REMEDY)
+    if not auto and name.removeprefix("-") in NAMES:
+        hint = f'Only a list with "auto" leaves effects out: write ["auto", "{name}"].'
+    if name.removeprefix("-") in BARRIERS:
+        hint = "There is always a barrier: name the one wanted."
+    raise SceneError("is not an effect.", key="effects", value=name, remedy=hint)
+
+
+def _check_barrier(names: Sequence[str], auto: bool) -> None:
+    barriers = [name for name in names if name in BARRIERS]
+    if len(barriers) > 1 or not (barriers or auto):
+        raise SceneError(
+            f"names {len(barriers)} barriers and needs exactly one.",
+            key="effects",
+            value=list(names),
+            remedy=f"Choose one of {', '.join(BARRIERS)}.",
+        )
+
+
+def _check_needs(names: Sequence[str]) -> None:
+    """Refuse a named effect whose prerequisites are switched off, or not named in a list without auto."""
+    barrier = next((name for name in names if name in BARRIERS), None)
+    for name, needs in ((effect.name, effect.needs) for effect in EFFECTS.values() if effect.needs):
+        excluded = [n for n in needs if f"-{n}" in names or (n in BARRIERS and barrier not in (None, n))]
+        missing = excluded if AUTO in names else [n for n in needs if n not in names]
+        if name in names and len(missing) == len(needs):
+            raise SceneError(
+                f'names "{name}", which means nothing without {" or ".join(needs)}.',
+                key="effects",
+                value=list(names),
+                remedy=f'Leave out "{name}", or add {" or ".join(needs)}.',
+            )

@@ -1,0 +1,285 @@
+"""Say where a scene leaves what was measured, so that nobody reads a prediction as a comparison."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection
+from dataclasses import replace
+
+from fem_impact.case.choose import resolved
+from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.plates import is_wider, thin_plate
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import (
+    FLAT,
+    ContactBodies,
+    contact_estimate,
+    lands_flat,
+    projectile,
+    round_contact,
+    touch_point,
+)
+from fem_impact.scene import library
+from fem_impact.scene.impact import BESIDE
+from fem_impact.scene.types import Scene
+from fem_impact.scene.units import format_quantity
+from rigid import Faceted, Projectile
+
+BESIDE_AXIS = 1e-3  # of the diameter, within which an upright body stands over its mass centre
+FLAT_FACE = "a flat face that lands all at once"
+# Smallest and largest of the 13 measured sets (Tables 2 to 6 of the paper), SI units.
+LENGTHS = (0.08, 0.24)
+DIAMETER = 0.019
+SPEEDS = (1.30, 6.10)
+ANGLES = (math.radians(17.0), math.radians(60.0))
+TIPS = {("A", 0.007), ("B", 0.003)}
+
+
+def validity(bodies: ContactBodies, active: Collection[str], meshed_through: bool = False) -> tuple[str, ...]:
+    """Return one sentence for each way in which the scene lies outside the measured range.
+
+    ``meshed_through`` says whether a plate that bends is meshed through its thickness.
+    """
+    scene = bodies.scene
+    speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
+    sentences = (
+        _outside(scene.projectile.length, LENGTHS, "length", "length"),
+        _section(scene),
+        _segments(scene),
+        _own_mesh(scene),
+        _layers(scene),
+        thin_plate(bodies, meshed_through),
+        _outside(speed, SPEEDS, "speed", "speed"),
+        _outside(scene.impact.angle, ANGLES, "angle", "angle"),
+        _fall(scene),
+        "outside the measured range: the measured rods did not turn before impact"
+        if scene.impact.omega
+        else "",
+        _steels(scene),
+        _barrier(scene),
+        _surface(scene, active),
+        _idealised(active),
+    )
+    return tuple(sentence for sentence in sentences if sentence)
+
+
+def _outside(value: float, ends: tuple[float, float], name: str, dimension: str) -> str:
+    low, high = (format_quantity(end, dimension) for end in ends)
+    slack = 1e-9 * abs(ends[1])
+    if ends[0] - slack <= value <= ends[1] + slack:
+        return ""
+    stated = format_quantity(value, dimension)
+    return f"outside the measured range: {name} {stated}, measured {low} to {high}"
+
+
+def _section(scene: Scene) -> str:
+    rod = scene.projectile
+    if (
+        rod.is_rod
+        and math.isclose(rod.diameter, DIAMETER)
+        and any(rod.tip == tip and math.isclose(rod.tip_radius, radius) for tip, radius in TIPS)
+    ):
+        return ""
+    return "outside the measured range: measured were 19 mm rods with a 7 mm nose (A) or a 3 mm edge (B)"
+
+
+def _segments(scene: Scene) -> str:
+    if not scene.projectile.segments:
+        return ""
+    return "idealised: only the first segment of the projectile may yield; the others and joints stay elastic"
+
+
+def _own_mesh(scene: Scene) -> str:
+    if scene.projectile.own_mesh is None:
+        return ""
+    return (
+        "idealised: the flat facets of the user's mesh are the projectile's surface; cells that are split at "
+        "the contact keep them"
+    )
+
+
+def _layers(scene: Scene) -> str:
+    if not scene.barrier.layers:
+        return ""
+    return (
+        "idealised: layers are bonded; closed formulas (for the choice of effects, and for the restitution "
+        "of the rigid fidelity) know the first layer alone"
+    )
+
+
+def _fall(scene: Scene) -> str:
+    impact = scene.impact
+    if abs(impact.beside) <= BESIDE or impact != scene.relative:
+        return ""
+    beside, angle = (math.degrees(a) for a in (abs(impact.beside), impact.angle))
+    return (
+        f"outside the measured range: the rod moves {beside:.2g} deg beside its axis, which no dropped "
+        f"rod does: v_n and v_t are those of another angle than {angle:.4g} deg"
+    )
+
+
+def _steels(scene: Scene) -> str:
+    known = library.materials()
+    plates = {material.name for _, material in scene.barrier.strata}
+    same = scene.projectile.material == known["rod-steel"] and scene.barrier.material == known["plate-steel"]
+    same = same and len(plates) == 1
+    return "" if same else "outside the measured range: other materials than the measured steels"
+
+
+def _barrier(scene: Scene) -> str:
+    barrier = scene.barrier
+    ways = {
+        "had layers": barrier.layers,
+        "bent": barrier.bends,
+        "was free": barrier.mass is not None,
+        "moved": barrier.v_n or barrier.v_t,
+    }
+    found = [f"no measured barrier {way}" for way, stated in ways.items() if stated]
+    return f"outside the measured range: {' or '.join(found)}" if found else ""
+
+
+def _surface(scene: Scene, active: Collection[str]) -> str:
+    known = library.surfaces().values()
+    bare = replace(scene.surface, skin_depth=None, skin_factor=None)
+    if "friction" not in active or bare in known:
+        return ""
+    f, source = scene.surface.friction, scene.surface.source
+    return f"friction f = {f:g} is not the value of a shipped state of the surface ({source})"
+
+
+def _idealised(active: Collection[str]) -> str:
+    real = ("friction", "rod-plasticity", "barrier-elastoplastic")
+    missing = [name for name in real if name not in active]
+    return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
+
+
+def require_shallow(bodies: ContactBodies) -> None:
+    """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
+    scene = bodies.scene
+    depth, radius = contact_estimate(bodies).depth, scene.projectile.diameter / 2
+    if depth > radius:
+        raise SceneError(
+            f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
+            f"({radius * 1e3:.3g} mm): the whole end would flow and break, which the model does not hold.",
+            key="impact.v_n",
+            value=f"{scene.impact.v_n:.3g} m/s",
+            remedy="Give a lower speed or stronger materials.",
+        )
+
+
+def require_still(scene: Scene, fidelity: str) -> None:
+    """Refuse a barrier that turns where a fidelity has none (SceneError)."""
+    if scene.barrier.inertia is not None and fidelity == "rigid":
+        raise SceneError(
+            "lets the barrier turn, which the rigid fidelity does not hold.",
+            key="barrier.inertia",
+            value=f"{scene.barrier.inertia:.3g} kg m2",
+            remedy="Use the fidelity modal or solid, or leave out inertia and centre_depth.",
+        )
+
+
+def require_point(bodies: ContactBodies) -> None:
+    """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
+    scene, body = bodies.scene, projectile(bodies.scene)
+    if isinstance(body, Projectile):
+        return
+    segments, (rho, touch) = scene.projectile.segments, touch_point(scene)
+    if segments and touch > segments[0].to:
+        raise SceneError(
+            f"ends before the place that touches first, {touch * 1e3:.3g} mm from the tip.",
+            key="projectile.segments[1].to",
+            value=f"{segments[0].to * 1e3:.3g} mm",
+            remedy="The first segment must touch: only its material may yield.",
+        )
+    if isinstance(body, Faceted):
+        _require_tip(bodies, body)
+        return
+    size, (length, height) = round_contact(bodies), body.flank(scene.impact.angle)
+    flat = FLAT * size.depth
+    if length <= 2 * size.a_t or height >= flat:
+        return
+    deep = f"{size.depth * 1e3:.2g} mm"
+    if rho == body.face == 0 and not body.tip_curvature(scene.impact.angle):
+        raise SceneError(
+            f"ends in a point that would be pressed in by {deep}, as far as to its flanks.",
+            key="projectile",
+            remedy="Round the point, or cut it off flat.",
+        )
+    steeper = math.degrees(math.asin(min(1.0, flat / length)) - math.asin(height / length))
+    turned = f"Change it by {steeper:.2g} deg or more."
+    slower = f"Give a lower speed or stronger materials: the tip is pressed in by {deep}."
+    raise SceneError(
+        f"lays a flank of {length * 1e3:.3g} mm along the barrier: a line would touch, not a point.",
+        key="impact.angle",
+        value=f"{math.degrees(scene.impact.angle):.4g} deg",
+        remedy=turned if flat < length else slower,
+    )
+
+
+def require_round(scene: Scene, fidelity: str) -> None:
+    """Refuse a face that lands flat where e would follow from the law of a round contact (SceneError)."""
+    if fidelity == "solid" or (fidelity == "rigid" and scene.restitution is not None):
+        return
+    if lands_flat(scene):
+        stated = ", or state restitution" if fidelity == "rigid" else ""
+        raise SceneError(
+            f"is that of {FLAT_FACE}, but {fidelity} takes the contact law of a round tip.",
+            key="impact.angle",
+            value="0 deg",
+            remedy=f"Use --fidelity solid{stated}.",
+        )
+
+
+def require_turned(scene: Scene, asked: str) -> None:
+    """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
+    if scene.projectile.own_mesh is not None:
+        raise SceneError(
+            f"is fixed, but {asked} rests on meshes of the program's own.",
+            key="projectile.mesh",
+            value=scene.projectile.own_mesh.path,
+            remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
+        )
+
+
+def not_reduced(scene: Scene) -> str:
+    """Return what the reduced model has no answer for, empty where it has one."""
+    found = {
+        "a projectile with a mesh of its own": scene.projectile.own_mesh,
+        "a barrier of layers": scene.barrier.layers,
+        FLAT_FACE: lands_flat(scene),
+        "a plate thinner than its contact is wide": is_wider(bodies_of(resolved(scene))),
+    }
+    return next((what for what, there in found.items() if there), "")
+
+
+def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:
+    """Refuse what the model cannot do with a user's mesh as the projectile (SceneError)."""
+    if scene.projectile.own_mesh is None:
+        return
+    value: object = list(scene.effects)
+    if scene.accuracy.target is not None:
+        require_turned(scene, "accuracy.target")
+    if fidelity == "modal":
+        problem = (
+            "has no radii of a smooth tip and no outline, on which the reduced model's contact law rests."
+        )
+        remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
+        raise SceneError(problem, key="projectile.mesh", value=scene.projectile.own_mesh.path, remedy=remedy)
+    if fidelity == "solid" and "machined-skin" in active:
+        problem = (
+            "has the effect machined-skin, but how deep a node lies under a mesh's facets is not computed."
+        )
+        raise SceneError(problem, key="effects", value=value, remedy='Add "-machined-skin" to effects.')
+
+
+def _require_tip(bodies: ContactBodies, body: Faceted) -> None:
+    """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
+    scene, size = bodies.scene, round_contact(bodies)
+    value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
+    if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
+        problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."
+        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)
+    _, flank, _ = body.spread(scene.impact.angle, FLAT * size.depth, (size.R1, size.R2))
+    if flank > 2 * size.a_t:
+        problem = f"lays {flank * 1e3:.3g} mm of the mesh's side along the barrier: no tip would touch."
+        raise SceneError(problem, key="impact.angle", value=value, remedy=remedy)

@@ -1,0 +1,115 @@
+"""What was measured before and ships with the package: costs, shares of the effects; this machine's pace."""
+
+from __future__ import annotations
+
+import csv
+import json
+import time
+from collections.abc import Callable, Iterable, Mapping
+from functools import cache
+from importlib.resources import files
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+
+UNDER = {"barrier-elastoplastic": "barrier-elastic"}  # a block that yields is an elastic one first
+
+
+def expected_shares(active: Iterable[str]) -> dict[str, float]:
+    """Return the share of a step of each of the effects in a model that was measured.
+
+    What each effect added to a step of t5b at its default mesh (``tests/benchmarks/effect_cost.py``) over the
+    sum of what the effects of this model added, and the rigid rod's nose: so about for other meshes.
+    """
+    added = _added()
+    took = {name: added[name] + added.get(UNDER.get(name, ""), 0.0) for name in active if name in added}
+    whole = added["nose"] + sum(took.values())
+    return {name: time / whole for name, time in took.items()}
+
+
+@cache
+def _added() -> Mapping[str, float]:
+    """Return what each effect adds to a step, us; the first rung is the nose on a rigid plane."""
+    text = _data("effect-cost.csv")
+    steps = [(row["added"], float(row["step_us"])) for row in csv.DictReader(text.splitlines())]
+    rises = {name: max(now - before, 0.0) for (_, before), (name, now) in pairwise(steps)}
+    return {"nose": steps[0][1], "barrier-rigid": 0.0, **rises}
+
+
+@cache
+def estimate_errors() -> Mapping[str, tuple[int, float, float]]:
+    """Return, by effect, what the quick estimates of its size were held to, and how far they were off.
+
+    Number of measured sets with finite elements without the effect, and the largest errors of the change of e
+    and of E_vib over E_0 (``tests/benchmarks/estimate_error.py``).
+    """
+    rows = csv.DictReader(_data("estimate-error.csv").splitlines())
+    return {
+        row["effect"]: (int(row["scenes"]), float(row["e"]), float(row["E_vib_over_E_0"])) for row in rows
+    }
+
+
+@cache
+def summary() -> dict[str, Any]:
+    """Return the costs that ship with the package, as `fem-impact cost paper` stored them."""
+    return dict(json.loads(_data("summary.json")))
+
+
+@cache
+def reduced_table() -> tuple[dict[str, Any], ...]:
+    """Return each stored scene's quantities by reduced model and finite elements; None: not known.
+
+    Scenes from which constants of the reduced model were read are left out.
+    """
+    rows = csv.DictReader(_data("reduced.csv").splitlines())
+    read = ({key: _value(key, text) for key, text in row.items()} for row in rows)
+    return tuple(row for row in read if row["group"] != "calibration")
+
+
+def _value(key: str, text: str) -> float | str | None:
+    return text if key in ("name", "group") else float(text) if text else None
+
+
+def _data(name: str) -> str:
+    return files("fem_impact.case").joinpath("data", name).read_text(encoding="utf-8")
+
+
+NODES = (21, 21, 41)  # of the box whose stiffness pattern is multiplied: about 54 000 unknowns
+
+
+@cache
+def yardsticks() -> dict[str, float]:
+    """Return triad bandwidth, GB/s, and a CSR product, ns an element-step, on one core."""
+    return {"triad_GB_per_s": round(_triad(), 2), "csr_ns_per_element_step": round(_csr(), 1)}
+
+
+def _least(work: Callable[[], object], repeats: int) -> float:
+    """Return the smallest wall time of one call, s: the others were disturbed."""
+    times = []
+    for _ in range(repeats):
+        begun = time.perf_counter()
+        work()
+        times.append(time.perf_counter() - begun)
+    return min(times)
+
+
+def _triad() -> float:
+    b, c, a = (np.ones(4_000_000) for _ in range(3))
+
+    def triad() -> None:
+        np.multiply(c, 3.0, out=a)
+        np.add(a, b, out=a)
+
+    return 5 * 8 * len(a) / _least(triad, 7) / 1e9
+
+
+def _csr() -> float:
+    """Time K x for the pattern of trilinear elements on a box, three unknowns a node."""
+    pattern = sp.identity(1, format="csr")
+    for n in NODES:
+        pattern = sp.kron(pattern, sp.diags([1.0, 1.0, 1.0], [-1, 0, 1], shape=(n, n)), format="csr")
+    K = sp.kron(pattern, np.ones((3, 3)), format="csr")
+    x, elements = np.ones(K.shape[0]), np.prod([n - 1 for n in NODES])
+    return float(_least(lambda: K @ x, 9) / elements * 1e9)

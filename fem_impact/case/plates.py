@@ -1,0 +1,152 @@
+"""Plates that are free underneath: which are meshed through their thickness, and what is refused."""
+
+from __future__ import annotations
+
+import math
+
+from fem_impact.arrays import Array
+from fem_impact.case.effects.barrier import compliance_share
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import ContactBodies, contact_estimate
+from fem_impact.physics.plate import contact_time, least_span, zener_number
+from fem_impact.scene.fields import ACCURACY
+from fem_impact.scene.types import Scene
+
+# of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
+THIN = 0.02
+ROWS = 2  # of cells through a plate at least: their lumped masses turn with 1.5 times the plate's inertia
+FLATTEST = 0.5  # least height of the rows of a plate over their width
+MOST_ZENER = 2.0  # up to it `contact_time` is no shorter than Zener's contact, see there
+MOST_CELLS = 3e5  # of a plate before refinement: about 1 GB
+LEAST_ACROSS = next(key.low for key in ACCURACY if key.key == "across")
+NONE = "No accuracy.across does: give a thicker plate or a blunter projectile."
+
+
+def half_space_error(bodies: ContactBodies) -> float:
+    """Return how far e may be off, of itself, where a plate that bends is a half-space under the contact.
+
+    Under a force P a half-space has u = (1 + nu)(3 - 2 nu) P / (2 pi E h) of its give deeper than h on the
+    axis (Boussinesq), and Hertz' contact of the radius a gives 3 (1 - nu^2) P / (4 E a) in all (Johnson 1985,
+    Contact Mechanics, sections 3.2 and 4.2, doi:10.1017/CBO9781139171731). e changes by half of the share of
+    the compliance that is wrong (Thornton 1997, doi:10.1115/1.2787319). It is 0 for other barriers.
+    """
+    return 0.5 * _deeper(bodies) * compliance_share(bodies.scene) if bodies.compliant else 0.0
+
+
+def _deeper(bodies: ContactBodies) -> float:
+    barrier = bodies.scene.barrier
+    if not barrier.bends or barrier.thickness is None:
+        return 0.0
+    nu = barrier.material.nu
+    return 2 * (3 - 2 * nu) / (3 * math.pi * (1 - nu)) * 0.5 * contact_width(bodies) / barrier.thickness
+
+
+def contact_width(bodies: ContactBodies) -> float:
+    """Return the estimated width of the contact, m: twice the geometric mean of its semi-axes."""
+    size = contact_estimate(bodies)
+    return 2 * math.sqrt(size.a_t * size.a_b)
+
+
+def is_thin(bodies: ContactBodies) -> bool:
+    """Return whether finite elements mesh a plate through its thickness, as it is thin beside the contact."""
+    return "plate-bending" in bodies.scene.effects and half_space_error(bodies) > THIN
+
+
+def is_wider(bodies: ContactBodies) -> bool:
+    """Return whether the contact is wider than a plate that bends is thick, so that it is no local one."""
+    barrier, size = bodies.scene.barrier, contact_estimate(bodies)
+    return barrier.bends and 2 * max(size.a_t, size.a_b) > (barrier.thickness or math.inf)
+
+
+def thin_plate(bodies: ContactBodies, meshed_through: bool) -> str:
+    """Tell where a plate that bends is thin beside the contact, and what that means for e."""
+    error, h = half_space_error(bodies), bodies.scene.barrier.thickness
+    if h is None or error <= THIN:
+        return ""
+    width = contact_width(bodies)
+    told = f"the contact is {width * 1e3:.2g} mm wide, {width / h:.2g} of the plate's thickness"
+    if meshed_through:
+        return (
+            f"idealised: {told}, so the plate is meshed through it and bends by itself: its impedance is not "
+            f"added, which would count the bending twice{_hardly_left(bodies, h)}"
+        )
+    return (
+        f"idealised: {told}, and taken as that of a half-space, which gives {100 * _deeper(bodies):.2g} % of "
+        f"its way deeper than the plate is thick: e may be off by some {100 * error:.2g} %"
+    )
+
+
+def _hardly_left(bodies: ContactBodies, thickness: float) -> str:
+    """Tell where a plate takes nearly all the energy, so that the contact lasts until the time is up."""
+    number = zener_number(bodies)
+    if number <= MOST_ZENER:
+        return ""
+    enough = 1e3 * thickness * math.sqrt(number / MOST_ZENER)  # the impedance grows as its square
+    return (
+        f". Zener's lambda is {number:.2g}: beyond {MOST_ZENER:g} the rod hardly leaves the plate (by his "
+        "equation e is below 0.021), and the run may end without e, at max_time. A thickness of "
+        f"{enough:.2g} mm brings lambda down to {MOST_ZENER:g}"
+    )
+
+
+def rows_through(scene: Scene, base: float) -> int:
+    """Return how many rows of cells of width ``base``, m, lie through a plate."""
+    assert scene.barrier.thickness is not None, "a plate that bends has a thickness"
+    return max(ROWS, round(scene.barrier.thickness / base))
+
+
+def require_plate(bodies: ContactBodies, meshed_through: bool) -> None:
+    """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
+    barrier, estimate = bodies.scene.barrier, contact_estimate(bodies)
+    if not barrier.bends or barrier.thickness is None:
+        return
+    if is_wider(bodies) and not meshed_through:
+        width = 2 * max(estimate.a_t, estimate.a_b)
+        raise SceneError(
+            f"is less than the width of the contact, {width * 1e3:.2g} mm: it is no local one, and the plate "
+            "would bulge under it.",
+            key="barrier.thickness",
+            value=f"{barrier.thickness * 1e3:.3g} mm",
+            remedy=f"Give a thicker plate or a lower speed{_by_mesh(bodies)}.",
+        )
+    if barrier.span is not None and barrier.span < (least := least_span(bodies)):
+        raise SceneError(
+            f"is so short that bending waves are back after less than the contact of about "
+            f"{contact_time(bodies) * 1e6:.2g} us.",
+            key="barrier.span",
+            value=f"{barrier.span * 1e3:.3g} mm",
+            remedy=f"Give at least {least * 1e3:.3g} mm.",
+        )
+
+
+def _by_mesh(bodies: ContactBodies) -> str:
+    return ", or use --fidelity solid, which meshes the plate through its thickness" * is_thin(bodies)
+
+
+def require_plate_mesh(scene: Scene, base: float, block: tuple[Array, Array]) -> None:
+    """Refuse a plate whose rows would be too flat, or whose mesh has too many cells (SceneError).
+
+    ``base``, m, is the width of its cells, ``block`` its lowest and highest corner before rows are moved.
+    """
+    h, across = scene.barrier.thickness, scene.across
+    assert h is not None, "a plate that bends has a thickness"
+    flat = h / (ROWS * base)
+    least = 2 * math.ceil(0.5 * across * FLATTEST / flat)
+    if flat < FLATTEST:
+        raise SceneError(
+            f"leaves {ROWS} rows of cells, {base * 1e3:.3g} mm wide, only {flat:.2g} as high as wide.",
+            key="barrier.thickness",
+            value=f"{h * 1e3:.3g} mm",
+            remedy=f"Give accuracy.across = {least} or more, or a thicker plate.",
+        )
+    low, high = block
+    cells = math.prod((high - low) / base)
+    if cells > MOST_CELLS:
+        most = 2 * math.floor(0.5 * across * (MOST_CELLS / cells) ** (1 / 3))
+        raise SceneError(
+            f"needs a mesh of {cells:.2g} cells: to {-low[0] * 1e3:.3g} mm beside the contact, from where "
+            f"bending waves are back after it, with cells {base * 1e3:.3g} mm wide.",
+            key="barrier.thickness",
+            value=f"{h * 1e3:.3g} mm",
+            remedy=f"Give accuracy.across = {most} or less." if most >= max(least, LEAST_ACROSS) else NONE,
+        )

@@ -1,0 +1,335 @@
+"""How large a run of the solid fidelity becomes: elements, memory, steps and time, before a mesh is made.
+
+The elements follow from the volumes of body and fine zone at each level of splitting, as the mesher splits
+them (`meshes.refine`). What an element costs was fitted to the 39 sizes of runs of the 13 measured sets that
+ship with the package (``case/data/summary.json``; ``tests/case/test_size.py`` repeats the comparison):
+elements within a quarter, memory within a third, steps and time within a factor of two.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import cos, sin, sqrt
+from pathlib import Path
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.case.cells import posture
+from fem_impact.case.effects.slots import ModelSpec
+from fem_impact.case.layers import block_of, moved_rows
+from fem_impact.case.zones import BUFFER, Zones, lowest_point, zones_of
+from fem_impact.errors import SceneError
+from fem_impact.physics.beam import bending_period, max_time
+from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
+from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import OwnMesh
+from fem_impact.scene.types import Scene
+from fem_impact.scene.units import format_quantity
+from meshes import cell_moments, thin_skin_rise
+from meshes.refine import reach
+from meshes.section import SLIMMEST, WIDEST, bored_section, section
+from rigid import Faceted, Turned
+
+SAMPLES = 20  # points along each edge of a box whose share inside the rod is counted
+SPLIT = 7  # elements that a cell adds when it is split into eight
+# mean step of a run over that in which a wave crosses the finest edge: cells that flow are squeezed
+SMALLEST = {"rod": 0.52, "barrier": 0.54}
+UNTIL_APART = 1.43, 0.67  # contact times and bending periods, after which a second contact comes, in a run
+BASE, PER_ELEMENT = 1.9e8, 4.0e3  # bytes: of the program, and of an element
+FILL = 1700.0  # bytes over n^4/3, for the factor of the stiffness of a rod of n elements
+# the same of a user's mesh, which has no slices; its factor takes OWN_FILL sqrt(min(n, PIECE w^3)) bytes an
+# element, w cells across: the largest resident memory (VmHWM) of processes that did nothing else, for half
+# boxes of 7 000 to 32 000 cells, as long as wide and five times longer (tests/benchmarks/own_mesh_memory.py)
+OWN_BASE, OWN_ELEMENT, OWN_FILL, PIECE = 2.4e8, 9.5e3, 330.0, 1.15
+# bytes of that for an entry of the lower factor (boxes of 7 000 to 16 000 cells, 13.6 to 14), which SuperLU
+# numbers by 32 bits
+ENTRY, MOST_ENTRIES = 14.0, 2.0**31
+ELASTIC, YIELDING = 30e-9, 270e-9  # s of a step for an element that cannot yield, and for one that may
+LARGER = 'Give a mesh of larger cells, or let it not vibrate: effects = ["auto", "-vibration"].'
+SETUP = 4.0e-4  # s for an element: mesh, assembly, modes
+
+
+@dataclass(frozen=True, slots=True)
+class RunSize:
+    """About what a run of the solid fidelity takes.
+
+    Attributes
+    ----------
+    rod, barrier, yielding : elements of each body, and those of both that may yield
+    step : time step, s
+    steps, most_steps : until the rod is expected to be apart, and until ``accuracy.max_time``
+    memory : bytes
+    time, most_time : processor time of as many steps and the set-up, s, where the stored runs were measured
+    """
+
+    rod: int
+    barrier: int
+    yielding: int
+    step: float
+    steps: int
+    most_steps: int
+    memory: float
+    time: float
+    most_time: float
+
+
+def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
+    """Return about what a run of these bodies takes with these fine zones."""
+    scene = bodies.scene
+    rod = _rod_elements(scene, zones, slots.vibrating)
+    barrier = _block_elements(scene, zones) if slots.meshed_barrier else 0.0
+    yielding = _yielding_rod(scene, zones) if slots.rod_law else 0.0
+    yielding += _yielding_block(zones) if any(slots.barrier_laws) else 0.0
+    step, latest = _step(scene, zones, slots), max_time(bodies)
+    touch, swing = UNTIL_APART
+    apart = touch * contact_estimate(bodies).duration + swing * bending_period(scene)
+    elements = rod + barrier
+    each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
+    steps, most = min(apart, latest) / step, latest / step
+    return RunSize(
+        *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
+        memory=_memory(scene, slots.vibrating, rod, barrier),
+        time=SETUP * elements + each * steps,
+        most_time=SETUP * elements + each * most,
+    )
+
+
+def about(value: float) -> str:
+    """Return a number of at least one with two significant digits."""
+    return f"{float(f'{value:.2g}'):,.0f}".replace(",", " ")
+
+
+def machine_memory() -> float:
+    """Return the bytes of memory that a process may use here: the machine's, or its group's limit."""
+    whole = float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+    try:
+        return min(whole, float(Path("/sys/fs/cgroup/memory.max").read_text()))
+    except (OSError, ValueError):  # no such file, or "max"
+        return whole
+
+
+def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> None:
+    """Refuse a mesh that needs more memory than the machine has, or too large a factor (SceneError)."""
+    size, there = run_size(slots, bodies, zones), machine_memory()
+    if slots.vibrating:
+        _require_factor(bodies.scene, size.rod)
+    if size.memory <= there:
+        return
+    problem = (
+        f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
+        f"GB of memory; this machine has {about(there / 1e9)} GB."
+    )
+    finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.scene.projectile.own_mesh
+    if mesh is not None and not finest:
+        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
+    none = "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
+    value = format_quantity(zones.tip_size, "length")
+    raise SceneError(problem, key="accuracy.tip_size", value=value, remedy=finest or none)
+
+
+def _require_factor(scene: Scene, rod: int) -> None:
+    """Refuse a user's mesh of so many elements that vibrate that the solver cannot number their factor."""
+    mesh = scene.projectile.own_mesh
+    if mesh is None or (entries := _own_factor(mesh, rod) / ENTRY) <= MOST_ENTRIES:
+        return
+    problem = (
+        f"makes about {about(rod)} elements, whose modes need a factor of some {entries:.2g} entries; the "
+        f"solver numbers {MOST_ENTRIES:.2g} of them at most."
+    )
+    raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
+
+
+def _memory(scene: Scene, vibrates: bool, rod: float, barrier: float) -> float:
+    """Return the bytes that elements of ``rod`` and ``barrier`` take, and the modes of one that vibrates."""
+    if scene.projectile.own_mesh is None:
+        return float(BASE + PER_ELEMENT * (rod + barrier) + FILL * rod ** (4 / 3))
+    elements = OWN_ELEMENT * rod + PER_ELEMENT * barrier
+    return OWN_BASE + elements + (_own_factor(scene.projectile.own_mesh, rod) if vibrates else 0.0)
+
+
+def _own_factor(mesh: OwnMesh, rod: float) -> float:
+    """Return the bytes of the factor for the modes of a user's mesh; split cells lie close together."""
+    cells = cell_moments(mesh.half())
+    section = (cells.high - cells.low).sum() / (cells.high.max() - cells.low.min())  # of the half, in cells
+    stated, piece = len(cells.low), PIECE * (2 * section) ** 1.5
+    return float(OWN_FILL * (stated * sqrt(min(stated, piece)) + max(rod - stated, 0.0) ** 1.5))
+
+
+def require_rest(scene: Scene, zones: Zones) -> None:
+    """Refuse a user's mesh that cannot vibrate and is all nose (SceneError)."""
+    body = scene.projectile.body()
+    if (
+        isinstance(body, Faceted)
+        and not (body.parts[:, 0] >= _body_start(scene, zones, zones.rod_boxes)).any()
+    ):
+        raise no_rest()
+
+
+def no_rest() -> SceneError:
+    """Return the refusal of a body whose cells are split up to its end, without vibration."""
+    return SceneError(
+        "leaves nothing behind the fine zone of its contact that could move as one rigid body.",
+        key="projectile",
+        remedy='Let it vibrate: effects = ["auto", "vibration"].',
+    )
+
+
+def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
+    """Return the remedy by a larger tip size, nothing where none fits."""
+    for levels in range(len(zones.rod) - 1, 0, -1):
+        size = float(f"{zones.rod_base / 2**levels:.2g}")
+        accuracy = replace(bodies.scene.accuracy, tip_size=size)
+        coarser = replace(bodies, scene=replace(bodies.scene, accuracy=accuracy))
+        if run_size(slots, coarser, zones_of(coarser)).memory <= there:
+            return f"Give at least {format_quantity(size, 'length')}."
+    return ""
+
+
+def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
+    """Return about the stable step, s, with the scene's safety factor."""
+    shares = {"rod": scene.projectile.material}
+    if slots.meshed_barrier:
+        shares["barrier"] = max((m for _, m in scene.barrier.strata), key=_wave_speed)
+    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size * _flat(scene, zones)}
+    crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
+    return scene.accuracy.step / 0.9 * sqrt(scene.accuracy.mass_scaling) * min(crossing)
+
+
+def _flat(scene: Scene, zones: Zones) -> float:
+    """Return the height of the cells of a plate that is meshed through over their width, at most 1."""
+    if not zones.edges:
+        return 1.0
+    before, after = moved_rows(scene, zones)
+    return min(1.0, float(after[-1] / before[-1]))
+
+
+def _wave_speed(steel: Material) -> float:
+    """Return the speed of pressure waves, m/s; of bar waves times 2 where the material is incompressible."""
+    return min(pressure_speed(steel), 2.0 * sqrt(steel.E / steel.rho))
+
+
+def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tuple[float, Array, Array]]:
+    """Yield for each level the edge of the cells that are split, and the box that they fill.
+
+    ``boxes`` are the lowest and highest corners, m, of the zone of each level.
+    """
+    for level in range(1, len(boxes) + 1):
+        edge = base / 2 ** (level - 1)
+        # cells that touch stand out by half
+        margins = [
+            float(reach(edge, level, finest, BUFFER)) + edge / 2 for finest in range(level, len(boxes) + 1)
+        ]
+        pairs = list(zip(boxes[level - 1 :], margins, strict=True))
+        low = np.min([corner - margin for (corner, _), margin in pairs], axis=0)
+        yield edge, low, np.max([corner + margin for (_, corner), margin in pairs], axis=0)
+
+
+def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
+    """Return the elements of half the rod, without slices if it cannot vibrate."""
+    boxes, end = zones.rod_boxes, scene.projectile.length
+    count = _coarse_elements(scene, end if vibrating else min(_body_start(scene, zones, boxes), end))
+    for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
+        count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
+    return count
+
+
+def _coarse_elements(scene: Scene, end: float) -> float:
+    """Return the elements of half the coarse body from its tip up to a height, m."""
+    rod, across = scene.projectile, scene.across
+    if rod.own_mesh is not None:
+        return float((cell_moments(rod.own_mesh.half()).low < end).sum())
+    z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
+    body = rod.body()
+    radius = rod.diameter / 2 if rod.is_rod else np.maximum(body.radius(z), 0.05 * rod.diameter)
+    if rod.bore:
+        assert isinstance(body, Turned), "a bore is stated for a turned body"
+        _, outer, inner = rod.wall()
+        half = bored_section(across, float(np.clip(inner[0] / outer[0], SLIMMEST, WIDEST)))
+        cells = len(half.quads) - np.where(body.inner_radius(z) > 0, half.bore_quads, 0)
+    else:
+        cells = np.full(SAMPLES, len(section(across).quads))
+    return float(end * np.mean(cells * across / (2 * radius)))
+
+
+def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
+    """Return about the height, m, at which the slices begin: a cell above all that is split."""
+    alpha, foot = posture(scene), float(lowest_point(scene)[2])
+    tops = (
+        high[2] * cos(alpha)
+        + max(-low[0], high[0]) * sin(alpha)
+        + float(reach(1.4 * zones.base, 1, level, BUFFER))
+        for level, (low, high) in enumerate(boxes, 1)
+    )
+    return max(foot + max(tops, default=0.0) + 1.5 * zones.base, scene.projectile.diameter / 3)
+
+
+def _grid(low: Array, high: Array) -> Array:
+    """Return points (k, 3) evenly over a box."""
+    ends = (np.arange(SAMPLES) + 0.5) / SAMPLES
+    axes = [a + (z - a) * ends for a, z in zip(low, high, strict=True)]
+    return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
+
+
+def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
+    """Return points (k, 3), m, of a box that lie in the half rod b >= 0, and the volume there, m3."""
+    low = np.array([low[0], 0.0, low[2]])
+    points, alpha, body = _grid(low, high), posture(scene), projectile(scene)
+    t, b, n = points.T
+    x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
+    rho_0, _, z_0 = lowest_point(scene)
+    rho, z = np.hypot(x + rho_0, b), z + z_0
+    inside = points[body.holds(rho, z)]
+    return inside, float(np.prod(high - low)) * len(inside) / len(points)
+
+
+def _block_elements(scene: Scene, zones: Zones) -> float:
+    """Return the elements of the half block: boxes about the fine zone, cut off at the block's sides."""
+    boxes, (bottom, top) = zones.barrier_boxes, block_of(scene, zones)
+    count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
+    for edge, lowest, highest in _split_boxes(zones.base, boxes):
+        sides = np.minimum(highest, top) - np.maximum(lowest, bottom)
+        count += SPLIT * float(np.prod(sides)) / edge**3
+    return count
+
+
+def _yielding_rod(scene: Scene, zones: Zones) -> float:
+    """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
+    radii = _radii(zones, zones.tip_size)
+    points, volume = _inside_rod(scene, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
+    return _yielding(
+        points, volume / max(len(points), 1), zones.reach, radii, zones.rod_base, zones.rod_boxes
+    )
+
+
+def _yielding_block(zones: Zones) -> float:
+    """Return the split cells of half the block that reach into the ellipsoid; thin rows stand for depth."""
+    radii = _radii(zones, zones.barrier_size)
+    radii[2] += thin_skin_rise(zones.skin_rows) * zones.barrier_size
+    low, high = np.array([-radii[0] - zones.along, 0.0, -radii[2]]), np.array([*radii[:2], 0.0])
+    points = _grid(low, high)
+    each = float(np.prod(high - low)) / len(points)
+    return _yielding(points, each, zones.along, radii, zones.base, zones.barrier_boxes)
+
+
+def _radii(zones: Zones, edge: float) -> Array:
+    """Return the radii (3,), m, of the ellipsoid whose cells may yield; cells that touch it count half."""
+    return 1.1 * np.array(zones.half) + edge / 2
+
+
+def _yielding(
+    points: Array, each: float, along: float, radii: Array, base: float, boxes: list[tuple[Array, Array]]
+) -> float:
+    """Return the split cells at ``points`` (k, 3), each of which stands for a volume, m3, in an ellipsoid.
+
+    The ellipsoid is drawn out by ``along``, m, towards -t.
+    """
+    place = points.copy()
+    place[:, 0] += np.clip(-place[:, 0], 0.0, along)
+    inside = points[np.sum((place / radii) ** 2, axis=1) < 1]
+    edges = np.full(len(inside), np.inf)
+    for edge, low, high in _split_boxes(base, boxes):
+        edges[((inside >= low) & (inside <= high)).all(axis=1)] = edge / 2
+    return float(np.sum(each / edges**3))

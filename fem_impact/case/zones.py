@@ -1,0 +1,251 @@
+"""Where the mesh of a scene is fine, and how fine: from the estimated contact, before any mesh is made."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import ceil, cos, floor, log2, sqrt
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.case.cells import body_cell, contact_radius, levels_of, posture, rod_cell
+from fem_impact.case.plates import is_thin
+from fem_impact.errors import SceneError
+from fem_impact.physics.contact import (
+    FLAT,
+    ContactBodies,
+    ContactEstimate,
+    approach,
+    barrier_conforms,
+    contact_estimate,
+    nearly_flat,
+    projectile,
+    sliding,
+)
+from fem_impact.physics.hardening import Skin
+from fem_impact.physics.plate import plate_waves
+from fem_impact.scene.types import Scene
+from meshes import thin_skin_rise
+from rigid import Faceted
+
+Corners = tuple[Array, Array]  # lowest and highest corner of a box, m
+Extents = tuple[float, float, float]
+Shares = tuple[tuple[float, Extents], ...]  # least cells over the contact's radius, shares along t, b, n
+
+# half-widths of the fine zone in units of the estimated contact ellipse's semi-axes (depth: of their
+# geometric mean), and how many cells it has at least
+ALONG, AROUND, DEPTH, FEWEST = 2.2, 1.5, 2.0, 4.0
+# so much further along t an edge flows that is pressed in, by how much wider it is then, at most: without it
+# strains of .2 (pipe at 40 degrees) to 1.2 (sharp aluminium rod at 60 degrees) reached the end of its zone
+EDGE = 2.0
+# Shares of the fine zone along t, b and n in which cells are split to a level, by how many of its cells lie
+# over the radius of the contact at least: small cells pay where steel flows most, right under the contact
+BARRIER_SHARES: Shares = ((6.0, (0.5, 0.7, 0.2)), (3.0, (0.7, 0.9, 0.45)))
+ROD_SHARES: Shares = ((3.0, (0.8, 1.0, 0.3)),)
+BUFFER = 1  # whole cells between two levels
+# the rod slides down the slope while it touches: length of the fine strip over depth and tan(alpha), and
+# at least over the half-width along t, because the surface is dragged along in front of a rod that sticks
+# (at 17 to 37 degrees, where 1.1 to 1.3 half-widths left the edge flowing by up to 0.5 %)
+SLIDE, DRAG = 5.0, 0.6
+# under a tip that sticks the plate shears in a layer some 0.05 mm thick: so many rows at its skin are drawn
+# together, each to half the height of the next; the first no lower than a share of the indentation, or it is
+# crushed at the edge of the contact
+SKIN_ROWS, LOW = 3, 0.1
+
+
+@dataclass(frozen=True, slots=True)
+class Zones:
+    """Sizes of the fine zones about the contact, m.
+
+    Attributes
+    ----------
+    base : edge of the barrier's cells; rod_base : of the rod's, at the contact, the same but in a user's mesh
+    rod, barrier : for each level of splitting, the coarsest first: half-widths along t and b, depth along n
+    half : those of the zone in which cells may yield
+    reach : how far the rod's zone follows its face along -t; along : how far the barrier's goes along -t
+    conforming : the barrier flows under all of the contact, so that its surface takes the rod's form
+    skin_rows : thin rows of cells at the top of the barrier
+    edges : how far a plate that is meshed through its thickness goes beyond its fine zone; else 0
+    """
+
+    base: float
+    rod_base: float
+    rod: tuple[Extents, ...]
+    barrier: tuple[Extents, ...]
+    half: Extents
+    reach: float
+    along: float
+    conforming: bool
+    skin_rows: int
+    edges: float = 0.0
+
+    @property
+    def tip_size(self) -> float:
+        """Return the finest cell edge of the rod, m."""
+        return self.rod_base * 0.5 ** len(self.rod)
+
+    @property
+    def barrier_size(self) -> float:
+        """Return the finest cell edge of the barrier along t and b, m."""
+        return self.base * 0.5 ** len(self.barrier)
+
+    @property
+    def rise(self) -> float:
+        """Return by how much, m, the barrier's bottom rises where the rows at its skin are drawn together."""
+        return thin_skin_rise(self.skin_rows) * self.barrier_size
+
+    @property
+    def whole(self) -> Corners:
+        """Return the box, from the contact along t, b and n, in which the rod may touch and yield."""
+        t, b, n = self.half
+        return np.array([-t - self.reach, 0.0, -n]), np.array([t, b, n])
+
+    @property
+    def rod_boxes(self) -> list[Corners]:
+        """Return the box of the rod's zone of each level, from the contact along t, b and n."""
+        return [
+            (np.array([-t - self.reach, 0.0, -self.rod_base / 2**level]), np.array([t, b, n]))
+            for level, (t, b, n) in enumerate(self.rod, 1)
+        ]
+
+    @property
+    def barrier_boxes(self) -> list[Corners]:
+        """Return the box of each level of the barrier, before its rows at the skin are drawn together."""
+        return [self._below(extents) for extents in self.barrier]
+
+    def block(self, margin: float) -> Corners:
+        """Return the corners of the barrier's block, ``margin``, m, wider than the zone that may yield."""
+        low, high = self._below(self.half)
+        return low - np.array([margin, 0.0, margin]), high + np.array([margin, margin, 0.0])
+
+    def _below(self, extents: Extents) -> Corners:
+        """Return the box of a zone of the barrier; it goes on towards -t under the path of the rod."""
+        t, b, n = extents
+        return np.array([-t - self.along, 0.0, -n - self.rise]), np.array([t, b, 0.0])
+
+
+def zones_of(bodies: ContactBodies) -> Zones:
+    """Return the fine zones of two bodies that touch, wide enough for each material of a layered barrier."""
+    scene, size = bodies.scene, widest_contact(bodies)
+    base, rod_base = body_cell(scene), rod_cell(scene)
+    levels, below = levels_of(bodies)
+    reach, wide = face_reach(bodies)
+    conforming = barrier_conforms(bodies)
+    rows = skin_rows(bodies, base / 2**below) if conforming and bodies.f > 0 else 0
+    graded = scene.accuracy.fine_zone == "graded"
+
+    def extents(h: float, shares: Shares) -> Extents:
+        t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares if graded else ()))
+        return t, max(b, wide), n
+
+    return Zones(
+        base,
+        rod_base,
+        rod=tuple(extents(rod_base / 2**level, ROD_SHARES) for level in range(1, levels + 1)),
+        barrier=tuple(extents(base / 2**level, BARRIER_SHARES) for level in range(1, below + 1)),
+        half=extents(min(rod_base / 2**levels, base / 2**below), ()),
+        reach=reach,
+        along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
+        conforming=conforming,
+        skin_rows=rows,
+        edges=plate_waves(bodies)[1] if is_thin(bodies) else 0.0,
+    )
+
+
+def widest_contact(bodies: ContactBodies) -> ContactEstimate:
+    """Return the largest extents of the contact estimated with each material of a layered barrier alone."""
+    first = contact_estimate(bodies)
+    others = [
+        contact_estimate(_alone(bodies, number)) for number in range(1, len(bodies.scene.barrier.strata))
+    ]
+    sizes = [first, *others]
+    return replace(
+        first, **{key: max(getattr(size, key) for size in sizes) for key in ("depth", "a_t", "a_b")}
+    )
+
+
+def _alone(bodies: ContactBodies, number: int) -> ContactBodies:
+    barrier = replace(bodies.scene.barrier, layers=(), material=bodies.scene.barrier.strata[number][1])
+    return replace(bodies, scene=replace(bodies.scene, barrier=barrier))
+
+
+def lowest_point(scene: Scene) -> Array:
+    """Return the rod's lowest point (3,) in the frame of its mesh, m."""
+    rho, z = projectile(scene).contact_point(posture(scene))
+    return np.array([float(rho), 0.0, float(z)])
+
+
+def share_of(cells: float, shares: Shares) -> Extents:
+    """Return the share of the fine zone for a level of which ``cells`` lie over the radius of the contact."""
+    return next((share for least, share in shares if cells >= least), (1.0, 1.0, 1.0))
+
+
+def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0)) -> Extents:
+    """Return a zone's extents along t (each side), b and n, m; ``h``, m, is the edge of its cells."""
+    along = ALONG * min(size.wider, EDGE)
+    whole = along * size.a_t, AROUND * size.a_b, DEPTH * sqrt(size.a_t * size.a_b)
+    t, b, n = (max(part * length, FEWEST * h) for part, length in zip(share, whole, strict=True))
+    return t, b, n
+
+
+def skin_rows(bodies: ContactBodies, h: float) -> int:
+    """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick.
+
+    A hardened layer in force may ask for more of them, until the first row is no higher than it.
+    """
+    halvings = floor(log2(h / (LOW * contact_estimate(bodies).depth)))
+    layer = bodies.scene.surface.skin_depth if "machined-skin" in bodies.scene.effects else None
+    most = SKIN_ROWS if layer is None else max(SKIN_ROWS, ceil(log2(h / layer)))
+    return min(max(halvings, 0), most)
+
+
+def face_reach(bodies: ContactBodies) -> tuple[float, float]:
+    """Return how far the fine zone must follow a face that is pressed in, along -t and to the side, m.
+
+    Of a turned body's face all may touch where it nearly lies flat, else as much as is pressed in. Of a body
+    with facets, all nodes no higher than `FLAT` depths of the estimated indentation may that lie further out
+    than those of the round surface of the estimate.
+    """
+    size, alpha = contact_estimate(bodies), posture(bodies.scene)
+    body, rho = projectile(bodies.scene), float(lowest_point(bodies.scene)[0])
+    if isinstance(body, Faceted):
+        reach, _, side = body.spread(alpha, FLAT * size.depth, (size.R1, size.R2))
+        return reach, side + AROUND * size.a_b if side > 0 else 0.0
+    return (2 * rho * cos(alpha), rho) if nearly_flat(bodies.scene, size.depth) else (2 * size.shift, 0.0)
+
+
+def slide(bodies: ContactBodies, t: float) -> float:
+    """Return how far the fine zone of a barrier goes on down the slope, m, ``t`` m its half-width there."""
+    down = -sliding(bodies.scene)
+    if down <= 0:
+        return 0.0
+    way = SLIDE * contact_estimate(bodies).depth * down / max(approach(bodies.scene), 1e-6)
+    return max(way, DRAG * t)
+
+
+def require_layer(skin: Skin, zones: Zones) -> None:
+    """Refuse a hardened layer that fills no Gauss point of the barrier's first row (SceneError)."""
+    row = zones.barrier_size * 0.5**zones.skin_rows
+    enough = 1.4 * skin.depth * 2**zones.skin_rows
+    if skin.depth < row / 2:
+        raise SceneError(
+            f"is thinner than half the first row of the barrier's cells, {row * 1e3:.2g} mm: the mesh does "
+            "not resolve it.",
+            key="surface.skin_depth",
+            value=f"{skin.depth * 1e3:.3g} mm",
+            remedy=f"Give accuracy.barrier_size at most {enough * 1e3:.2g} mm, or leave machined-skin out.",
+        )
+
+
+def require_fine_zone(bodies: ContactBodies) -> None:
+    """Refuse a tip without a fine zone where one is needed (SceneError)."""
+    scene, (levels, below) = bodies.scene, levels_of(bodies)
+    split = below if scene.projectile.own_mesh else levels  # a mesh of its own is as fine as the user made it
+    if split == 0 and (bodies.compliant or bodies.rod_yields):
+        base = body_cell(scene)
+        raise SceneError(
+            "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
+            key="accuracy.tip_size",
+            value=f"{(scene.accuracy.tip_size or base) * 1e3:.3g} mm",
+            remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
+        )

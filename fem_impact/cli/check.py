@@ -1,0 +1,363 @@
+"""The command ``check``: all that a scene states and calls for, without computing it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli.common import changed_scene, headed, print_json, say_kept, shown_path, size_text
+from fem_impact.cli.options import Options
+from fem_impact.errors import UsageError
+from fem_impact.progress import clock_text
+from fem_impact.scene.fields import DEFAULTS
+from fem_impact.scene.inputs import STATED, inputs, materials_of
+from fem_impact.scene.library import intervals_of
+from fem_impact.scene.types import Scene
+from fem_impact.scene.write import digest, to_dict, to_toml
+from fem_impact.tables.table import Table
+from fem_impact.tables.text import plain, wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.case.plan import Plan
+    from fem_impact.case.size import RunSize
+    from fem_impact.outcome.groups import EffectChoice
+
+
+DRAWINGS = (".png", ".svg")
+LONG = "--long prints every value with its source, flow stresses, and what leaving out each effect changes."
+
+
+def check(options: Options) -> int:
+    """Print what a scene comes to; its full statement, with every value and source, on demand."""
+    from fem_impact.case.plan import plan
+
+    drawing = _drawing_path(options)
+    planned = plan(changed_scene(options.scene, options.changes))
+    tests = _tests_lines(planned.scene)  # before the rest: a file of tests that cannot be read is refused
+    say_kept(planned.scene, options)
+    if drawing:
+        _draw(planned.scene, drawing)
+    statement = _statement(planned)
+    if options.json:
+        print_json(statement)
+    else:
+        place = Path(options.scene).parent
+        sys.stdout.write(_long(planned, statement, place) if options.long else _short(planned, statement))
+        sys.stdout.write("".join(f"{line}\n" for line in tests))
+        sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
+    return 0
+
+
+def _tests_lines(scene: Scene) -> list[str]:
+    """Return how many tests a scene names, and what is doubtful about them."""
+    from fem_impact.run.tests import count, doubtful_tests, tests_of
+
+    tests = tests_of(scene)
+    if tests is None:
+        return []
+    lines = wrapped(f"measured: {count(tests)} tests, {shown_path(str(scene.measured))}")
+    return lines + [line for one in doubtful_tests(scene) for line in wrapped(f"warning: {one}")]
+
+
+def _drawing_path(options: Options) -> Path | None:
+    """Return where the drawing goes, None where none is wanted."""
+    path = options.drawing
+    if path is not None and path.suffix not in DRAWINGS:
+        remedy = "Name a file such as projectile.svg or projectile.png."
+        raise UsageError("is no picture that can be drawn.", key="--drawing", value=str(path), remedy=remedy)
+    return path
+
+
+def _draw(scene: Scene, path: Path) -> None:
+    from fem_impact.figures.outline import draw
+    from fem_impact.physics.contact import projectile, touch_point
+
+    body, segments = projectile(scene), scene.projectile.segments
+    parts = [(part.to, part.material.name) for part in segments]
+    draw(body, touch_point(scene), parts or [(body.length, scene.projectile.material.name)], path)
+
+
+def _statement(planned: Plan) -> dict[str, Any]:
+    scene = planned.scene
+    return {
+        "scene": to_dict(scene),
+        "digest": digest(scene),
+        "body": _body_entry(scene),
+        "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
+        "intervals": _intervals(scene),
+        "flow_stress_Pa": _flow_stresses(planned),
+        "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
+        "effects": [_flat(choice.told(choice.share)) for choice in planned.choices],
+        "validity": list(planned.validity),
+        "warnings": list(planned.warnings),
+        "size": None if scene.accuracy.target else _size_entry(planned.size),
+    }
+
+
+def _body_entry(scene: Scene) -> dict[str, float]:
+    """Return what the theories need of the projectile, SI."""
+    from fem_impact.physics.beam import bending_period, stretching_period
+    from fem_impact.physics.contact import arms, principal_radii, projectile, touch_point
+    from fem_impact.physics.wall import ovalling_period
+
+    body, (d_c, d_d), (rho, z) = projectile(scene), arms(scene), touch_point(scene)
+    R1, R2 = principal_radii(scene)
+    return {
+        "mass_kg": body.mass,
+        "centre_m": body.z_c,
+        "inertia_kg_m2": body.mass * body.k2,
+        "k2_m2": body.k2,
+        "length_m": body.length,
+        "diameter_m": body.diameter,
+        "gamma": body.gamma,
+        "touch_z_m": z,
+        "touch_rho_m": rho,
+        "R1_m": R1,
+        "R2_m": R2,
+        "d_c_m": d_c,
+        "d_d_m": d_d,
+        "bending_period_s": bending_period(scene),
+        "stretching_period_s": stretching_period(scene),
+        "ovalling_period_s": ovalling_period(scene.projectile),
+    }
+
+
+def _body_lines(body: dict[str, float]) -> Iterable[str]:
+    """Return the projectile's numbers in words."""
+    mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
+    return (
+        f"mass {body['mass_kg']:.4g} kg, centre {mm['centre_m']:.4g} mm from the tip, moment of inertia "
+        f"about it {body['inertia_kg_m2']:.4g} kg m2",
+        f"touches first {mm['touch_z_m']:.3g} mm from the tip, {mm['touch_rho_m']:.3g} mm off the axis, "
+        f"with radii {mm['R1_m']:.3g} mm (meridian) and {mm['R2_m']:.3g} mm (around)",
+        f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
+        f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
+        f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)"
+        f"{_ovalling(body['ovalling_period_s'])}",
+        f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
+    )
+
+
+def _ovalling(period: float) -> str:
+    return f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
+
+
+def _drawing(scene: Scene) -> list[str]:
+    from fem_impact.figures.outline import drawn
+    from fem_impact.physics.contact import projectile, touch_point
+
+    joints = [part.to for part in scene.projectile.segments[:-1]]
+    return drawn(projectile(scene), touch_point(scene), joints)
+
+
+def _size_entry(size: RunSize) -> dict[str, float]:
+    return {
+        "elements_rod": size.rod,
+        "elements_barrier": size.barrier,
+        "elements_yielding": size.yielding,
+        "step_s": size.step,
+        "steps": size.steps,
+        "most_steps": size.most_steps,
+        "memory_MB": round(size.memory / 1e6),
+        "cpu_s": size.time,
+        "most_cpu_s": size.most_time,
+    }
+
+
+def _flat(choice: EffectChoice) -> dict[str, Any]:
+    from fem_impact.outcome.keys import keys_of
+
+    return {key.name: key.of(choice) for key in keys_of(type(choice))}
+
+
+def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
+    """Return the intervals that a shipped material states for its values, by dotted key."""
+    return {
+        f"{place}.{key}": interval
+        for place, metal in materials_of(scene).items()
+        for key, interval in intervals_of(metal.name).items()
+    }
+
+
+def _flow_stresses(planned: Plan) -> dict[str, dict[str, float]]:
+    """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
+    from fem_impact.case.metals import RATES, flow_stresses
+
+    by_body = flow_stresses(planned.scene, planned.active)
+    rates = ["0", *(f"{rate:g}" for rate in RATES)]
+    return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}
+
+
+def _flow_lines(statement: dict[str, Any]) -> list[str]:
+    by_body = statement["flow_stress_Pa"]
+    if not by_body:
+        return []
+    heading = "Flow stress at 8 % plastic strain, MPa, at rest and at strain rates, 1/s"
+    rates = list(next(iter(by_body.values())))
+    rows = [[body, *(f"{stress / 1e6:.0f}" for stress in by_body[body].values())] for body in by_body]
+    table = Table.of(("body", "at rest", *rates[1:]), rows, left=range(1)).terminal()
+    return ["", heading, *(f"  {line}" for line in table.splitlines())]
+
+
+def _long(planned: Plan, statement: dict[str, Any], place: Path) -> str:
+    """Return every value with its source, files as seen from the ``place`` of the scene's file."""
+    lines = [to_toml(planned.scene, place).rstrip(), "", "Sources"]
+    rows = inputs(planned.scene).rows
+    lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in rows if source != STATED)
+    lines += _wrapped(
+        f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
+    )
+    lines += _flow_lines(statement)
+    lines += ["", "Values used where a scene does not state them"]
+    lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
+    lines += ["", "Projectile", *_drawing(planned.scene), *_wrapped(_body_lines(statement["body"]))]
+    lines += ["", "Effects"]
+    lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
+    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
+    return "\n".join([*lines, *_size_lines(planned), *_end_lines(statement)]) + "\n"
+
+
+def _end_lines(statement: dict[str, Any]) -> list[str]:
+    inside = "inside the measured range of speed, angle, rod, steels and surfaces"
+    validity = _wrapped(statement["validity"] or [inside])
+    return ["", "Validity", *validity, "", "The scene is valid; its digest:", statement["digest"]]
+
+
+def _short(planned: Plan, statement: dict[str, Any]) -> str:
+    """Return projectile, barrier and contact, effects with their numbers, size, warnings and validity."""
+    scene = planned.scene
+    lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(scene)]
+    lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
+    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(planned)), "", "Effects"]
+    lines += _wrapped(
+        f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one.told(one.share))}"
+        for one in planned.choices
+        if one.on
+    )
+    off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in planned.choices if not one.on]
+    lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
+    lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
+    lines += [*_size_lines(planned), *_end_lines(statement), ""]
+    return "\n".join([*lines, *wrapped(LONG)]) + "\n"
+
+
+def _material_line(scene: Scene) -> str:
+    rod = scene.projectile
+    parts = [f"{part.material.name} up to {1e3 * part.to:.4g} mm" for part in rod.segments]
+    size = f"{1e3 * rod.length:.4g} mm x {1e3 * rod.diameter:.4g} mm"
+    return f"{size} of {', '.join(parts) or rod.material.name}"
+
+
+def _contact_lines(planned: Plan) -> Iterator[str]:
+    """Return barrier, motion, friction and the estimated contact, and what they say of vibration."""
+    from fem_impact.answers.verdict.screening import screening
+    from fem_impact.physics.contact import contact_estimate
+
+    scene, size = planned.scene, contact_estimate(planned.bodies)
+    tables, layers = to_dict(scene), scene.barrier.layers
+    stated = tables["barrier"].items()
+    more = [f"{key} {value}" for key, value in stated if key not in ("material", "layers")]
+    on = "".join(f"{1e3 * one.thickness:.4g} mm of {one.material.name} on " for one in layers)
+    yield ", ".join([f"{on}{scene.barrier.material.name}", *more])
+    if scene.barrier.thickness and not scene.barrier.bends:
+        yield (
+            "its thickness changes nothing: a plate on a base is computed as a half-space. "
+            'One that is free underneath and bends: barrier.support = "infinite"'
+        )
+    yield ", ".join(f"{key} {value}" for key, value in tables["impact"].items())
+    surface = scene.surface
+    low, high = surface.friction_low, surface.friction_high
+    sure = f"{low:g} to {high:g}" if low < high else "no interval stated: it counts as exact"
+    yield f"friction f {surface.friction:g} ({sure}), {surface.state} surfaces"
+    yield (
+        f"the contact, estimated: {1e3 * size.a_t:.2g} mm x {1e3 * size.a_b:.2g} mm in radius, "
+        f"{1e3 * size.depth:.2g} mm deep, for {1e6 * size.duration:.3g} us"
+    )
+    yield f"{screening(scene).sentence}. The verdict: `fem-impact assess`"
+
+
+def _size_lines(planned: Plan) -> list[str]:
+    if planned.scene.accuracy.target:
+        return []
+    from fem_impact.case.size import about
+
+    size = planned.size
+    sentences = (
+        _cells_line(planned),
+        f"about {size_text(size)} of {plain(size.step * 1e9, 2)} ns ({about(size.most_steps)} if it lasts "
+        f"until max_time), {about(size.memory / 1e6)} MB of memory",
+        f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
+        "machine of the stored costs, within a factor of two there",
+    )
+    return ["", "Size of a run with finite elements", *_wrapped(sentences)]
+
+
+# over the measured sets, means over places of the grid (`fem-impact cost paper`)
+WHICH_FLOWS = (
+    "How much of the plastic work is the rod's is known least: on the measured sets 5 cells over the radius "
+    "gave 60 to 85 % of what 10 cells gave, and what was missing went into the barrier"
+)
+
+
+def _cells_line(planned: Plan) -> str:
+    """Return how fine the mesh is at the contact, and the tip size that the program advises."""
+    from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
+
+    bodies = planned.bodies
+    cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
+    line = (
+        f"about {cells:.2g} cells over the radius of the contact, {contact_radius(bodies) * 1e3:.2g} mm: "
+        f"e and mu within some {100 * error / cells:.2g} %"
+    )
+    if cells < advised:
+        line += f". {advice(bodies)} for {100 * error / advised:.2g} %"
+    return f"{line}. {WHICH_FLOWS}" if len(bodies.yielding) == 2 else line
+
+
+def _wrapped(sentences: Iterable[str]) -> list[str]:
+    return [line for sentence in sentences for line in wrapped(sentence, "  ")]
+
+
+def _effect_lines(effect: EffectChoice) -> list[str]:
+    verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
+    clauses = [_decided(effect), _harm(effect), _time(effect)]
+    decision = wrapped("; ".join(clause for clause in clauses if clause), " " * 8, "")
+    return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
+
+
+def _decided(effect: EffectChoice) -> str:
+    number = "not finite" if effect.number is None else f"{effect.number:.2g}"
+    return f"{effect.measure}: {number}, threshold {effect.threshold:g}"
+
+
+def _harm(effect: EffectChoice) -> str:
+    """Return the estimated changes of e and E_vib without the effect, and what the estimate is worth.
+
+    Empty for a barrier that is not in use. Of vibration the verdict says it, by models that resolve it.
+    """
+    from fem_impact.case.choose import UNFELT
+    from fem_impact.case.effects.registry import BARRIERS
+    from fem_impact.case.measured import estimate_errors
+
+    if effect.name in BARRIERS and not effect.on:
+        return ""
+    if effect.name in UNFELT:
+        return "it does not change the motion"
+    if effect.name == "vibration":
+        return "what leaving it out changes: `fem-impact assess`"
+    scenes, e, E_vib = estimate_errors().get(effect.name, (0, 0.0, 0.0))
+    worth = f"was off by up to {e:.1g} and {E_vib:.1g} on {scenes} measured sets"
+    return (
+        f"leaving it out changes e by about {effect.change_of_e:.1g}, E_vib by "
+        f"{effect.change_of_vibration:.1g} of E_0 (quick estimate, "
+        f"{worth if scenes else 'not compared with finite elements'})"
+    )
+
+
+def _time(effect: EffectChoice) -> str:
+    if effect.share is None:
+        return ""
+    share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
+    return f"it takes {share} % of the run time"

@@ -1,0 +1,172 @@
+"""The command ``cost``: what accuracy costs in time for a scene, or for all scenes of the paper."""
+
+from __future__ import annotations
+
+import json
+import shlex
+import sys
+from contextlib import closing
+from math import inf
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.cli.common import changed_scene, checked_out, print_json, stated_budget
+from fem_impact.cli.options import Options
+from fem_impact.cli.terminal import chosen_meter
+from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.tables.text import wrapped
+
+if TYPE_CHECKING:
+    from fem_impact.answers.cost.measure import CostStudy
+    from fem_impact.answers.refine.levels import Mesh
+    from fem_impact.answers.report import StudyReport
+    from fem_impact.scene.types import Scene
+
+
+PAPER, PAGE = "paper", "report.html"
+
+
+def cost(options: Options) -> int:
+    """Run a scene with all settings and report errors, costs and the cheapest sufficient setting."""
+    from fem_impact.answers.refine.quantities import chosen
+    from fem_impact.case.limits import require_turned
+
+    asked = [name.strip() for name in options.of.split(",") if name.strip()]
+    target = _share(options.target) if options.target else None
+    budget = stated_budget(options)
+    if options.scene == PAPER and (target or budget):
+        remedy = "Leave them out, or name one scene."
+        raise UsageError("are about one scene.", key="--target, --budget", remedy=remedy)
+    if options.scene == PAPER:
+        return _paper(options, chosen(asked))
+    scene = changed_scene(options.scene, options.changes)
+    require_turned(scene, "a ladder of costs")
+    names, meshes = chosen(asked, scene), _meshes(scene, options.finest)
+    if options.page:
+        raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")
+    out = checked_out(options.out or Path("results") / "cost" / scene.id)
+    from fem_impact.answers.cost.document import text_table
+    from fem_impact.answers.cost.judge import group_sentence
+    from fem_impact.evidence.studies.cost_report import answers, scene_report
+    from fem_impact.files.lock import directory_lock
+
+    with directory_lock(out):
+        study = _measured(scene, out, options, meshes, budget or inf)
+        notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
+    told = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
+    if target is not None:
+        told.append(group_sentence(study.settings, study.quantities, names, target))
+    if options.json:
+        print_json({**study.to_dict(), "advice": told, "notes": notes})
+    else:
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
+        lines = [line for answer in told for line in wrapped(answer)]
+        paths = [f"all quantities: {out / 'cost.txt'}", f"page: {out / PAGE}", f"results: {out}"]
+        sys.stdout.write("\n".join([*lines, "", text_table(study, names), "", *paths]) + "\n")
+    return RunError.exit_code if study.failures else 0
+
+
+def _write(study: CostStudy, report: StudyReport, line: str, out: Path) -> list[str]:
+    """Write the tables of a scene's costs and its page; return what could not be made."""
+    from fem_impact.answers.cost.document import write_cost
+    from fem_impact.answers.report import Request, publish
+    from fem_impact.pages.present import page
+
+    write_cost(study, out)
+    publish(report, Request(out, line=line), study.runs)
+    return page(out)
+
+
+def _line(options: Options, scene: str = "") -> str:
+    words = ["fem-impact", "cost", scene or options.scene]
+    words += [word for change in options.changes for word in ("--set", change)]
+    stated = ("target", "budget", "of", "finest")
+    words += [word for key in stated if (text := getattr(options, key)) for word in (f"--{key}", text)]
+    return shlex.join(words)
+
+
+def _share(text: str) -> float:
+    """Read the error that ``--target`` allows."""
+    from fem_impact.scene.units import parse_share
+
+    try:
+        return parse_share(text, "--target")
+    except SceneError as error:
+        raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
+
+
+def _meshes(scene: Scene, finest: str) -> list[Mesh]:
+    """Return the meshes whose tip elements are at least ``finest`` in size, without it the usual three."""
+    from fem_impact.answers.refine.levels import family, rungs
+    from fem_impact.scene.units import option_quantity
+
+    if not finest:
+        return list(family(scene))
+    least, meshes = option_quantity(finest, "length", "--finest"), rungs(scene)
+    sizes = [mesh.sizes(scene)[0] for mesh in meshes]
+    if least > sizes[:2][-1]:
+        raise UsageError(
+            "leaves fewer than two meshes.",
+            key="--finest",
+            value=finest,
+            remedy=f"Give at most {1e3 * sizes[:2][-1]:.3g} mm.",
+        )
+    return [mesh for mesh, size in zip(meshes, sizes, strict=True) if size >= least]
+
+
+def _measured(
+    scene: Scene, out: Path, options: Options, meshes: list[Mesh], budget: float = inf
+) -> CostStudy:
+    """Run all settings, or with ``--stored`` read those that have run."""
+    from fem_impact.answers.cost.measure import judge_stored, measure
+
+    with closing(chosen_meter(options)) as meter:
+        if options.stored:
+            return judge_stored(scene, out, meter, meshes)
+        return measure(scene, out, meter, meshes, budget_s=budget)
+
+
+def _left_out(scene: Scene, meshes: list[Mesh], study: CostStudy, budget: float | None) -> list[str]:
+    """Return a sentence that names the settings that the budget left out."""
+    from fem_impact.answers.refine.levels import ladder
+
+    done = {one.name for one in study.settings} | {failure["setting"] for failure in study.failures}
+    missing = [setting.name for setting in ladder(scene, meshes) if setting.name not in done]
+    return [f"Not run within {budget:.3g} s: {', '.join(missing)}."] if budget and missing else []
+
+
+def _paper(options: Options, names: tuple[str, ...]) -> int:
+    """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
+    from fem_impact.answers.report import Request, publish
+    from fem_impact.answers.wanted_error import summarise
+    from fem_impact.cli.page import asked_page, write_study_page
+    from fem_impact.evidence.studies.cost_report import paper_report, scene_report
+    from fem_impact.files.atomic import write_text
+    from fem_impact.files.lock import directory_lock
+    from fem_impact.pages.present import page
+    from fem_impact.scene.types import MEASURED_SETS
+
+    stated_page = asked_page(options)
+    scenes = {name: changed_scene(name, options.changes) for name in MEASURED_SETS}
+    families = {name: _meshes(scene, options.finest) for name, scene in scenes.items()}
+    out = checked_out(options.out or Path("results") / "cost" / PAPER)
+    costs: dict[str, CostStudy] = {}
+    with directory_lock(out):
+        for name, scene in scenes.items():
+            costs[name] = _measured(scene, out / name, options, families[name])
+            _write(costs[name], scene_report(costs[name], names), _line(options, name), out / name)
+        document = summarise(costs)
+        write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
+        runs = {name: run for cost in costs.values() for name, run in cost.runs.items()}
+        made = publish(paper_report(costs), Request(out, line=_line(options)), runs)
+        notes = page(out)
+    if stated_page:
+        write_study_page(stated_page, _line(options), made.text, out)
+    if options.json:
+        print_json({**document, "notes": notes})
+    else:
+        sys.stderr.writelines(f"note: {note}\n" for note in notes)
+        answer = [line for finding in made.document["findings"] for line in wrapped(finding)]
+        paths = [f"page: {out / PAGE}", f"results: {out}", f"summary: {out / 'summary.json'}"]
+        sys.stdout.write("\n".join([*answer, "", *paths]) + "\n")
+    return RunError.exit_code if any(cost.failures for cost in costs.values()) else 0

@@ -1,0 +1,99 @@
+"""The ``fem-impact`` command: reads the command line, calls one handler, turns errors into exit codes.
+
+Handlers are imported when they are called, so that ``--help`` loads no numerical library.
+"""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import sys
+import threading
+from collections.abc import Callable, Sequence
+from importlib import import_module
+
+from fem_impact.cli.options import Options
+from fem_impact.cli.parser import build_parser, read_line
+from fem_impact.cli.terminal import printable_streams
+from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError
+from fem_impact.version import __version__
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code (`fem_impact.errors.EXIT_CODES` lists them)."""
+    # a run has no large dense algebra: further threads of the linear-algebra library only cost time
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # None after `>&-`
+    sys.stdout = sys.stdout or open(os.devnull, "w", encoding="utf-8")
+    sys.stderr = sys.stderr or open(os.devnull, "w", encoding="utf-8")
+    with printable_streams():
+        return _called(argv)
+
+
+def _called(argv: Sequence[str] | None) -> int:
+    try:
+        options = read_line(argv)
+    except UsageError as error:
+        asked = sys.argv[1:] if argv is None else argv
+        return _complain(str(error), error.exit_code, Options(json="--json" in asked))
+    if options.version:
+        return _version()
+    if not options.handler:
+        build_parser().print_help(sys.stderr)
+        return 2
+    if threading.current_thread() is threading.main_thread():  # signals are set there only
+        signal.signal(signal.SIGTERM, signal.default_int_handler)  # cleans up like Ctrl-C
+    return _guarded(_handler(options.handler), options)
+
+
+def _handler(path: str) -> Callable[[Options], int]:
+    """Import and return ``module:function``."""
+    module, _, name = path.partition(":")
+    function: Callable[[Options], int] = getattr(import_module(module), name)
+    return function
+
+
+def _guarded(handler: Callable[[Options], int], options: Options) -> int:
+    """Call the handler; errors of the user and of the disk become one message and an exit code."""
+    try:
+        code = handler(options)
+        sys.stdout.flush()
+        return code
+    except FemImpactError as error:
+        return _complain(str(error), error.exit_code, options)
+    except KeyboardInterrupt as stop:
+        return _complain(str(stop) or "what was computed so far is kept.", 130, options)
+    except MemoryError:
+        remedy = "Use a larger accuracy.tip_size or fewer workers."
+        return _complain(f"out of memory. {remedy}", RunError.exit_code, options)
+    except BrokenPipeError:
+        # the reader of the output closed it (`| head`): end without a message
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except OSError as error:
+        return _complain(_disk_message(error), OutputPathError.exit_code, options)
+
+
+def _complain(message: str, code: int, options: Options) -> int:
+    """Tell what went wrong on standard error; with ``--json`` also as a document on standard output."""
+    kind = "interrupted" if code == 130 else "error"
+    sys.stderr.write(f"fem-impact: {kind}: {message}\n")
+    if options.json:
+        from fem_impact.cli.common import print_json
+
+        print_json({"error": {"kind": EXIT_CODES[code], "exit_code": code, "message": message}})
+    return code
+
+
+def _disk_message(error: OSError) -> str:
+    place = f"{error.filename}: " if error.filename else ""
+    fault = f"{place}{error.strerror or error}."
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return f"{fault} The disk is full: free some space or choose another --out, then run again."
+    return f"{fault} Check that the place exists and can be written, or choose another --out."
+
+
+def _version() -> int:
+    sys.stdout.write(f"fem-impact {__version__}\n")
+    return 0

@@ -1,0 +1,99 @@
+"""The command ``sweep``: one scene with values varied in all combinations."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Mapping
+from contextlib import closing, nullcontext
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli.common import changed_scene, checked_out, print_json, read_changes, told_kept
+from fem_impact.cli.options import Options
+from fem_impact.cli.terminal import chosen_meter, print_markdown
+from fem_impact.errors import RunError, SceneError, UsageError
+from fem_impact.jobs.executors import cores, on_scheduler
+
+if TYPE_CHECKING:
+    from fem_impact.answers.sweep_results import Results
+
+
+def sweep(options: Options) -> int:
+    """Compute all combinations, write table, figures and report, and print the findings."""
+    from fem_impact.answers.sweep import FIDELITY, cases_digest, publish_sweep
+    from fem_impact.answers.sweep import sweep as swept
+    from fem_impact.answers.sweep_results import require_columns
+    from fem_impact.answers.vary import cases
+
+    columns = _columns(options)
+    require_columns(columns)
+    vary = _vary(options)
+    _refuse_both(read_changes(options.changes), vary)
+    scene = changed_scene(options.scene, options.changes)
+    cases(scene, vary)  # refuses what cannot run before a directory is made
+    fidelity, workers = options.fidelity or FIDELITY, options.workers or cores()
+    about = cases_digest(scene, vary, fidelity)
+    out = checked_out(options.out or Path("results") / f"sweep-{scene.id}-{about[:8]}")
+    lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
+    with told_kept(out, options), closing(chosen_meter(options)) as meter, lent as executor:
+        results = swept(scene, vary, fidelity, out, workers, meter, executor)
+        made = publish_sweep(results, scene.title, _line(options), out, columns, about)
+    if options.json:
+        print_json(_document(results, out))
+    else:
+        print_markdown(made.text, options)
+        sys.stdout.write(f"results: {out}\nreport: fem-impact report {out}\n")
+    return RunError.exit_code if made.document["failures"] else 0
+
+
+def _vary(options: Options) -> dict[str, list[Any]]:
+    from fem_impact.answers.vary import read_vary
+
+    pairs = [read_vary(text) for text in options.vary]
+    keys = [key for key, _ in pairs]
+    twice = next((key for key in keys if keys.count(key) > 1), "")
+    if twice:
+        raise UsageError("is varied twice.", key="--vary", value=twice, remedy="Give all its values at once.")
+    return dict(pairs)
+
+
+def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
+    """Refuse a value of ``--set`` that a varied one takes the place of, and an impact stated in two ways."""
+    from fem_impact.scene.impact import WAYS, the_way
+    from fem_impact.scene.shipped import bare, moved
+
+    for key, other in product(changes, vary):
+        if bare(key) == bare(other) or key.startswith(f"{other}."):
+            remedy = "Leave out one of the two."
+            raise UsageError(f"is given beside --vary {other}.", key="--set", value=key, remedy=remedy)
+    stated = moved([*changes, *vary])
+    if not any(set(way) & stated for way in WAYS):
+        return
+    try:
+        the_way(stated)
+    except SceneError as error:
+        raise error.under("impact", "--set, --vary") from None
+
+
+def _columns(options: Options) -> list[str]:
+    return [name.strip() for name in options.columns.split(",")] if options.columns else []
+
+
+def _line(options: Options) -> str:
+    words = ["fem-impact", "sweep", options.scene]
+    words += [word for change in options.changes for word in ("--set", change)]
+    words += [word for text in options.vary for word in ("--vary", text)]
+    words += ["--fidelity", options.fidelity] if options.fidelity else []
+    return shlex.join([*words, *(["--columns", options.columns] if options.columns else [])])
+
+
+def _document(results: Results, out: Path) -> dict[str, Any]:
+    table = results.table()
+    names = [column.name for column in table.columns]
+    return {
+        "vary": {key: list(values) for key, values in results.vary.items()},
+        "rows": [dict(zip(names, row, strict=True)) for row in table.rows],
+        "path": str(out),
+    }

@@ -1,0 +1,153 @@
+"""Standard output and error of the command: printable texts, and on a terminal tables and progress by rich.
+
+rich is imported only where a terminal is.
+"""
+
+from __future__ import annotations
+
+import io
+import os
+import re
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from typing import TYPE_CHECKING, TextIO
+
+from fem_impact.errors import printable
+from fem_impact.progress import CaseProgress, LineMeter, Notice, NullMeter, Progress, ProgressMeter, describe
+
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress as Bar
+
+    from fem_impact.cli.options import Options
+    from fem_impact.tables.table import Table
+
+
+class PrintableStream(io.TextIOBase):
+    """A stream that escapes control and direction characters, not line breaks, for the one ``beneath``."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self.beneath = stream
+
+    def write(self, text: str) -> int:
+        """Write a text, escaped; return its length."""
+        self.beneath.write(printable(text))
+        return len(text)
+
+    def flush(self) -> None:
+        """Flush the other stream."""
+        self.beneath.flush()
+
+    def fileno(self) -> int:
+        """Return the file descriptor of the other stream."""
+        return self.beneath.fileno()
+
+    def isatty(self) -> bool:
+        """Return whether the other stream is a terminal."""
+        return self.beneath.isatty()
+
+
+@contextmanager
+def printable_streams() -> Iterator[None]:
+    """Let everything that is written to standard output and error pass through a `PrintableStream`."""
+    with redirect_stdout(PrintableStream(sys.stdout)), redirect_stderr(PrintableStream(sys.stderr)):
+        yield
+
+
+def chosen_meter(options: Options) -> ProgressMeter:
+    """Return a meter on standard error: silent, a live line on a terminal, or plain lines."""
+    if options.quiet:
+        return NullMeter()
+    if not sys.stderr.isatty() or _plain(options):
+        return LineMeter(sys.stderr)
+    return LiveMeter(_console(sys.stderr, options))
+
+
+def print_table(table: Table, options: Options, indent: str = "") -> None:
+    """Print a table on standard output."""
+    if not sys.stdout.isatty() or _plain(options):
+        sys.stdout.write(table.terminal(indent=indent) + "\n")
+        return
+    from rich.box import SIMPLE_HEAD
+    from rich.table import Table as Drawn
+    from rich.text import Text
+
+    drawn = Drawn(box=SIMPLE_HEAD, pad_edge=False)
+    for column in table.columns:
+        drawn.add_column(Text(printable(column.title)), justify="left" if column.left else "right")
+    for row in table.plain_rows():
+        drawn.add_row(*(Text(printable(text)) for text in row))
+    _console(sys.stdout, options).print(drawn)
+
+
+def print_markdown(text: str, options: Options) -> None:
+    """Print Markdown on standard output: set as a page on a terminal, as it is elsewhere."""
+    if not sys.stdout.isatty():
+        sys.stdout.write(f"{text.rstrip()}\n")
+        return
+    from rich.markdown import Markdown
+
+    without_pictures = re.sub(r"!\[[^\]]*\]\([^)]*\)\n*", "", printable(text))
+    _console(sys.stdout, options).print(Markdown(without_pictures, hyperlinks=False))
+
+
+def _plain(options: Options) -> bool:
+    """Return whether a terminal shall get plain text as well."""
+    return bool(options.quiet or os.environ.get("NO_COLOR")) or os.environ.get("TERM") == "dumb"
+
+
+def _console(stream: TextIO, options: Options) -> Console:
+    """Return a console of rich on a terminal; texts for it must be printable."""
+    from rich.console import Console
+
+    beneath = stream.beneath if isinstance(stream, PrintableStream) else stream
+    plain = _plain(options)
+    return Console(file=beneath, highlight=False, color_system=None if plain else "auto", no_color=plain)
+
+
+class LiveMeter:
+    """A bar and one line on a terminal, redrawn at most ten times a second."""
+
+    def __init__(self, console: Console, clock: Callable[[], float] = time.monotonic) -> None:
+        self._console, self._clock = console, clock
+        self._next = 0.0
+        self._bar: Bar | None = None
+
+    def __call__(self, progress: Progress | CaseProgress | Notice) -> None:
+        """Redraw when a tenth of a second has passed; a notice gets a line of its own."""
+        if isinstance(progress, Notice):
+            self._console.print(printable(progress.text), markup=False)
+            return
+        now = self._clock()
+        if now < self._next:
+            return
+        self._next = now + 0.1
+        bar = self._bar = self._bar or self._begun()
+        done, total = (
+            (progress.done, progress.total)
+            if isinstance(progress, CaseProgress)
+            else (progress.time_s, progress.end_time_s)
+        )
+        text = printable(describe(progress))
+        bar.update(bar.task_ids[0], description=text, completed=done, total=total, refresh=True)
+
+    def _begun(self) -> Bar:
+        from rich.progress import BarColumn, TextColumn
+        from rich.progress import Progress as Bar
+        from rich.table import Column
+
+        line = Column(no_wrap=True, overflow="ellipsis")
+        bar_of = BarColumn(bar_width=20, table_column=Column(width=20))
+        columns = bar_of, TextColumn("{task.description}", markup=False, table_column=line)
+        bar = Bar(*columns, console=self._console, auto_refresh=False)
+        bar.add_task("")
+        bar.start()
+        return bar
+
+    def close(self) -> None:
+        """Leave the last line standing and go to the next."""
+        if self._bar:
+            self._bar.stop()
+            self._bar = None

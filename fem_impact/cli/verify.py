@@ -1,0 +1,166 @@
+"""The commands ``verify``, problems with known answers, and ``stress``, hard cases."""
+
+from __future__ import annotations
+
+import itertools
+import sys
+from collections.abc import Callable
+from dataclasses import asdict
+from pathlib import Path
+
+from fem_impact.cli.common import checked_out, print_json
+from fem_impact.cli.options import Options
+from fem_impact.cli.page import checked_page, write_page
+from fem_impact.cli.terminal import print_markdown, print_table
+from fem_impact.errors import RunError, UsageError, did_you_mean
+from fem_impact.evidence.hard_cases.run import Row, page, row_line, run_cases
+from fem_impact.evidence.hard_cases.scenes import CASES
+from fem_impact.evidence.problems import catalogue
+from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
+from fem_impact.evidence.problems.problem import Problem, Verification
+from fem_impact.jobs.executors import cores
+from fem_impact.tables.table import Table
+from fem_impact.tables.text import wrapped
+
+
+def verify(options: Options) -> int:
+    """Run one problem, or all of them; the exit code says whether every check passed."""
+    if options.parameters and (options.changes or options.page):
+        remedy = "Leave it out, or leave out --set and --page."
+        raise UsageError("lists parameters and runs nothing.", key="--parameters", remedy=remedy)
+    if options.parameters:
+        return _show_parameters(options)
+    if options.page:
+        return _write_page(options)
+    changes = dict(_change(text) for text in options.changes)
+    if changes and not options.problem:
+        raise UsageError(
+            "belongs to one problem.", key="--set", remedy="Name it: fem-impact verify NAME --set ..."
+        )
+    chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
+    done = []
+    for one in chosen:
+        if not options.quiet:
+            sys.stderr.write(f"{one.name}: {one.words} ...\n")
+        done.append(one.run(changes))
+        if not options.json:
+            sys.stdout.write(_text(done[-1]))
+            sys.stdout.flush()
+    if options.json:
+        documents = [verification.document() for verification in done]
+        print_json(documents[0] if options.problem else documents)
+    return 0 if all(verification.passed for verification in done) else RunError.exit_code
+
+
+VERIFICATION = (
+    "Verification",
+    "Each problem with a known answer, and of its checks the one nearest to its limit.",
+)
+HARD_CASES = (
+    "Hard cases",
+    "Scenes that are hard on the solver, on coarse meshes. Each must close its balances, be refused before "
+    "the run with its reason, or be detected during it.",
+)
+
+
+def _write_page(options: Options) -> int:
+    """Run all problems at their defaults and write the page."""
+    if options.problem or options.changes:
+        raise UsageError("runs all problems with their default values.", key="--page")
+    path, done = checked_page(options.page), []
+    for name in PROBLEMS:
+        done.append(problem(name).run())
+        if not options.quiet:
+            sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
+    write_page(path, *VERIFICATION, "fem-impact verify --page FILE", catalogue.page(done))
+    if options.json:
+        print_json([verification.document() for verification in done])
+    return 0 if all(verification.passed for verification in done) else RunError.exit_code
+
+
+def _change(text: str) -> tuple[str, str]:
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise UsageError("is not of the form parameter=value.", key="--set", value=text)
+    return name.strip(), value.strip().strip("\"'")
+
+
+def _show_parameters(options: Options) -> int:
+    if not options.problem:
+        raise UsageError(
+            "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
+        )
+    chosen = problem(options.problem)
+    if options.json:
+        print_json(
+            [
+                {"name": p.key, "meaning": p.meaning, "unit": p.si_unit, "default": p.default}
+                | {"low": p.low, "high": p.high, "whole": p.whole, "even": p.even}
+                for p in chosen.parameters
+            ]
+        )
+    else:
+        sys.stdout.write(f"{chosen.name}: {chosen.words}\n")
+        print_table(_parameter_table(chosen), options)
+    return 0
+
+
+def _parameter_table(chosen: Problem) -> Table:
+    rows = [
+        (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in chosen.parameters
+    ]
+    return Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
+
+
+def _text(verification: Verification) -> str:
+    verdict = "passed" if verification.passed else "FAILED"
+    cost = verification.cost
+    spent = f"{cost.cpu_s:.1f} s of CPU, {cost.steps} steps, {cost.elements} elements"
+    lines = [f"{verification.name}: {verdict} ({spent})"]
+    for c in verification.checks:
+        mark = "FAIL" if not c.passed else "ok  " if c.judged else "    "
+        allowed = f"allowed {c.tolerance:g} {c.kind}" if c.judged else f"not judged: {c.note}"
+        unit = "" if c.unit == "1" else f" {c.unit}"
+        values = f"{c.computed:.6g}{unit}, reference {c.reference:.6g}"
+        lines += wrapped(f"{mark} {c.name}: {values},", "  ", " " * 5)
+        lines += wrapped(f"error {c.error:+.2e}, {allowed}", " " * 7, "")
+    return "\n".join(lines) + "\n"
+
+
+def stress(options: Options) -> int:
+    """Run one hard case, or all of them; the exit code says whether all passed."""
+    names = _chosen(options)
+    path = checked_page(options.page) if options.page else None
+    out = checked_out(options.out or Path("results") / "stress")
+    rows = run_cases(names, out, _progress(options, len(names)), options.workers or cores())
+    text = page(rows)
+    if path:
+        write_page(path, *HARD_CASES, "fem-impact stress --page FILE", text)
+    if options.json:
+        print_json([asdict(row) for row in rows])
+    else:
+        print_markdown(text, options)
+        sys.stdout.write(f"\nresults: {out}\n")
+    return 0 if all(row.passed for row in rows) else RunError.exit_code
+
+
+def _progress(options: Options, total: int) -> Callable[[Row], None]:
+    """Return the function that prints the result of each finished case."""
+    count = itertools.count(1)
+
+    def show(row: Row) -> None:
+        if not options.quiet:
+            sys.stderr.write(f"{next(count)} of {total}: {row_line(row)}\n")
+
+    return show
+
+
+def _chosen(options: Options) -> list[str]:
+    if not options.only:
+        return list(CASES)
+    if options.page:
+        raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
+    if options.only not in CASES:
+        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
+        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
+    return [options.only]

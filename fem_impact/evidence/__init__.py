@@ -1,0 +1,1 @@
+"""What the project shows of itself: studies, problems with known answers, hard cases, the publication."""

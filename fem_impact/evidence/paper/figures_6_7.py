@@ -1,0 +1,233 @@
+"""Figures 6 and 7: predicted loss against the impulse ratio and against the angle, beside measured losses."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from fem_impact.evidence.paper.drawn import Drawn, Statement, canvas
+from fem_impact.figures.style import PALETTE, QUIET, write_data
+from rigid import critical_ratio, predicted_losses
+from rigid.arrays import Floats
+from rigid.experiments import (
+    MeasuredSet,
+    Statistic,
+    angle_sets,
+    drawn_losses,
+    loss_against_angle,
+    measured_set,
+    statistic,
+)
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+MU = np.linspace(0.0, 1.2, 241)
+COLOURS = ("blue", "sky", "green", "orange", "vermilion")
+COLUMNS_6 = (
+    "alpha_deg",
+    "mu",
+    "loss_over_E_0",
+    "loss_low_over_E_0",
+    "loss_high_over_E_0",
+    "E_lt_over_E_0",
+    "mu_c",
+)
+
+DEGREES = np.linspace(17.0, 60.0, 173)
+LOOKS = {"total": ("blue", "o"), "E_lt": ("vermilion", "^"), "E_ln": ("green", "s")}
+LABELS = {"total": "total", "E_lt": "tangential $E_{lt}$", "E_ln": "normal $E_{ln}$"}
+ENDS = ("calculated", "low", "high")
+COLUMNS_7 = ("kind", "alpha_deg", *(f"{name}_{end}_over_E_0" for name in LOOKS for end in ENDS))
+
+
+def figure_6(out: Path) -> Drawn:
+    """Draw the total loss against mu at the five angles, with the measured e and e_m of each."""
+    picture = out / "figure-6.png"
+    curves = [_curve(s) for s in angle_sets()]
+    rows = []
+    for curve in curves:
+        total = curve["total"]
+        columns = zip(MU, total[0], total.min(axis=0), total.max(axis=0), curve["tangential"], strict=True)
+        rows += [[round(curve["alpha"], 6), *map(float, row), curve["mu_c"]] for row in columns]
+    write_data(picture, COLUMNS_6, rows)
+    share = [curve["share"] for curve in curves]
+    sentence = (
+        f"At the critical ratio the predicted total loss is {100 * min(share):.0f} to "
+        f"{100 * max(share):.0f} % "
+        "of the largest for any ratio up to it; beyond it (dotted) the loss falls and would end in a gain."
+    )
+    with canvas(picture, 4.6, sentence) as drawn:
+        axes = drawn.add_subplot()
+        for curve, s, colour in zip(curves, angle_sets(), COLOURS, strict=True):
+            _draw_6(axes, curve, s, PALETTE[colour])
+        _furnish(axes)
+    return Drawn(6, picture, sentence, _statements_6(share, curves))
+
+
+def _curve(s: MeasuredSet) -> dict[str, Any]:
+    """Return loss against mu of one set, with the band of the 95 % interval of its mean e.
+
+    ``share`` is the loss at mu_c over the largest loss at mu <= mu_c.
+    """
+    mean = s.statistics()
+    motion = mean["v_n"].mean, mean["v_t"].mean
+    mass = 2.0 / (motion[0] ** 2 + motion[1] ** 2)  # so that losses come as fractions of E_0
+    body = {"e_m": mean["e_m"].mean, **s.body}
+    restitution = np.array([mean["e"].mean, mean["e"].low, mean["e"].high])
+    lost = predicted_losses(*motion, e=restitution[:, None], mu=MU, mass=mass, **body)
+    total = lost.E_ln + lost.E_lt
+    mu_c = float(critical_ratio(*motion, e=restitution[0], **body))
+    there = float(np.interp(mu_c, MU, total[0]))
+    share = there / max(there, float(total[0][mu_c >= MU].max()))
+    angle = float(np.degrees(s.alpha))
+    return {"alpha": angle, "total": total, "tangential": lost.E_lt[0], "mu_c": mu_c, "share": share}
+
+
+def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> None:
+    total: Floats = curve["total"]
+    possible, beyond = curve["mu_c"] >= MU, (curve["mu_c"] <= MU + 0.005) & (total[0] > -0.3)
+    axes.fill_between(
+        MU[possible], total.min(axis=0)[possible], total.max(axis=0)[possible], color=colour, alpha=0.18, lw=0
+    )
+    axes.plot(MU[possible], total[0][possible], color=colour, lw=1.6, label=f"{curve['alpha']:.0f}°")
+    axes.plot(MU[beyond], total[0][beyond], color=colour, lw=1.0, ls=(0, (1, 1.6)))
+    axes.plot(curve["mu_c"], np.interp(curve["mu_c"], MU, total[0]), "s", color=colour, markersize=5)
+    mu, kept = s.statistics()["mu"], s.statistics()["E_r_over_E_0"]
+    bars: dict[str, Any] = {"xerr": mu.high - mu.mean, "yerr": kept.high - kept.mean}
+    axes.errorbar(mu.mean, 1 - kept.mean, **bars, fmt="o", color=colour, mec="black", mew=0.6, capsize=2)
+
+
+def _furnish(axes: Axes) -> None:
+    """Set axes, grid and legend."""
+    axes.axhline(0.0, color=QUIET, linewidth=0.7)
+    axes.set(
+        xlabel="impulse ratio μ",
+        ylabel="total loss $(E_{ln} + E_{lt})/E_0$",
+        xlim=(0, 1.2),
+        ylim=(-0.06, 1.0),
+    )
+    axes.grid()
+    axes.plot([], [], "s", color=QUIET, label="critical ratio")
+    axes.errorbar([], [], xerr=[], yerr=[], fmt="o", color=QUIET, mec="black", label="measured, 95 %")
+    axes.plot([], [], color=QUIET, ls=(0, (1, 1.6)), label=r"beyond $\mu_c$")
+    axes.legend(
+        loc="lower right", bbox_to_anchor=(1.0, 0.03), title="band: 95 % interval of mean e", title_fontsize=8
+    )
+
+
+def _statements_6(share: list[float], curves: list[dict[str, Any]]) -> tuple[Statement, ...]:
+    """Check the loss at mu_c, the gain of energy beyond it, and the loss over mu of Table 3's surfaces."""
+    gains = [f"{c['alpha']:.0f}" for c in curves if (c["tangential"][c["mu_c"] < MU] < 0).any()]
+    low = _loss_of(measured_set("t3-contaminated"), 0.32)
+    high = _loss_of(measured_set("t3-machined"), 0.72)
+    return (
+        Statement(
+            "the loss at the critical ratio is close to the largest",
+            f"{', '.join(f'{100 * x:.1f} %' for x in share)} of it at 17, 25, 37, 45 and 60 degrees",
+            min(share) > 0.9,
+        ),
+        Statement(
+            "beyond the critical ratio a tangential gain of energy becomes possible",
+            f"so it is at {', '.join(gains)} degrees for ratios up to 1.2",
+            bool(gains),
+        ),
+        Statement(
+            "the loss rises from about 50 % to above 90 % of E_0 as mu goes from 0.32 to 0.72 (Table 3)",
+            f"{100 * low:.1f} % and {100 * high:.1f} % by Eq 23-25 with each surface's e and e_m",
+            abs(low - 0.5) < 0.05 and high > 0.9,
+        ),
+    )
+
+
+def _loss_of(s: MeasuredSet, mu: float) -> float:
+    """Return the loss fraction at `mu` with the mean e and e_m of a set."""
+    mean = s.statistics()
+    lost = predicted_losses(-1.0, -1.0, e=mean["e"].mean, mu=mu, e_m=mean["e_m"].mean, mass=1.0, **s.body)
+    return float(lost.E_ln + lost.E_lt)
+
+
+def figure_7(out: Path) -> Drawn:
+    """Draw measured mean losses with 95 % intervals, and Eq 23-25 with the band of resampled tests."""
+    picture = out / "figure-7.png"
+    x = np.radians(DEGREES)
+    # of the measured means (173,), and of resampled tests (draws, 173)
+    curves, resampled = (
+        {"total": p.E_ln + p.E_lt, "E_lt": p.E_lt, "E_ln": p.E_ln}
+        for p in (loss_against_angle(x), drawn_losses(x))
+    )
+    bands = {name: np.percentile(many, [2.5, 97.5], axis=0) for name, many in resampled.items()}
+    measured = [_measured(s.recomputed()) for s in angle_sets()]
+    write_data(picture, COLUMNS_7, _rows_7(curves, bands, measured))
+    peaks = {}
+    for name in ("total", "E_lt"):
+        low, high = np.percentile(DEGREES[resampled[name].argmax(axis=1)], [2.5, 97.5])
+        peaks[name] = (float(DEGREES[curves[name].argmax()]), float(low), float(high))
+    sentence = (
+        f"With interpolated coefficients the total loss is largest at {_words(peaks['total'])} degrees and "
+        f"the tangential loss at {_words(peaks['E_lt'])} degrees (95 % by resampling the tests; linear "
+        "interpolation between measured angles is a choice)."
+    )
+    with canvas(picture, 4.4, sentence) as drawn:
+        axes = drawn.add_subplot()
+        for name in LOOKS:
+            _draw_7(axes, name, curves[name], bands[name], [row[name] for row in measured])
+        axes.set(
+            xlabel="inclination α, degrees", ylabel="loss as a fraction of $E_0$", xlim=(15, 62), ylim=(0, 1)
+        )
+        axes.grid()
+        handles, labels = axes.get_legend_handles_labels()
+        order = (0, 3, 1, 4, 2, 5)  # a column of the legend for each loss: curve above measurement
+        legend = [handles[i] for i in order], [labels[i] for i in order]
+        drawn.legend(*legend, loc="outside lower center", ncols=3)
+    return Drawn(7, picture, sentence, _statements(peaks))
+
+
+def _measured(rows: dict[str, Floats]) -> dict[str, Statistic]:
+    """Return the measured losses of one set; the total is 1 - E_r/E_0, independent of e_m."""
+    losses = {"total": 1.0 - rows["E_r_over_E_0"], **{k: rows[f"{k}_over_E_0"] for k in ("E_lt", "E_ln")}}
+    return {name: statistic(values) for name, values in losses.items()}
+
+
+def _rows_7(
+    curves: dict[str, Floats], bands: dict[str, Floats], measured: list[dict[str, Statistic]]
+) -> list[list[float | str]]:
+    """Return the rows of `COLUMNS_7`: the calculated ones, then the measured ones."""
+    columns = [column for name in LOOKS for column in (curves[name], *bands[name])]
+    rows: list[list[float | str]] = [
+        ["curve", *map(float, row)] for row in zip(DEGREES, *columns, strict=True)
+    ]
+    for s, losses in zip(angle_sets(), measured, strict=True):
+        ends = [x for name in LOOKS for x in (losses[name].mean, losses[name].low, losses[name].high)]
+        rows.append(["measured", round(float(np.degrees(s.alpha)), 6), *ends])
+    return rows
+
+
+def _draw_7(axes: Axes, name: str, curve: Floats, band: Floats, measured: list[Statistic]) -> None:
+    colour, mark = PALETTE[LOOKS[name][0]], LOOKS[name][1]
+    axes.fill_between(DEGREES, *band, color=colour, alpha=0.18, lw=0)
+    axes.plot(DEGREES, curve, color=colour, lw=1.5, label=f"{LABELS[name]} by Eq 23-25, 95 % band")
+    angles = [float(np.degrees(s.alpha)) for s in angle_sets()]
+    means, half = [m.mean for m in measured], [m.high - m.mean for m in measured]
+    axes.errorbar(
+        angles, means, yerr=half, fmt=mark, color=colour, mec="black", mew=0.5, capsize=3,
+        label=f"{LABELS[name]}, measured mean, 95 %",
+    )  # fmt: skip
+
+
+def _words(peak: tuple[float, float, float]) -> str:
+    return f"{peak[0]:.1f} ({peak[1]:.1f} to {peak[2]:.1f})"
+
+
+def _statements(peaks: dict[str, tuple[float, float, float]]) -> tuple[Statement, ...]:
+    claims = {
+        "total": ("the total loss is largest near 45 degrees", 45.0),
+        "E_lt": ("the tangential loss is largest near 50 degrees", 50.0),
+    }
+    return tuple(
+        Statement(claim, f"at {_words(peaks[name])} degrees", abs(peaks[name][0] - near) < 5.0)
+        for name, (claim, near) in claims.items()
+    )

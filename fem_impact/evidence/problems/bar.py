@@ -1,0 +1,155 @@
+"""``bar``: a bar without lateral strain strikes a rigid wall, and bounces between two walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import pi
+from typing import ClassVar
+
+import numpy as np
+
+import meshes
+from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed, rigid_of
+from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.watch import ForceRecorder, Until
+from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
+from fem_impact.scene.parameter import Parameter
+from fem_impact.solid.contact.book import ACTIVE
+from fem_impact.solid.contact.plane import PlaneContact
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.state import State
+
+PLATEAU, DURATION, GROWTH, CLOSING, CHAIN = 0.005, 0.01, 1e-3, 1e-6, 1e-6
+WINDOW = (0.15, 0.85)  # of the duration, over which the plateau is averaged
+FLIGHT = 0.3  # time between two walls over the duration of a strike
+FASTEST = 0.05  # over c0
+COARSER = 5  # the bar between two walls has so many times fewer slices
+
+
+def _model(p: Values, slices: int, gap: float, across: int) -> Model:
+    radius = p["diameter"] / 2
+    flat = np.array([[0.0, 0.0], [radius, 0.0]])
+    rod = meshes.rod(flat, p["length"], across, slice_length=p["length"] / slices, nose=False)
+    speed = np.zeros_like(rod.mesh.points)
+    speed[:, 2] = -p["speed"]
+    points = placed(rod.mesh.points, 0.0, gap)
+    return body_model(FreeBody(rod, points, speed, p["E"], 0.0, p["rho"], friction=0.0))
+
+
+@dataclass(slots=True)
+class Ceiling:
+    """A second rigid wall at n = height: the solver's plane contact, seen upside down."""
+
+    effect: ClassVar[str] = "contact"
+    accounts: ClassVar[tuple[str, ...]] = ()
+    every: ClassVar[int] = 1
+    moving: ClassVar[tuple[str, ...]] = ()
+    wall: PlaneContact
+    height: float
+    bounces: int = 0
+
+    def resolve(self, state: State) -> None:
+        """Turn the wall's own nodes upside down, let them touch, turn them back."""
+        n, before = self.wall.nodes[:, 2], self.wall.book.step[ACTIVE]
+        for vector in (state.v, state.force):
+            vector[n] *= -1
+        state.x[n] = self.height - state.x[n]
+        self.wall.resolve(state)
+        self.bounces += int(self.wall.book.step[ACTIVE] > 0 and before == 0)
+        for vector in (state.v, state.force):
+            vector[n] *= -1
+        state.x[n] = self.height - state.x[n]
+
+    def energies(self, state: State) -> tuple[float, ...]:
+        """Return nothing: this wall's closing loss is left to the energy that is checked."""
+        return ()
+
+
+def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
+    slices = int(p["slices"])
+    model = _model(p, slices, 0.0, int(p["across"]))
+    state, force = model.initial_state(), ForceRecorder(model)
+    energy = Until(model.ledger(), FOLLOWED * exact.duration)
+    march(model, state, [force, energy])
+    plateau = force.mean(WINDOW[0] * exact.duration, WINDOW[1] * exact.duration)
+    closing = energy.ledger.sample(state)["closing"] / energy.ledger.start
+    spans = model.book.intervals
+    chain = chain_restitution(slices, model.step * slices * bar_speed(p["E"], p["rho"]) / p["length"])
+    checks = [
+        Check("plateau of the wall force", "N", plateau, exact.force, PLATEAU),
+        Check("duration", "s", spans[-1].end - spans[0].start, exact.duration, DURATION),
+        Check("contacts", "1", force.touches, 1, 0.0, "absolute"),
+        # a bar that strains along itself alone is a chain of its slices' masses
+        Check("restitution", "1", rigid_of(model, state).V_n / p["speed"], chain, CHAIN, "absolute"),
+        Check("largest energy / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
+        # half a slice of mass stops dead at the wall
+        Check("closing loss / E_0", "1", closing, 0.5 / slices, CLOSING),
+    ]
+    return checks, state.step, len(model.geometry.rod.mesh.cells)
+
+
+def _many_strikes(p: Values, exact: BarImpact) -> list[Check]:
+    """Bounce for the time that so many bounces without loss would take."""
+    slices = max(4, int(p["slices"]) // COARSER)
+    gap = FLIGHT * exact.duration * p["speed"]
+    model = _model(p, slices, gap / 2, 6)
+    top = model.geometry.rod_points[:, 2] > gap / 2 + 0.999 * p["length"]
+    ceiling = Ceiling(PlaneContact(model.layout.rod[top], model.inverse_mass, 0.0), p["length"] + gap)
+    walled = replace(model, impulses=[*model.impulses, ceiling])
+    state = walled.initial_state()
+    energy = Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)
+    march(walled, state, [energy])
+    return [
+        Check("touches both walls", "1", float(ceiling.bounces > 0), 1.0, 0.0, "absolute"),
+        Check("largest energy of all bounces / E_0", "1", energy.most, 1.0, GROWTH, "at most"),
+    ]
+
+
+def solve(p: Values) -> Solved:
+    """Strike once, then bounce.
+
+    Raises
+    ------
+    SceneError
+        If the bar is so fast that it is squeezed by more than a few per cent.
+    """
+    within(
+        p,
+        "speed",
+        0.0,
+        FASTEST * bar_speed(p["E"], p["rho"]),
+        "m/s",
+        "the reference holds for small strains.",
+    )
+    exact = strike(p["E"], p["rho"], pi * p["diameter"] ** 2 / 4, p["length"], p["speed"])
+    checks, steps, elements = _one_strike(p, exact)
+    if p["bounces"]:
+        checks += _many_strikes(p, exact)
+    return Solved(tuple(checks), steps, elements)
+
+
+PROBLEM = Problem(
+    "bar",
+    "a bar without lateral strain on a rigid wall: plateau, duration, one release; then two walls",
+    (
+        steel.length(),
+        steel.diameter(),
+        steel.speed("speed", "approach speed", 2.0),
+        *(q for q in steel.elastic() if q.key != "nu"),
+        Parameter("slices", "cells along the bar", "", 50, 2000, default=100, whole=True),
+        steel.across(6),
+        Parameter(
+            "bounces",
+            "bounces between two walls, 0 for none",
+            "",
+            0,
+            1e5,
+            default=1000,
+            whole=True,
+            even=True,
+        ),
+    ),
+    solve,
+)

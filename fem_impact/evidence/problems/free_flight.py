@@ -1,0 +1,156 @@
+"""``free-spin`` and ``momentum``: motions of a rod whose outcome is a conservation law.
+
+A rod that turns is stretched by its own spin, and a rod set going unstretched rings about that. In a slender
+one the strain is rho w^2 (L^2 / 4 - x^2) / (2 E), so with s = w L / c0 its energy is at most 2 s^2 / 5 of
+the kinetic one, and length and moment of inertia grow by at most s^2 / 6 and 2 s^2 / 5.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+
+from fem_impact.case.plan import plan
+from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems.bodies import rigid_of
+from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
+from fem_impact.evidence.problems.setups import rod_scene
+from fem_impact.evidence.references.rod_end import bar_speed
+from fem_impact.physics.contact import projectile
+from fem_impact.scene.parameter import Parameter
+from fem_impact.solid.build import build
+from fem_impact.solid.ledger import Ledger
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.run import solve as run_solid
+from fem_impact.solid.state import State
+
+SMALL = 1e-6
+FASTEST = 0.05  # spin times length over c0
+CLOSING = 2e-3  # speed of the tip over c0
+STILL = 1e-9  # rad/s
+EVERY = 200
+
+
+class _Strain:
+    """Watches the largest share of strain energy until a time."""
+
+    every = EVERY
+
+    def __init__(self, ledger: Ledger, end: float) -> None:
+        self.ledger, self.end, self.most = ledger, end, 0.0
+
+    def observe(self, state: State) -> bool:
+        """Sample."""
+        strain = self.ledger.sample(state)["strain_rod"]
+        self.most = max(self.most, strain / self.ledger.start)
+        return state.time >= self.end
+
+
+def _stretch(model: Model, state: State) -> float:
+    """Return the relative change of the distance between lowest and highest node."""
+    places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
+    start = model.start[0]
+    ends = places[[np.argmin(start[places[:, 2]]), np.argmax(start[places[:, 2]])]]
+    now, before = (float(np.linalg.norm(np.diff(x[ends], axis=0))) for x in (state.x, start))
+    return now / before - 1
+
+
+def spin(p: Values) -> Solved:
+    """Let a free rod turn: no strain energy but that of its own spin, the same length and the same spin.
+
+    Raises
+    ------
+    SceneError
+        If the spin stretches the rod too much for the reference.
+    """
+    c0 = bar_speed(p["E"], p["rho"])
+    fastest = FASTEST * c0 / p["length"]
+    within(p, "omega", -fastest, fastest, "rad/s", "a faster spin stretches the rod.")
+    stretch = (p["omega"] * p["length"] / c0) ** 2
+    allowed = (SMALL + 0.4 * stretch) * abs(p["omega"]) + STILL
+    frozen = dict(p) | {"v_n": 1e-3, "v_t": 0.0, "angle": pi / 4, "max_time": 1e-2}
+    effects = ("vibration", "barrier-rigid", "large-rotation")
+    # planned without its spin, which may take the tip away from the barrier: a plan refuses that
+    planned = plan(rod_scene(frozen | {"omega": 0.0}, effects))
+    model = build(replace(planned, scene=rod_scene(frozen, effects))).coasting()
+    state, ledger = model.initial_state(), model.ledger()
+    watch = _Strain(ledger, p["time"])
+    march(model, state, [watch])
+    omega, grown = rigid_of(model, state).Omega, _stretch(model, state)
+    checks = (
+        Check("strain energy / E_0", "1", watch.most, 0.4 * stretch, SMALL, "at most"),
+        Check("change of length", "1", grown, 0.0, SMALL + stretch / 6, "absolute"),
+        Check("spin", "rad/s", omega, p["omega"], allowed, "absolute"),
+        Check("energy ledger / E_0", "1", ledger.worst / ledger.start, 0.0, SMALL, "at most"),
+    )
+    return Solved(checks, state.step, len(model.geometry.rod.mesh.cells))
+
+
+def momentum(p: Values) -> Solved:
+    """Let a spinning rod strike without friction: impulse, its moment and energy must balance.
+
+    Raises
+    ------
+    SceneError
+        If the tip moves away, or so fast that its cells are squeezed.
+    """
+    scene = rod_scene(p, ("vibration", "barrier-rigid", "large-rotation"))
+    away = p["omega"] * float(projectile(scene).arms(p["angle"])[0])
+    fastest = CLOSING * bar_speed(p["E"], p["rho"])
+    within(p, "v_n", max(away, 0.0) + 1e-4, away + fastest, "m/s", "the tip must close in, and slowly.")
+    result = run_solid(plan(scene))
+    rod, motion, book = projectile(scene), result.motion, result.model.book
+    impulse, moment = 2 * book.impulse[1], -2 * book.impulse[2]
+    start = result.model.start[0][result.view.places]
+    centre = result.view.mass @ start / result.view.mass.sum()
+    impact = scene.impact
+    before = motion.inertia * impact.omega + motion.mass * (centre[2] * impact.v_t - centre[0] * impact.v_n)
+    turned = 1e-4 * max(abs(moment), motion.inertia * abs(motion.Omega - impact.omega))
+    # of a run that is not over only the modes are known
+    ringing = sum(result.vibration_check or (result.flight.energy,))
+    kept = (motion.kinetic + ringing + result.accounts["closing"]) / result.E_0
+    checks = (
+        Check("mass", "kg", motion.mass, rod.mass, 1e-6),
+        Check("normal momentum gained", "N s", motion.mass * (motion.V_n - impact.v_n), impulse, SMALL),
+        Check("tangential velocity", "m/s", motion.V_t, impact.v_t, SMALL * p["v_n"], "absolute"),
+        Check("angular momentum gained", "N m s", motion.spin - before, moment, turned, "absolute"),
+        Check("energy kept / E_0", "1", kept, 1.0, 2e-5 if result.vibration_check else 5e-4, "absolute"),
+        Check("energy ledger / E_0", "1", result.worst / result.E_0, 0.0, 1e-5, "at most"),
+    )
+    return Solved(checks, result.steps, len(result.model.geometry.rod.mesh.cells))
+
+
+_SPIN = Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=45.0)
+_SIZE = (
+    steel.length(0.08),
+    steel.diameter(),
+    Parameter("tip_radius", "radius of the rounded edge", "length", 1e-4, 0.1, default=3e-3),
+    *steel.elastic(),
+)
+_MESH = (
+    Parameter("tip_size", "cell edge at the contact", "length", 1e-5, 5e-3, default=0.8e-3),
+    steel.across(6),
+)
+SPIN = Problem(
+    "free-spin",
+    "a free rod turns in flight: no strain energy, no growth, the same spin",
+    (*_SIZE, _SPIN, Parameter("time", "time of flight", "time", 1e-5, 1e-1, default=4e-3), *_MESH),
+    spin,
+)
+MOMENTUM = Problem(
+    "momentum",
+    "a spinning rod strikes a frictionless plane: momentum, angular momentum and energy balance",
+    (
+        *_SIZE,
+        Parameter("angle", "rod axis to barrier normal", "angle", 0.1, 1.4, default=pi / 4),
+        steel.speed("v_n", "approach speed along the normal", 1.5, 500.0),
+        Parameter("v_t", "speed down the slope", "speed", 0.0, 500.0, default=1.0),
+        Parameter("omega", "spin, positive from n to t", "angular speed", -1e3, 1e3, default=20.0),
+        *_MESH,
+        Parameter("max_time", "time after which a run stops", "time", 1e-5, 1e-2, default=2.5e-3),
+    ),
+    momentum,
+)

@@ -1,0 +1,269 @@
+"""``modes``: natural frequencies of a free round bar, from the eigenproblem and from ringing down."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+from scipy.linalg import eigh
+
+import meshes
+from fem_impact.arrays import Array
+from fem_impact.evidence.problems import setups as steel
+from fem_impact.evidence.problems.bodies import FreeBody, body_model
+from fem_impact.evidence.problems.discretisation import BarMesh
+from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values
+from fem_impact.evidence.references.free_modes import Frequencies, bending_modes, cylinder_frequencies
+from fem_impact.evidence.references.rod_end import bar_speed
+from fem_impact.evidence.references.waves import flexural_speed, longitudinal_speed
+from fem_impact.fem.eigen import rod_modes
+from fem_impact.fem.elements import element_stiffness, lame_constants, lumped_mass
+from fem_impact.fem.layout import TWISTING, MassPoints
+from fem_impact.fem.slices import SliceOperator
+from fem_impact.fem.sparse import assemble, tie_operator
+from fem_impact.scene.parameter import Parameter
+from fem_impact.solid.march import march
+from fem_impact.solid.model import Model
+from fem_impact.solid.rodview import modes_of
+from fem_impact.solid.state import State
+
+MOST = 0.005  # relative error of a frequency that is allowed on any mesh
+BENDING = (4.730, 7.853, 10.996)  # wave numbers of slender free bars times the length
+PERIODS = 4  # of the first bending mode over which a bar rings
+COUNT = 14  # modes that are computed
+SLENDER = (2.5, 30.0)  # length over diameter; stubbier bars have oval modes among the stretching ones
+SLICES = 40  # at least; the third bending wave, 4/7 of the bar, needs 20 of them for 0.3 %
+PLUCK = 0.01  # m/s, of the ringing bar
+EVERY = 5  # steps between samples
+
+
+def bar_of(p: Values, velocity: Array | None = None) -> Model:
+    """Return the free bar, at rest or with nodal velocities (n, 3), m/s."""
+    radius = p["diameter"] / 2
+    flat = np.array([[0.0, 0.0], [radius, 0.0]])
+    slab = min(p["diameter"] / p["across"], p["length"] / SLICES)
+    bar = meshes.rod(flat, p["length"], int(p["across"]), slice_length=slab, nose=False)
+    speed = np.zeros_like(bar.mesh.points) if velocity is None else velocity
+    return body_model(FreeBody(bar, bar.mesh.points, speed, p["E"], p["nu"], p["rho"]))
+
+
+def frequencies(model: Model) -> dict[str, Array]:
+    """Return bending and longitudinal frequencies, Hz, told apart by what the axis does."""
+    points, places = model.geometry.rod_points, model.layout.rod
+    found = modes_of(model, COUNT)
+    axis = np.hypot(points[:, 0], points[:, 1]) < 1e-9
+    across, along = (abs(found.shape[places[axis, c]]).max(axis=0) for c in (0, 2))
+    return {
+        "bending": found.frequency[across > 10 * along],
+        "longitudinal": found.frequency[along > 10 * across],
+    }
+
+
+def _torsion(model: Model, p: Values) -> float:
+    """Return the first frequency, Hz, of the motions that the solver's mirrored half leaves out."""
+    rod, layout = model.geometry.rod, model.layout
+    points, cells, n = rod.mesh.points, rod.mesh.cells, layout.rod_size
+    lame, T = lame_constants(p["E"], p["nu"]), tie_operator(rod.mesh.tie, layout.rod, n)
+    drawn = MassPoints.of_rod(rod, lumped_mass(points, cells, p["rho"]), p["rho"], TWISTING)
+    plain = assemble(points, cells, lame, "incompatible", T)
+    fixed = np.zeros(n, dtype=bool)
+    fixed[layout.rod[np.abs(points[:, 1]) < 1e-12][:, [0, 2]]] = True
+    found = rod_modes(drawn.reduced((plain,), layout.body_shape[1]), model.mass[:n], fixed, COUNT)
+    axis = layout.rod[np.hypot(points[:, 0], points[:, 1]) < 1e-9, 1]
+    turns = abs(found.shape[axis]).max(axis=0) < 0.1 * abs(found.shape).max(axis=0)
+    return float(found.frequency[turns][0])
+
+
+def _ring(p: Values) -> tuple[float, float, State]:
+    """Return the first bending and longitudinal frequency, Hz, of a plucked bar, and its end."""
+    beam = bending_modes(p["E"], p["nu"], p["rho"], p["length"], p["diameter"] / 2, 1)
+    points = bar_of(p).geometry.rod_points
+    s = 2 * points[:, 2] / p["length"] - 1
+    w = np.polynomial.legendre.legval(s, beam.deflection[0])
+    theta = np.polynomial.legendre.legval(s, beam.angle[0])
+    bend = np.stack([w, 0 * w, -points[:, 0] * theta], axis=1)
+    stretch = np.stack([0 * w, 0 * w, -np.sin(0.5 * pi * s)], axis=1)
+    speed = PLUCK * (bend / abs(w).max() + stretch)
+    model = bar_of(p, speed)
+    probes = [Probe(model, bend, PERIODS / float(beam.frequency[0])), Probe(model, stretch, 0.0)]
+    march(model, state := model.initial_state(), probes)
+    return probes[0].frequency(), probes[1].frequency(), state
+
+
+class Probe:
+    """Samples the velocity along a shape until a time."""
+
+    every = EVERY
+
+    def __init__(self, model: Model, shape: Array, end: float) -> None:
+        places, mesh = model.layout.rod, model.geometry.rod.mesh
+        self.row = np.zeros(model.layout.size)
+        self.row[places[~mesh.is_hanging]] = shape[~mesh.is_hanging]
+        self.row *= model.mass
+        self.end = end
+        self.times: list[float] = []
+        self.values: list[float] = []
+
+    def observe(self, state: State) -> bool:
+        """Sample; velocities stand half a step before the positions."""
+        self.times.append(state.time - 0.5 * state.dt)
+        self.values.append(float(self.row @ state.v))
+        return 0.0 < self.end <= state.time
+
+    def frequency(self) -> float:
+        """Return the frequency from the first to the last zero crossing."""
+        t, y = np.array(self.times), np.array(self.values)
+        k = np.flatnonzero(np.sign(y[1:]) != np.sign(y[:-1]))
+        crossing = t[k] - y[k] * (t[k + 1] - t[k]) / (y[k + 1] - y[k])
+        return float((len(k) - 1) / (2 * (crossing[-1] - crossing[0])))
+
+
+def _eigen_checks(found: dict[str, Array], exact: Frequencies, p: Values, mesh: BarMesh) -> list[Check]:
+    stretching = [pi * i / p["length"] for i in (1, 2)]
+    wanted = {
+        "bending": (exact.bending, [mesh.bending_error(k / p["length"]) for k in BENDING]),
+        "longitudinal": (exact.longitudinal, [mesh.stretching_error(wave) for wave in stretching]),
+    }
+    return [
+        Check(f"{kind} {i + 1}", "Hz", float(found[kind][i]), float(values[i]), min(allowed, MOST))
+        for kind, (values, errors) in wanted.items()
+        for i, allowed in enumerate(errors)
+    ]
+
+
+def _ringing(check: Check, p: Values, dt: float, periods: float) -> float:
+    """Return what a mode, found within the tolerance of ``check``, may be off by when it rings.
+
+    Leapfrog rings high by (omega dt)^2 / 24. The plucked shape leaves out the lateral motion, a share of
+    (nu pi R / L)^2 / 4 in other modes, which moves the first and the last of its zero crossings.
+    """
+    others = (p["nu"] * pi * p["diameter"] / (2 * p["length"])) ** 2 / 4
+    return min(MOST, check.tolerance + (2 * pi * check.reference * dt) ** 2 / 24 + others / (pi * periods))
+
+
+def solve_modes(p: Values) -> Solved:
+    """Compare both ways of finding frequencies with Rayleigh-Ritz in three dimensions.
+
+    Raises
+    ------
+    SceneError
+        If the bar is too stubby or too slender.
+    """
+    steel.slender(p, "diameter", *SLENDER)
+    exact = cylinder_frequencies(p["E"], p["nu"], p["rho"], p["length"], p["diameter"] / 2)
+    model = bar_of(p)
+    mesh = BarMesh(p["nu"], p["across"], p["diameter"] / 2, model.geometry.rod.slice_length)
+    checks = _eigen_checks(frequencies(model), exact, p, mesh)
+    bend, stretch, state = _ring(p)
+    torsion = min(MOST, mesh.twisting_error(p["length"]))
+    checks.append(Check("torsion 1", "Hz", _torsion(model, p), float(exact.torsion[0]), torsion))
+    for rung, still in ((bend, checks[0]), (stretch, checks[len(BENDING)])):
+        periods = PERIODS * still.reference / checks[0].reference
+        allowed = _ringing(still, p, state.dt, periods)
+        checks.append(Check(f"{still.name}, ringing", "Hz", rung, still.reference, allowed))
+    return Solved(tuple(checks), state.step, len(model.geometry.rod.mesh.cells))
+
+
+PARAMETERS: tuple[Parameter, ...] = (
+    steel.length(),
+    steel.diameter(),
+    *steel.elastic(),
+    steel.across(low=8),
+)
+MODES = Problem(
+    "modes",
+    "natural frequencies of a free round bar, by eigenproblem and by ringing",
+    PARAMETERS,
+    solve_modes,
+)
+
+WAVES_TOLERANCE = 0.005  # of c0
+JUDGED, SHORT = 0.2 + 1e-9, "waves so short are up to 1 % slow even with 24 cells across"
+LONGITUDINAL, FLEXURAL = 2, 0  # components of the axis that move
+
+
+class _Slice:
+    """One slice of the bar: its operator, the masses of a layer, and who may move."""
+
+    def __init__(self, p: Values) -> None:
+        radius = p["diameter"] / 2
+        h = p["diameter"] / p["across"] * p["aspect"]
+        flat = np.array([[0.0, 0.0], [radius, 0.0]])
+        bar = meshes.rod(flat, 4 * h, int(p["across"]), slice_length=h, nose=False)
+        first = bar.body_cells[:, 0]
+        cells, points = bar.mesh.cells[first], bar.mesh.points
+        masses = lumped_mass(points, bar.mesh.cells, p["rho"])
+        self.drawn = MassPoints.of_rod(bar, masses, p["rho"]).section()
+        K = element_stiffness(points, cells, lame_constants(p["E"], p["nu"]), "incompatible")
+        self.count, self.height, self.cells = len(bar.body_nodes), bar.slice_length, len(cells)
+        section = np.full(len(points), -1)
+        section[bar.body_nodes[:, :2].T] = np.arange(self.count)
+        low, up = section[cells[:, :4]], section[cells[:, 4:]]
+        self.operator = SliceOperator.of(K, low, up)
+        nodal = masses[first]
+        mass = np.bincount(low.ravel(), nodal[:, :4].ravel()) + np.bincount(up.ravel(), nodal[:, 4:].ravel())
+        self.mass = np.tile(mass, 3)
+        place = points[bar.body_nodes[:, 0]]
+        free = np.ones((3, self.count), dtype=bool)
+        free[1, np.abs(place[:, 1]) < 1e-12] = False
+        self.free = np.flatnonzero(free.ravel())
+        self.axis = int(np.argmin(np.hypot(place[:, 0], place[:, 1])))
+
+    def matrix(self, k: float) -> NDArray[np.complex128]:
+        """Return the dense stiffness seen by a wave number, N/m."""
+        o, n = self.operator, 3 * self.count
+        turn = np.exp(1j * k * self.height)
+        values = o.lower + o.upper + turn * o.above + np.conj(turn) * o.below
+        plain = sp.csr_matrix((values, o.columns, o.start), shape=(n, n))
+        return np.asarray((self.drawn.T @ plain @ self.drawn).toarray())
+
+    def frequency(self, k: float, component: int) -> float:
+        """Return the lowest circular frequency whose axis moves mostly along a component."""
+        root = 1 / np.sqrt(self.mass[self.free])
+        K = self.matrix(k)[np.ix_(self.free, self.free)] * root[:, None] * root
+        square, shape = eigh(K, subset_by_index=(0, 5))
+        moved = np.zeros((3 * self.count, 6), dtype=np.complex128)
+        moved[self.free] = root[:, None] * shape
+        at = abs(moved[self.axis + self.count * np.arange(3)])
+        # waves of higher order around the bar leave the axis at rest
+        taken = (at.argmax(axis=0) == component) & (at.max(axis=0) > 0.1 * abs(moved).max(axis=0))
+        return float(np.sqrt(square[np.flatnonzero(taken)[0]]))
+
+
+def solve_waves(p: Values) -> Solved:
+    """Compare both first modes at a few radii over wavelength."""
+    bar, c0 = _Slice(p), bar_speed(p["E"], p["rho"])
+    checks = []
+    for ratio in np.linspace(p["ratio"] / 4, p["ratio"], 4):
+        k = 2 * pi * ratio / (p["diameter"] / 2)
+        exact = {
+            LONGITUDINAL: ("longitudinal", longitudinal_speed(ratio, p["nu"])),
+            FLEXURAL: ("flexural", flexural_speed(ratio, p["nu"])),
+        }
+        for component, (name, speed) in exact.items():
+            found = bar.frequency(k, component) / k / c0
+            label = f"{name} c/c0 at radius/wavelength {ratio:.3g}"
+            checks.append(
+                Check(label, "1", found, speed, WAVES_TOLERANCE, "absolute")
+                if ratio <= JUDGED
+                else Check.shown(label, "1", found, speed, SHORT)
+            )
+    return Solved(tuple(checks), 0, bar.cells)
+
+
+WAVES = Problem(
+    "waves",
+    "phase speeds of the first longitudinal and flexural waves in an endless bar of slices",
+    (
+        steel.diameter(),
+        *steel.elastic(),
+        Parameter("ratio", "largest radius over wavelength, judged up to 0.2", "", 0.01, 0.5, default=0.2),
+        steel.across(low=8),
+        Parameter(
+            "aspect", "height of a slice over diameter / across (runs take 1)", "", 0.1, 4.0, default=1.0
+        ),
+    ),
+    solve_waves,
+)

@@ -1,0 +1,248 @@
+"""Ablation: results with the effects that a scene chooses beside those with all on; cost of each effect.
+
+The thirteen measured sets and a designed set of others (short and long, slow and fast, low and high angle,
+hard and soft) run twice, with ``auto`` and with all effects; a few run again with one effect changed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.case.cells import widest_tip_size
+from fem_impact.case.choose import choices, everything, resolved
+from fem_impact.case.effects.registry import BARRIERS, EFFECTS, NAMES
+from fem_impact.case.effects.slots import Harm, quick_impact
+from fem_impact.case.plan import plan as plan_of
+from fem_impact.jobs.job import Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.physics.beam_impact import BeamImpact
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.tables.table import Cell, Table
+
+if TYPE_CHECKING:
+    from fem_impact.progress import ProgressMeter
+    from fem_impact.scene.types import Scene
+
+
+TIP = 0.8e-3  # m, tip size: coarse, the same for both runs of a pair
+WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # accepted changes: of e, of E_vib, of E_0
+COST_COLUMNS = (
+    *("run", "CPU, of auto", "a step, of auto"),
+    *("change of e", "e expected", "change of E_vib/E_0", "E_vib/E_0 expected"),
+)
+BESIDE_COLUMNS = ("scene", "e", "e expected", "E_vib/E_0", "E_vib/E_0 expected", "found over expected")
+COSTED = ("t5b", "t3-machined", "t6-17")  # scenes that run with single effects changed
+BASE = "t5b"  # scene that the designed ones change
+
+
+def _speed(v: float) -> dict[str, Any]:
+    """Return the changed keys of an impact with v, m/s, along either direction."""
+    return {"impact.v_n": f"{-v} m/s", "impact.v_t": f"{-v} m/s"}
+
+
+def _yield(body: str, stress: float) -> dict[str, Any]:
+    """Return the changed keys of a body with a yield stress, MPa, without hardening."""
+    return {f"{body}.material.{key}": f"{stress} MPa" for key in ("yield_stress", "ultimate_stress")}
+
+
+_FALL = {"impact.v_n": "-1.5024 m/s", "impact.v_t": "-1.4821 m/s"}  # of the base scene, at every angle
+DESIGNED: Mapping[str, Mapping[str, Any]] = {
+    "short-slow": {"projectile.length": "40 mm", **_speed(0.2)},
+    "short-fast": {"projectile.length": "40 mm", **_speed(8.0)},
+    "long-slow": {"projectile.length": "200 mm", **_speed(0.2)},
+    "long-fast": {"projectile.length": "200 mm", **_speed(8.0)},
+    "low-angle": {"impact.angle": "5 deg", **_FALL},
+    "high-angle": {"impact.angle": "75 deg", **_FALL},
+    "axial": {"impact.angle": "0 deg", "impact.v_t": "0 m/s", "projectile.tip": "A"},
+    "slippery": {"surface.friction": 0.0},
+    "soft-plate": _yield("barrier", 80.0),
+    "hard-steels": {**_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
+    "stiff-barrier": {
+        "projectile.material.E": "70 GPa",
+        "barrier.material.E": "10000 GPa",
+        **_yield("barrier", 90000.0),
+    },
+    "plastic-rod": {
+        "projectile.material.E": "3 GPa",
+        "projectile.material.nu": 0.35,
+        "projectile.material.rho": "1180 kg/m3",
+        **_yield("projectile", 70.0),
+    },
+    "stub-on-lead": {"projectile.length": "30 mm", **_speed(0.2), **_yield("barrier", 10.0)},
+    "hard-gentle": {**_speed(0.05), **_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
+}
+
+
+def plan(request: Request, results: Results) -> list[Job]:
+    """Return the runs of every scene with ``auto`` and all effects; of `COSTED`, those with one changed."""
+    jobs = []
+    for name, scene in _scenes(request).items():
+        jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", all_on(scene))]
+        if name in COSTED:
+            jobs += [Job(f"{name}{change}", replace(scene, effects=e)) for change, e in _changes(scene)]
+    return jobs
+
+
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+    """Return the study: where ``auto`` differs from all effects, and what each effect costs."""
+    scenes = _scenes(request)
+    pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
+    rows = [
+        row(name, auto, whole)
+        for name, (auto, whole) in pairs.items()
+        if isinstance(auto, Outcome) and isinstance(whole, Outcome)
+    ]
+    costs = [
+        cost_row(f"{name}{change}", run, base, expected_change(scene, effects))
+        for name, scene in scenes.items()
+        if name in COSTED and isinstance(base := results[f"{name}-auto"], Outcome)
+        for change, effects in _changes(scene)
+        if isinstance(run := results[f"{name}{change}"], Outcome)
+    ]
+    beside = [
+        expected_row(name, whole, quick_impact(all_on(scenes[name])))
+        for name, (_, whole) in pairs.items()
+        if isinstance(whole, Outcome)
+    ]
+    return publish(_study_report(rows, costs, beside), request, results)
+
+
+def all_on(scene: Scene) -> Scene:
+    """Return the scene with all effects on that it can have."""
+    whole, impossible = everything(scene), _impossible(scene)
+    return replace(whole, effects=tuple(name for name in whole.effects if name not in impossible))
+
+
+def _impossible(scene: Scene) -> set[str]:
+    """Return the effects of which the scene does not state what they are about."""
+    skin = set() if scene.surface.skin_depth else {"machined-skin"}
+    return skin if scene.barrier.bends else skin | {"plate-bending"}
+
+
+def row(name: str, auto: Outcome, whole: Outcome) -> list[Cell]:
+    """Return a row of the ablation table: ``auto`` beside all effects; vibration that is off counts as 0."""
+    e, e_all = (known(run.restitution.edge.e) for run in (auto, whole))
+    vib, vib_all = _vibration(auto), _vibration(whole)
+    same_e = abs(e - e_all) <= WITHIN_E * abs(e_all)
+    same_vib = abs(vib - vib_all) <= max(WITHIN_VIB * vib_all, LEAST_VIB)
+    on, on_all = auto.provenance.effects, whole.provenance.effects
+    off = [effect for effect in NAMES if effect in on_all and effect not in on]
+    cost = auto.cost.cpu / whole.cost.cpu if whole.cost.cpu else None
+    changes = [e_all, e - e_all, vib_all, vib - vib_all, cost]
+    return [name, ", ".join(off) or "none", *changes, "within" if same_e and same_vib else "beyond"]
+
+
+def expected_change(scene: Scene, effects: Sequence[str]) -> Harm:
+    """Return the expected changes of e and E_vib/E_0 by a change of one effect, the last of ``effects``.
+
+    They are differences of two quick impacts; for an effect that these do not model, only magnitudes.
+    """
+    changed = effects[-1].removeprefix("-")
+    if EFFECTS[changed].harm and changed not in BARRIERS:
+        return next(choice.harm for choice in choices(scene) if choice.name == changed)
+    before, after = (quick_impact(resolved(s)) for s in (scene, replace(scene, effects=tuple(effects))))
+    return Harm(after.e - before.e, after.E_vib - before.E_vib)
+
+
+def expected_row(name: str, whole: Outcome, expected: BeamImpact) -> list[Cell]:
+    """Return e and E_vib/E_0 of a run beside those of the quick impact, and the ratio of E_vib to that."""
+    e, vib = known(whole.restitution.edge.e), known(whole.energy.vibration)
+    return [name, e, expected.e, vib, expected.E_vib, vib / expected.E_vib if expected.E_vib else None]
+
+
+def cost_row(name: str, run: Outcome, base: Outcome, harm: Harm) -> list[Cell]:
+    """Return a row of the cost table: times over those of ``auto``, actual and expected changes."""
+    e, e_base = (known(r.restitution.edge.e) for r in (run, base))
+    times = [r.cost.cpu / steps if (steps := known(r.cost.steps)) else 0.0 for r in (run, base)]
+    return [
+        *(name, run.cost.cpu / base.cost.cpu if base.cost.cpu else None),
+        times[0] / times[1] if times[1] else None,
+        *(e - e_base, harm.e, _vibration(run) - _vibration(base), harm.E_vib),
+    ]
+
+
+def _vibration(run: Outcome) -> float:
+    """Return E_vib/E_0; 0 for a rod that cannot vibrate."""
+    return or_none(run.energy.vibration) or 0.0
+
+
+def _scenes(request: Request) -> dict[str, Scene]:
+    """Return the requested scenes by name, with ``auto`` effects.
+
+    Their tip size is `TIP`, or the largest that their contact allows if that is less.
+    """
+    scenes = {name: load(name) for name in MEASURED_SETS}
+    scenes |= {name: replace_all(load(BASE), changes) for name, changes in DESIGNED.items()}
+    wanted = request.ids or (("t5b", "stiff-barrier", "stub-on-lead") if request.quick else tuple(scenes))
+    coarse = {}
+    for name in wanted:
+        # a contact that the coarse mesh does not resolve is the same in both runs of a pair
+        keep = {"effects": "auto", "save.frames": 0, "accuracy.unresolved": "report"}
+        scene = replace_all(scenes[name], keep)
+        size = min(TIP, widest_tip_size(plan_of(scene, "modal").bodies))
+        coarse[name] = replace_all(scene, {"accuracy.tip_size": f"{size * 1e3:.2g} mm"})
+    return coarse
+
+
+def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
+    """Return each change of one effect: its suffix in the job's name, and the scene's ``effects``."""
+    changes: list[tuple[str, tuple[str, ...]]] = []
+    for choice in choices(scene):
+        if choice.name in _impossible(scene):
+            continue
+        if choice.name in BARRIERS and not choice.on:
+            changes.append((f"-with-{choice.name}", ("auto", choice.name)))
+        elif choice.name not in BARRIERS:
+            mark, word = ("-", "without") if choice.on else ("", "with")
+            changes.append((f"-{word}-{choice.name}", ("auto", f"{mark}{choice.name}")))
+    return changes
+
+
+def _within(factor: float, beside: list[list[Cell]]) -> int:
+    """Return in how many rows of `expected_row` the ratio of E_vib lies within a factor."""
+    ratios = [line[-1] for line in beside if isinstance(line[-1], float)]
+    return sum(1 / factor <= ratio <= factor for ratio in ratios)
+
+
+def _study_report(rows: list[list[Cell]], costs: list[list[Cell]], beside: list[list[Cell]]) -> StudyReport:
+    beyond = [str(line[0]) for line in rows if line[-1] == "beyond"]
+    cheaper = [line for line in rows if isinstance(line[6], float) and line[6] < 1]
+    columns = (
+        *("scene", "on: all but", "e, all on", "change of e", "E_vib/E_0, all on", "change of E_vib/E_0"),
+        *("CPU, of all on", "verdict"),
+    )
+    limits = f"{WITHIN_E:.0%} of e and {WITHIN_VIB:.0%} of E_vib or {LEAST_VIB:g} of E_0"
+    return StudyReport(
+        study="effects",
+        title="Effects chosen by the scene, beside everything on",
+        findings=[
+            f"{len(rows) - len(beyond)} of {len(rows)} scenes agree with everything on within {limits}.",
+            f"{len(cheaper)} of {len(rows)} take less processor time.",
+            *([f"Beyond: {', '.join(beyond)}."] if beyond else []),
+            f"The quick impact gives E_vib within a factor of two in {_within(2, beside)}, of three in "
+            f"{_within(3, beside)} of {len(beside)} scenes.",
+        ],
+        sheets=[
+            Sheet("ablation", "Auto beside everything on, on the same coarse mesh.", Table.of(columns, rows)),
+            Sheet(
+                "costs",
+                "One effect changed: time and time a step over those of auto; changes of e and E_vib, and "
+                "about how large `check` expects them.",
+                Table.of(COST_COLUMNS, costs),
+            ),
+            Sheet(
+                "expected",
+                "Everything on beside the quick impact, from which `check` expects changes.",
+                Table.of(BESIDE_COLUMNS, beside),
+            ),
+        ],
+        assumptions=[
+            f"Tips of {TIP * 1e3:g} mm, less under a smaller contact: differences count here, not values."
+        ],
+    )

@@ -1,0 +1,124 @@
+"""Scenes of the studies over slenderness: drops over diameter, tip, speed, angle, friction, yielding."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import cos, radians, sin
+
+from fem_impact.evidence.references.free_modes import bending_period
+from fem_impact.scene.fields import FlowLaw
+from fem_impact.scene.impact import Impact
+from fem_impact.scene.library import surfaces
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import Save, Scene, Surface
+from rigid.slenderness import EXPONENT
+
+PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
+"""Lengths, m, of the three rods of 19 mm."""
+
+PAPER = load("t5b")
+"""Scene whose steels, barrier and tip all drops have: tip B, the edge of the face, rounded by 3 mm."""
+
+READINGS: dict[FlowLaw, Scene] = {
+    "tensile": PAPER,
+    "hardness": replace_all(
+        PAPER, {"projectile.material.law": "hardness", "barrier.material.law": "hardness"}
+    ),
+}
+"""That scene with the flow curve of both steels from their ultimate stress, and from their hardness."""
+
+STATES = {"frictionless": 0.0} | dict(sorted((name, one.friction) for name, one in surfaces().items()))
+"""f of no friction and of the shipped surface states, in the order of their names."""
+
+BODY, TIP = 0.019, 0.003  # m: diameter and edge radius of the paper's rods
+DROP_NOTES = (
+    "Dropped without spin: v_n = -v cos(alpha), v_t = -v sin(alpha); no gravity during the impact.",
+    "Tip B (the edge of the face meets the plate), edge radius 3 mm on 19 mm and in proportion to other "
+    "diameters; steels of the paper.",
+    "Elastic drops: neither body yields, whatever the pressure. Yielding drops have every effect that the "
+    "scene calls for.",
+)
+MODAL_NOTE = "Modal: a round contact of the same sqrt(R1 R2); each outcome tells its error."
+
+
+def length_of(gamma: float, diameter: float = BODY) -> float:
+    """Return the length, m, of a rod of slenderness gamma, m^-0.3815 (Eq 29)."""
+    return float(gamma * diameter**EXPONENT)
+
+
+@dataclass(frozen=True, slots=True)
+class Drop:
+    """A rod that falls on the plate without spin: lengths in m, angle in degrees, speed in m/s.
+
+    With ``yields`` both bodies yield, on the flow curve that ``law`` names (see `Material`); without
+    ``vibrates`` the rod is rigid, on the same contact. A ``tip_radius`` of None is in proportion to the
+    diameter.
+    """
+
+    length: float
+    angle: float = 45.0
+    friction: float = 0.0
+    yields: bool = False
+    diameter: float = BODY
+    tip_radius: float | None = None
+    speed: float = 2.1
+    vibrates: bool = True
+    law: FlowLaw = "tensile"
+
+    @property
+    def gamma(self) -> float:
+        """Slenderness, m^-0.3815."""
+        return float(self.length / self.diameter**EXPONENT)
+
+    @property
+    def name(self) -> str:
+        """Identifier of rounded numbers: lengths in um, angle in 0.01 deg, f in 0.001, speed in mm/s."""
+        kind = ("y" if self.yields else "e") + ("v" if self.vibrates else "r")
+        kind += "" if self.law == "tensile" else self.law[0]
+        lengths = (self.length * 1e6, self.diameter * 1e6, self.radius * 1e6)
+        numbers = (*lengths, self.angle * 1e2, self.friction * 1e3, self.speed * 1e3)
+        return "-".join([kind, *(str(round(n)) for n in numbers)])
+
+    @property
+    def radius(self) -> float:
+        """Edge radius of the tip, m."""
+        return TIP * self.diameter / BODY if self.tip_radius is None else self.tip_radius
+
+    @property
+    def first_period(self) -> float:
+        """First bending period of the rod, s."""
+        steel = PAPER.projectile.material
+        return bending_period(steel.E, steel.nu, steel.rho, self.length, self.diameter / 2)
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Effects by their numbers but for what the drop states: vibration, yielding, no gravity.
+
+        The contact's heat does not act on the motion, so it is not watched.
+        """
+        stated = "vibration" if self.vibrates else "-vibration"
+        bodies = () if self.yields else ("-rod-plasticity", "barrier-elastic")
+        return ("auto", stated, *bodies, "-gravity", "-contact-heating")
+
+    def scene(self) -> Scene:
+        """Return the scene, on the mesh that it gets by itself."""
+        angle, paper = radians(self.angle), READINGS[self.law]
+        return replace(
+            paper,
+            id=self.name,
+            title=f"gamma {self.gamma:.1f}, {self.angle:g} deg, {self.speed:g} m/s, f {self.friction:g}",
+            projectile=replace(
+                paper.projectile, length=self.length, diameter=self.diameter, tip_radius=self.radius
+            ),
+            surface=surface_of(self.friction),
+            impact=Impact(angle, -self.speed * cos(angle), -self.speed * sin(angle)),
+            effects=self.effects,
+            save=Save(frames=0),
+            measured=None,
+        )
+
+
+def surface_of(f: float) -> Surface:
+    """Return the shipped surface state with this coefficient of friction, or one of its own."""
+    shipped = (surface for surface in surfaces().values() if surface.friction == f)
+    return next(shipped, Surface("custom", f, f, f, "point of a study"))

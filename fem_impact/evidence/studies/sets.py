@@ -1,0 +1,271 @@
+"""The measured sets, each on two meshes, beside the experiments, and what uncertain inputs could explain.
+
+Both meshes run with the barrier's grid at two places half a cell apart, so that a band holds the scatter by
+the place too; the run at the first place of the finer mesh is the one that is kept with its fields.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.answers.compare import COMPARED, Row, compare
+from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.evidence.studies.inputs import (
+    DESCRIPTIONS,
+    INPUT_CHANGES,
+    explanations,
+    sensitivity_jobs,
+    sensitivity_rows,
+)
+from fem_impact.evidence.studies.pairs import PLACES, finer_and_coarser, shifted, with_limits
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import known, or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import ADDED, EnergyShare, shares
+from fem_impact.run.tests import tests_of
+from fem_impact.scene.shipped import load, replace_all
+from fem_impact.scene.types import MEASURED_SETS
+from fem_impact.tables.csv import COMPARISON
+from fem_impact.tables.table import DASH, Table
+from fem_impact.tables.text import plain
+
+if TYPE_CHECKING:
+    from fem_impact.progress import ProgressMeter
+
+
+QUICK = {"save.frames": 40}  # a third of the frames
+QUICK_SETS = ("t3-machined", "t4", "t5b")
+HALF_CELL = "half-cell"  # jobs with the grid of the barrier half a cell further along t
+
+
+def jobs_of(name: str, quick: bool, out: Path) -> dict[str, Job]:
+    """Return the jobs of a set: those of its meshes and, unless quick, "coarse" with each input changed."""
+    meshes = mesh_jobs(name, quick, out)
+    return meshes if quick else meshes | sensitivity_jobs(meshes["coarse"], out)
+
+
+def mesh_jobs(name: str, quick: bool, out: Path) -> dict[str, Job]:
+    """Return the jobs of a set, or of a scene file with own tests, on two meshes: "fine" and "coarse".
+
+    Unless quick, both run again with the barrier's grid half a cell further.
+    """
+    scene = load(name)
+    set_id = scene.id
+    if quick:
+        scene = replace_all(scene, QUICK)
+    fine, coarse = finer_and_coarser(scene)
+    coarse_job = Job(f"{set_id}-coarse", coarse, out=out / f"{set_id}-coarse")
+    meshes = {"fine": Job(set_id, fine, out=out / set_id), "coarse": coarse_job}
+    if quick:
+        return meshes
+    return meshes | {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
+
+
+def _half_cell(job: Job) -> Job:
+    """Return the job with the grid of the barrier half a cell further along t, without fields."""
+    return Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, PLACES[1]))
+
+
+def chosen(request: Request) -> tuple[str, ...]:
+    """Return the requested sets; by default all, or one of each rod if quick."""
+    return request.ids or (QUICK_SETS if request.quick else MEASURED_SETS)
+
+
+def plan(request: Request, results: Results) -> list[Job]:
+    """Return the jobs of the measured sets."""
+    groups = (jobs_of(name, request.quick, request.out) for name in chosen(request))
+    return [job for group in groups for job in group.values()]
+
+
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+    """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
+    out, outcomes, comparison, changed = request.out, list[Outcome](), list[Row](), list[Row]()
+    for name in chosen(request):
+        runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
+        if isinstance(runs["fine"], Outcome):
+            scene = load(name)
+            limited = with_limits(at_places(runs, "fine"), at_places(runs, "coarse"))
+            limited.write(out / scene.id / "outcome.json")
+            outcomes.append(limited)
+            comparison += compare(limited, tests_of(scene))
+        if not request.quick:
+            changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
+    published = publish(sets_report(outcomes, comparison, changed), request, results)
+    return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
+
+
+def at_places(runs: Results, mesh: str) -> list[Outcome | Failure]:
+    """Return the runs of a mesh at its places of the barrier's grid, of `mesh_jobs`."""
+    return [runs[kind] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in runs]
+
+
+SENSITIVITY = ("set", "quantity", "input", "base", "changed")
+
+
+def sets_report(
+    outcomes: Sequence[Outcome], comparison: Sequence[Row], changed: Sequence[Row]
+) -> StudyReport:
+    """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
+    explained = explanations(comparison, changed)
+    sentences = [inside_sentence(comparison), *([miss_sentence(explained)] if explained else [])]
+    cells = {(row["set"], row["quantity"]): _cell(row) for row in comparison if row["quantity"] in COMPARED}
+    names = dict.fromkeys(row["set"] for row in comparison)
+    beside = Table.of(
+        ("set", *COMPARED), [(name, *(cells.get((name, q)) for q in COMPARED)) for name in names]
+    )
+    return StudyReport(
+        "sets",
+        "Model beside measurement",
+        sentences,
+        sheets=[
+            Sheet("comparison", "Every compared quantity", Table.of(COMPARISON, comparison), shown=False),
+            Sheet("beside", BESIDE.format(_banded(outcomes)), beside),
+            Sheet("shares", "Energies after the last separation, % of E_0", _shares(outcomes)),
+            *_limits(outcomes),
+            *(_input_sheets(changed, explained) if changed else ()),
+        ],
+        assumptions=[f"{name}: {text}." for name, text in DESCRIPTIONS.items()] if changed else (),
+        sources=sorted({effect for outcome in outcomes for effect in outcome.provenance.effects}),
+        conclusions=[("", sentence) for sentence in sentences],
+        outcomes=outcomes,
+        comparison=comparison,
+    )
+
+
+def inside_sentence(comparison: Sequence[Row]) -> str:
+    """Return the sentence on how many quantities agree with the measurement, and how many do not."""
+    verdicts = [row["verdict"] for row in comparison if row["measured_mean"] is not None]
+    starts = ("inside", "undecided", "outside, within the scatter")
+    inside, undecided, scatter = (sum(v.startswith(start) for v in verdicts) for start in starts)
+    return (
+        f"{inside} of {len(verdicts)} computed quantities lie inside the 95 % interval of the measured mean; "
+        f"of the others {undecided} are undecided by the mesh, {scatter} lie within the scatter of single "
+        f"tests, {len(verdicts) - inside - undecided - scatter} do not agree or are not known."
+    )
+
+
+def miss_sentence(explained: Sequence[Row]) -> str:
+    """Return the sentence on how many misses each input could explain, and how many none could."""
+    counts = {name: sum(name in row["could"] for row in explained) for name in DESCRIPTIONS}
+    ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
+    listed = ", ".join(f"{name} {counts[name]}" for name in ranked) or "none"
+    lost = sum(not row["could"] for row in explained)
+    return (
+        f"{len(explained)} computed quantities lie outside the 95 % interval of the measured mean. An "
+        f"uncertain input, changed alone, could explain: {listed}. No single input explains {lost}."
+    )
+
+
+BESIDE = (
+    "Model{} / measured mean with standard deviation; bold: inside the 95 % interval of the mean, "
+    "?: undecided by the mesh"
+)
+
+
+def _banded(outcomes: Sequence[Outcome]) -> str:
+    """Return which sets have the band of two meshes."""
+    without = [o.provenance.scene_id for o in outcomes if or_none(o.validity.mesh_band) is None]
+    if len(without) == len(outcomes):
+        return " on one mesh, without a band,"
+    return ", with the band of its two meshes" + (f" (one mesh: {', '.join(without)})," if without else ",")
+
+
+def with_spread(value: float, spread: float | None, digits: int) -> str:
+    """Return a value with its band or standard deviation, where it has one."""
+    return f"{value:.{digits}f}" + ("" if spread is None else f" ± {spread:.{digits}f}")
+
+
+def _cell(row: Row) -> str:
+    digits = 1 if row["quantity"] == "Omega" else 3
+    model, measured = (
+        DASH if row[value] is None else with_spread(row[value], row[spread], digits)
+        for value, spread in (("model", "band"), ("measured_mean", "measured_sd"))
+    )
+    if row["verdict"] == "inside":
+        return f"**{model}** / {measured}"
+    return f"{model} / {measured}{' ?' if row['verdict'].startswith('undecided') else ''}"
+
+
+def _shares(outcomes: Sequence[Outcome]) -> Table:
+    """Return one row per set with its shares of E_0; with two meshes their limits with bands."""
+    listed = (*shares("report"), ADDED)
+    rows = [
+        (
+            o.provenance.scene_id,
+            *(_percent(o, share) for share in listed),
+            f"{o.energy.residual:.0e}",
+            known(o.cost.steps),
+            f"{o.cost.cpu:.0f}",
+        )
+        for o in outcomes
+    ]
+    return Table.of(("set", *(f"{s.label}, %" for s in listed), "residual", "steps", "CPU s"), rows)
+
+
+def _percent(outcome: Outcome, share: EnergyShare) -> str | None:
+    if share.key.path[-1] == "vibration" and or_none(outcome.energy.below_floor):
+        return "below floor"
+    estimate, band = outcome.estimate(share.key)
+    value = or_none(estimate)
+    if value is None:
+        return None
+    digits = 2 if abs(100 * value) < 10 else 1
+    return f"{100 * value:.{digits}f}" + (f" ± {100 * band:.{digits}f}" if band is not None else "")
+
+
+def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
+    """Return one row per set with two meshes: limits and bands of e and E_vib, CPU time of the finer mesh."""
+    rows = []
+    for outcome in outcomes:
+        if or_none(outcome.validity.mesh_band):
+            cells = [outcome.provenance.scene_id]
+            for key, scale in (("e_edge", 1), ("E_vib_over_E_0", 100)):
+                limit = known(outcome.validity.mesh_limit)[key]
+                band = known(outcome.validity.mesh_band)[key]
+                cells += [f"{scale * limit:.3f} ± {scale * band:.3f}", plain(100 * band / abs(limit), 2)]
+            rows.append([*cells, f"{outcome.cost.cpu:.0f}"])
+    head = ("set", "e, limit", "of e, %", "E_vib / E_0, %, limit", "of E_vib, %", "CPU s")
+    caption = "Limits for vanishing elements, their bands, these in per cent, and time of the finer mesh"
+    return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
+
+
+def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Sheet]:
+    return [
+        Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
+        Sheet("changes", "Changes by each input alone, on the coarser mesh", _changes(changed)),
+        Sheet(
+            "explanations",
+            "What could explain a quantity outside its interval; in brackets the share of the miss that an "
+            "input makes up: 100 % brings the model to the measured mean, below 0 takes it further away",
+            _explanations(explained),
+        ),
+    ]
+
+
+def _changes(changed: Sequence[Row]) -> Table:
+    """Return one row per set and quantity: value on the coarser mesh and its change by each input."""
+    by_quantity: dict[tuple[str, str], dict[str, Row]] = {}
+    for row in changed:
+        by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
+    rows = []
+    for key, by_input in by_quantity.items():
+        base = next(iter(by_input.values()))["base"]
+        shown = {name: f"{row['changed'] - row['base']:+.2g}" for name, row in by_input.items()}
+        rows.append((*key, f"{base:.3g}", *(shown.get(name, "") for name in DESCRIPTIONS)))
+    return Table.of(("set", "quantity", "coarser mesh", *DESCRIPTIONS), rows)
+
+
+def _explanations(explained: Sequence[Row]) -> Table:
+    """Return one row per quantity outside its interval: the inputs that could explain it, and the others."""
+    rows = []
+    for row in explained:
+        labels = {name: f"{name} ({share:+.0%})" for name, share in row["shares"].items()}
+        could = ", ".join(labels[name] for name in row["could"]) or "none of these"
+        cannot = ", ".join(label for name, label in labels.items() if name not in row["could"])
+        numbers = (f"{row[key]:.3g}" for key in ("model", "measured_mean"))
+        rows.append((row["set"], row["quantity"], *numbers, could, cannot))
+    return Table.of(("set", "quantity", "model", "measured", "could explain it", "cannot"), rows)

@@ -1,0 +1,101 @@
+"""Validation in the terms of ASME V&V 20: the model's error beside every uncertainty of its comparison.
+
+Each measured set runs on two meshes as in the study of the sets, and on the coarser one also over a sample of
+all uncertain inputs at once (`.inputs`). Response surfaces through that sample give the uncertainty by the
+inputs, the share of each input in it, the spread from test to test, and the constants that would meet all
+sets at once (`.calibration`).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from fem_impact.answers.report import Request, StudyResult, publish
+from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, sample_values
+from fem_impact.evidence.studies.pairs import with_limits
+from fem_impact.evidence.studies.response import fit
+from fem_impact.evidence.studies.sets import at_places, mesh_jobs
+from fem_impact.evidence.studies.validated import (
+    DRAWN,
+    KEYS,
+    ValidatedSet,
+    compared,
+    nominal_place,
+    outputs,
+    scaled,
+    unit_sample,
+)
+from fem_impact.evidence.studies.validation_report import study_report
+from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.run import Results
+from fem_impact.outcome.keys import Unknown
+from fem_impact.outcome.record import Outcome
+from fem_impact.scene.shipped import replace_all
+from fem_impact.scene.types import MEASURED_SETS
+from rigid.experiments import measured_set
+
+if TYPE_CHECKING:
+    from fem_impact.progress import ProgressMeter
+
+
+SIZE, QUICK_SIZE = 64, 16  # runs of a set's sample
+FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
+
+
+def plan(request: Request, results: Results) -> list[Job]:
+    """Return the jobs of the requested sets: two meshes at two places, and the sample."""
+    return [
+        job for name in _sets(request) for job in (*_meshes(name, request).values(), *_sample(name, request))
+    ]
+
+
+def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+    """Return the study: comparison errors, their uncertainties, what causes them, calibrated constants."""
+    sets = [found for name in _sets(request) if (found := _validated(name, request, results))]
+    return publish(study_report(sets), request, results)
+
+
+def _sets(request: Request) -> tuple[str, ...]:
+    """Return the requested sets; by default all, or one of the quick study."""
+    return request.ids or (("t5b",) if request.quick else MEASURED_SETS)
+
+
+def _meshes(name: str, request: Request) -> dict[str, Job]:
+    """Return the jobs at nominal inputs by mesh and place, without their fields."""
+    jobs = mesh_jobs(name, request.quick, request.out)
+    return {k: Job(job.name, replace_all(job.scene, {"save.frames": 0})) for k, job in jobs.items()}
+
+
+def _sample(name: str, request: Request) -> list[Job]:
+    """Return one job per row of the sample of a set, on the coarser mesh."""
+    scene, measured = _meshes(name, request)["coarse"].scene, measured_set(name)
+    unit = unit_sample(QUICK_SIZE if request.quick else SIZE)
+    return [
+        Job(f"{name}-{at}", replace_all(scene, changes(scene, row)))
+        for at, row in enumerate(sample_values(scene, measured, unit, tests=False))
+    ]
+
+
+def _validated(name: str, request: Request, results: Results) -> ValidatedSet | None:
+    """Return the set from its runs; None where one of its meshes or too much of its sample failed."""
+    measured = measured_set(name)
+    nominal = {kind: results[job.name] for kind, job in _meshes(name, request).items()}
+    fine, coarse = (at_places(nominal, mesh) for mesh in ("fine", "coarse"))
+    runs = [results[job.name] for job in _sample(name, request)]
+    finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
+    if isinstance(fine[0], Failure) or len(finished) < FEWEST:
+        return None
+    validity = with_limits(fine, coarse).validity
+    limits, bands = validity.mesh_limit, validity.mesh_band
+    if isinstance(limits, Unknown) or isinstance(bands, Unknown):
+        return None
+    sampled = scaled(name, unit_sample(len(runs)))[list(finished)]
+    surface = fit(sampled, np.array([outputs(run, measured) for run in finished.values()]))
+    every, tests = (surface(scaled(name, unit_sample(DRAWN), only)) for only in (False, True))
+    S = np.array([limits[key] for key in KEYS])
+    nominal_values = surface(nominal_place(name))[0]
+    u_input = np.sqrt(np.mean((every - nominal_values) ** 2, axis=0))
+    comparisons = compared(measured, S, [bands[key] for key in KEYS], u_input)
+    return ValidatedSet(name, measured, surface, S - nominal_values, every, tests, comparisons)

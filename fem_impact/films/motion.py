@@ -1,0 +1,224 @@
+"""Positions and colours of each frame, with magnification and ranges fixed over the whole film."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from fem_impact.errors import ResultError
+from fem_impact.files.fields_read import FieldFile
+from fem_impact.files.waves import Waves
+from fem_impact.films.kinematics import (
+    axis_of,
+    hex_volumes,
+    magnified,
+    nice_factor,
+    nodal_volumes,
+    rigid_motion,
+    stretch,
+)
+from fem_impact.films.movement import Movement
+
+
+class FieldStyle(NamedTuple):
+    """How a field is shown: label, unit, factor from SI, name in the file, colours, whether it has a sign."""
+
+    name: str
+    unit: str
+    scale: float
+    stored: str = ""
+    colours: str = "YlGnBu"
+    signed: bool = False
+
+
+FIELDS = {
+    "strain": FieldStyle("axial strain", "µm/m", 1e6, colours="coolwarm", signed=True),
+    "stress": FieldStyle("von Mises stress", "MPa", 1e-6, "mises"),
+    "velocity": FieldStyle("speed", "m/s", 1.0),
+    "plastic": FieldStyle("plastic strain", "%", 100.0, "plastic_strain", "YlOrRd"),
+}
+"""The fields that can be shown, the default first."""
+
+LOOKED = 48
+"""Frames at most, evenly over the film, that fix magnification and colour ranges."""
+
+_VISIBLE = 0.35
+"""Magnified size of the largest deformation away from the tip, share of the rod's diameter."""
+
+
+_FURTHEST = 1000.0
+"""Displacement, in sizes of the mesh, that no run reaches within its time."""
+
+
+@dataclass(frozen=True, slots=True)
+class FilmData:
+    """The motion of a run made ready to be drawn.
+
+    Parameters
+    ----------
+    movement : Movement
+    field : str
+        One of ``FIELDS``.
+    rod_nodes : (n,) bool
+        Points of the rod.
+    weights : (n,) float64, m3
+        Volume at each point, zero off the rod.
+    fade : (n,) float64
+        Share of the magnification: 1 in the rod, 0 at the contact.
+    peak : float
+        The factor that is written on the picture.
+    contact : (3,) float64, m
+        Where the rod first touches, on the barrier's surface.
+    span : float, m
+        Diameter of the rod.
+    near, far : tuple of float
+        Fixed colour ranges of the close-up and of the whole rod, in the shown unit.
+    """
+
+    movement: Movement
+    field: str
+    rod_nodes: np.ndarray
+    weights: np.ndarray
+    fade: np.ndarray
+    peak: float
+    contact: np.ndarray
+    span: float
+    near: tuple[float, float]
+    far: tuple[float, float]
+
+    @property
+    def fields(self) -> FieldFile:
+        """Return the field file, for its mesh."""
+        return self.movement.fields
+
+    @property
+    def factor(self) -> np.ndarray:
+        """Magnification of the deformation ``(n,)``."""
+        magnification: np.ndarray = 1.0 + (self.peak - 1.0) * self.fade
+        return magnification
+
+    def positions(self, time: float) -> tuple[np.ndarray, np.ndarray]:
+        """Return ``(n, 3) m`` positions as they are, and with the rod's deformation magnified."""
+        true = self.movement.points(time)
+        shown, rod = true.copy(), self.rod_nodes
+        rigid = rigid_motion(self.fields.points[rod], true[rod], self.weights[rod])
+        shown[rod] = magnified(rigid, true[rod], self.factor[rod])
+        return true, shown
+
+    def colours(self, time: float) -> np.ndarray:
+        """Return the field at the points ``(n,)`` or in the cells ``(m,)``, in the shown unit."""
+        return _colours(self.movement, self.field, time)
+
+
+def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray) -> FilmData:
+    """Look through the film once and fix magnification and colour ranges.
+
+    Raises
+    ------
+    ResultError
+        There is no such field or no rod.
+    """
+    fields = movement.fields
+    if field not in FIELDS:
+        raise ResultError(f'field "{field}" cannot be drawn; choose one of {", ".join(FIELDS)}.')
+    rod_cells = _rod_cells(fields)
+    weights = nodal_volumes(fields.points, rod_cells)
+    rod = np.isin(np.arange(len(fields.points)), rod_cells)
+    lowest = fields.points[rod][np.argmin(fields.points[rod, 2])]
+    span = 2.0 * float(fields.points[rod, 1].max())
+    distance = np.linalg.norm(fields.points - lowest, axis=1) / span
+    looked = np.asarray(times)[np.unique(np.linspace(0, len(times) - 1, LOOKED).round()).astype(int)]
+    peak = _peak(movement, looked, rod, weights, distance, span)
+    near, far = _ranges(movement, field, looked, distance, rod)
+    contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
+    return FilmData(movement, field, rod, weights, _fade(distance), peak, contact, span, near, far)
+
+
+def _rod_cells(fields: FieldFile) -> np.ndarray:
+    """Return the cells of the rod ``(m, 8)``. Raises ResultError without any, or where one is inside out."""
+    cells = fields.cells[fields.static["body"] == 0] if "body" in fields.static else fields.cells[:0]
+    if not len(cells):
+        raise ResultError(f'{fields.path}: cell data "body" names no rod (0).')
+    volumes = hex_volumes(fields.points, cells)
+    if not (volumes > 0.0).all():
+        problem = f"cell {int(np.argmin(volumes))} of the rod has the volume {volumes.min():.3g} m3"
+        raise ResultError(f"{fields.path}: {problem}; the file is damaged.")
+    return cells
+
+
+def _fade(distance: np.ndarray) -> np.ndarray:
+    # no magnification within half a diameter of the contact, all of it beyond two diameters
+    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
+    fade: np.ndarray = share**2 * (3.0 - 2.0 * share)
+    return fade
+
+
+def _peak(
+    movement: Movement,
+    times: np.ndarray,
+    rod: np.ndarray,
+    weights: np.ndarray,
+    distance: np.ndarray,
+    span: float,
+) -> float:
+    fields, away, largest = movement.fields, distance[rod] > 2.0, 0.0
+    for time in times:
+        moved = movement.points(time)
+        furthest = float(np.abs(moved - fields.points).max())
+        if furthest > _FURTHEST * np.ptp(fields.points):
+            raise ResultError(f"{fields.path}: at {time:.6g} s the motion moves points by {furthest:.3g} m.")
+        bent = moved[rod] - rigid_motion(fields.points[rod], moved[rod], weights[rod])
+        largest = max(largest, float(np.linalg.norm(bent[away], axis=1).max(initial=0.0)))
+    return nice_factor(_VISIBLE * span / largest) if largest > 0.0 else 1.0
+
+
+def _colours(movement: Movement, field: str, time: float) -> np.ndarray:
+    style = FIELDS[field]
+    if field == "velocity":
+        speed: np.ndarray = style.scale * np.linalg.norm(movement.point_data("velocity", time), axis=1)
+        return speed
+    if field == "strain":
+        return style.scale * _strain(movement, time)
+    return style.scale * movement.cell_data(style.stored, time)
+
+
+def _strain(movement: Movement, time: float) -> np.ndarray:
+    """Return the strain along the rod's axis ``(m,)``, zero in the barrier."""
+    fields = movement.fields
+    rod = fields.static["body"] == 0
+    cells, strain = fields.cells[rod], np.zeros(len(rod))
+    axis = axis_of(fields.points[np.unique(cells)])
+    strain[rod] = stretch(fields.points, movement.points(time), cells, axis) - 1.0
+    if movement.waves is not None:
+        _put_waves(strain, fields.points[fields.cells].mean(axis=1), rod, movement.waves, time)
+    return strain
+
+
+def _put_waves(strain: np.ndarray, centres: np.ndarray, rod: np.ndarray, waves: Waves, time: float) -> None:
+    """Set the strain of the cylinder's cells, at ``centres``, by stretch and bending along the axis."""
+    arm = centres - waves.origin
+    along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
+    body = rod & (along > waves.position[0])
+    mean, bent = (np.interp(along[body], waves.position, rows[0]) for rows in waves.strain(np.array([time])))
+    strain[body] = mean + bent * across[body] / waves.radius
+
+
+def _ranges(
+    movement: Movement, field: str, times: np.ndarray, distance: np.ndarray, rod: np.ndarray
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    in_cells, signed, cells = field != "velocity", FIELDS[field].signed, movement.fields.cells
+    place = distance[cells].mean(axis=1) if in_cells else distance
+    on_rod = rod[cells].all(axis=1) if in_cells else rod
+    tops = np.array([_tops(np.abs(_colours(movement, field, time)), place, on_rod) for time in times])
+    near, far = (float(top) for top in np.maximum(tops.max(axis=0), 1e-12))
+    return (-near if signed else 0.0, near), (-far if signed else 0.0, far)
+
+
+def _tops(sizes: np.ndarray, distance: np.ndarray, rod: np.ndarray) -> tuple[float, float]:
+    close, body = sizes[distance < 0.5], sizes[rod & (distance > 1.0)]
+    near = float(np.percentile(close, 99.5)) if close.size else 0.0
+    far = float(np.percentile(body, 99.5)) if body.size else near
+    return near, far

@@ -1,0 +1,182 @@
+"""The HTML page around the sections, and embedded figures, films and data files."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import json
+import tomllib
+from collections.abc import Iterable
+from functools import cache
+from html import escape
+from importlib import resources
+from pathlib import Path
+from string import Template
+from typing import Any
+
+from fem_impact.errors import MissingLibraryError, ResultError
+from fem_impact.figures.live import live
+from fem_impact.figures.panels import Picture
+from fem_impact.figures.still import draw
+from fem_impact.pages.html import Markup, bullets, details, join, section
+from fem_impact.tables.symbols import markup
+
+TYPES = {
+    ".gif": "image/gif",
+    ".webp": "image/webp",
+    ".mp4": "video/mp4",
+}
+"""Media type by suffix."""
+
+FILMS = ("film.mp4", "film.webp", "film.gif")
+"""Names of a run's film, in order of preference."""
+
+
+def page(title: str, kind: str, lead: str, footer: str, body: Iterable[Markup]) -> str:
+    """Return the whole document; it refers to nothing outside itself.
+
+    Parameters
+    ----------
+    title, kind, lead, footer : str
+        Plain texts; escaped here.
+    body : iterable of Markup
+        The sections.
+    """
+    content = join(body).text
+    policy, scripts = _scripts() if 'class="live"' in content else ("", "")
+    return Template(_data("page.html")).substitute(
+        policy=policy,
+        scripts=scripts,
+        title=escape(title),
+        heading=markup(title),
+        kind=escape(kind),
+        lead=markup(lead),
+        footer=escape(footer),
+        style=_data("style.css").strip(),
+        body=content,
+    )
+
+
+@cache
+def _scripts() -> tuple[str, str]:
+    """Return what a page with figures may run, by digest, and the elements: Plotly compressed, and its use.
+
+    Raises
+    ------
+    MissingLibraryError
+        plotly is not installed.
+    """
+    try:
+        from plotly.offline import get_plotlyjs
+    except ImportError as error:
+        raise MissingLibraryError("Pages with figures need plotly: pip install plotly.") from error
+    library, own = get_plotlyjs(), _data("figures.js")
+    digests = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+        for text in (library, own)
+    )
+    packed = base64.b64encode(gzip.compress(library.encode(), mtime=0)).decode()
+    elements = (
+        '<noscript><p class="notice">The figures of this page need JavaScript; without it they are pictures '
+        "in the folder figures beside it.</p></noscript>\n"
+        f'<script id="library" type="application/gzip">{packed}</script>\n<script>{own}</script>'
+    )
+    return f"; script-src {digests}", elements
+
+
+def sources(named: Iterable[str]) -> Markup:
+    """Return the section of papers behind what was used.
+
+    Parameters
+    ----------
+    named : iterable of str
+        Names of effects, and "film" where there is one.
+    """
+    wanted = {"always", *named}
+    listed = tomllib.loads(_data("sources.toml"))["source"]
+    papers = bullets(entry["text"] for entry in listed if wanted & set(entry["for"]))
+    return section("Sources", details("Papers behind what was used", papers))
+
+
+def _data(name: str) -> str:
+    return resources.files("fem_impact.pages").joinpath("data", name).read_text(encoding="utf-8")
+
+
+def figure(picture: Picture, figures: Path, since: Path | None = None) -> Markup:
+    """Return a picture with hover and zoom; as SVG, with its numbers, it is written into ``figures``.
+
+    Files newer than ``since``, the file of the data shown, are not written again.
+    """
+    drawn = figures / f"{picture.name}.svg"
+    if not since or not drawn.is_file() or drawn.stat().st_mtime <= since.stat().st_mtime:
+        draw(picture, drawn)
+    return live_figure(live(picture))
+
+
+def stored_figure(stem: Path) -> Markup:
+    """Return a figure that a study stored, ``stem.json``. Raises ResultError where it is none."""
+    path = stem.with_suffix(".json")
+    try:
+        return live_figure(json.loads(_bytes(path)))
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise ResultError(f"{path}: not a figure of this version; run the study again ({error}).") from error
+
+
+def live_figure(shown: dict[str, Any]) -> Markup:
+    """Return panels that the page's script draws, their legend and caption, of `fem_impact.figures.live`."""
+    parts = ("data", "layout", "frames")
+    drawn = [{name: panel[name] for name in parts if name in panel} for panel in shown["panels"]]
+    # no text within can end the element
+    text = json.dumps(drawn, allow_nan=False, separators=(",", ":")).replace("<", "\\u003c")
+    panels = "\n".join(map(_panel, shown["panels"]))
+    signs = (
+        f'<span><b style="color:{escape(colour)}">{escape(sign)}</b> {label}</span>'
+        for sign, colour, label in shown["legend"]
+    )
+    legend = f'<p class="legend">{" ".join(signs)}</p>' if shown["legend"] else ""
+    return Markup(
+        f'<figure class="live"><script type="application/json">{text}</script>\n'
+        f'<div class="panels" style="--columns:{int(shown["columns"])}">\n{panels}\n</div>\n'
+        f"{legend}<figcaption>{shown['caption']}</figcaption></figure>"
+    )
+
+
+def _panel(panel: dict[str, Any]) -> str:
+    title = f"<h3>{panel['title']}</h3>" if panel["title"] else ""
+    area = f'<div class="plot" role="img" aria-label="{escape(panel["alt"])}"'
+    return f'<div>{title}{area} style="height:{int(panel["height"])}px"></div></div>'
+
+
+def download(path: Path, label: str) -> Markup:
+    """Return a paragraph with the link to a CSV file embedded in the page."""
+    return Markup(f"<p>{data_link(_bytes(path), path.name, label)}</p>")
+
+
+def data_link(content: bytes, name: str, label: str) -> str:
+    """Return the link to a CSV file embedded in the page."""
+    text = base64.b64encode(content).decode("ascii")
+    return f'<a download="{escape(name)}" href="data:text/csv;base64,{text}">{escape(label)}</a>'
+
+
+def film(folder: Path, caption: str) -> Markup:
+    """Return the run's film embedded, nothing when there is none."""
+    path = next((folder / name for name in FILMS if (folder / name).is_file()), None)
+    if path is None:
+        return Markup("")
+    data = _data_url(path)
+    shown = f'<img src="{data}" alt="{escape(caption)}">'
+    if path.suffix == ".mp4":
+        shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
+    return Markup(f'<figure class="film">{shown}<figcaption>{escape(caption)}</figcaption></figure>')
+
+
+def _bytes(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
+
+
+def _data_url(path: Path) -> str:
+    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"

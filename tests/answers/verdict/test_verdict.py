@@ -1,0 +1,677 @@
+"""The verdict on a scene: twins, known errors, the answer with its band, finite elements where it is open."""
+
+import json
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from own_bodies import taper, write
+from wide_contact import WIDE
+
+from fem_impact.answers.refine import budget as lanes
+from fem_impact.answers.refine.levels import FAMILY, ladder, on_mesh
+from fem_impact.answers.refine.loop import OwnLadder
+from fem_impact.answers.verdict import assess as assess_module
+from fem_impact.answers.verdict import change as change_module
+from fem_impact.answers.verdict.assess import assess
+from fem_impact.answers.verdict.change import Change, Ladder, modal_change, modal_pair
+from fem_impact.answers.verdict.dropped import dropped
+from fem_impact.answers.verdict.reliability import beside, known_error, stored
+from fem_impact.answers.verdict.screening import screening
+from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
+from fem_impact.answers.verdict.twins import inclined, twins
+from fem_impact.answers.wanted_error import settle
+from fem_impact.case.cells import ERROR, expected_cells
+from fem_impact.case.choose import active
+from fem_impact.case.plan import plan
+from fem_impact.case.plates import half_space_error
+from fem_impact.errors import RunError, SceneError
+from fem_impact.outcome.keys import Unknown, known
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_toml
+from fem_impact.scene.shipped import load, replace_all
+
+ALUMINIUM = {
+    "projectile.length": "500 mm",
+    "projectile.diameter": "20 mm",
+    "projectile.material": {
+        "name": "Al 6082-T6",
+        "E": "70 GPa",
+        "nu": 0.33,
+        "rho": "2700 kg/m3",
+        "yield_stress": "260 MPa",
+        "ultimate_stress": "310 MPa",
+    },
+}
+
+
+def aluminium():
+    return replace_all(load("t5b"), ALUMINIUM)
+
+
+@pytest.fixture(scope="module")
+def short():
+    return assess(load("t5b"), "modal")
+
+
+def test_twins_differ_by_vibration_alone_and_have_it_where_a_scene_would_leave_it_out():
+    scene = replace_all(load("t5b"), {"effects": ["auto", "-vibration"]})
+    free, stiff = twins(scene)
+    assert set(free.effects) - set(stiff.effects) == {"vibration", "contact-heating"}
+    assert replace(free, effects=()) == replace(stiff, effects=())
+
+
+def test_the_heat_of_the_contact_is_followed_in_the_run_that_vibrates_where_the_scene_has_it():
+    """The twin has no need of it: the motion does not feel it."""
+    assert "contact-heating" in active(load("t5b"))
+    assert ["contact-heating" in one.effects for one in twins(load("t5b"))] == [True, False]
+    without = replace_all(load("t5b"), {"effects": ["auto", "-contact-heating"]})
+    assert all("contact-heating" not in one.effects for one in twins(without))
+
+
+def heated(short, **values):
+    """The verdict with other values of the heat of the contact in its run with vibration."""
+    heat = replace(short.here.free.heat, power=900.0, temperature=431.0, bound=1200.0)
+    free = replace(short.here.free, heat=replace(heat, **values))
+    return dict(basis(replace(short, here=replace(short.here, free=free))))["heat of the contact"]
+
+
+def test_the_verdict_tells_how_hot_the_contact_becomes(short):
+    told = dict(basis(short))["heat of the contact"]
+    assert told == "not known: heat is followed on the finite elements only (--fidelity solid)."
+    told = heated(short)
+    assert "431 K in the mean" in told and "No spot exceeds 1200 K" in told and "Tian & Kennedy" in told
+    assert "What single spots reach is not resolved: why." in heated(
+        short, bound=Unknown("not resolved: why")
+    )
+    assert "is not resolved: why." in heated(short, temperature=Unknown("not resolved: why"))
+
+
+@pytest.mark.parametrize(
+    ("at", "value", "words"),
+    [
+        (
+            80.0,
+            0.2,
+            "At the worst inclination, 80 degrees, it changes e by +0.200 ± 0.010; rigid theory may not ",
+        ),
+        (80.0, 0.055, "± 0.010; whether rigid theory may be used there is undecided."),
+        (80.0, 0.02, "± 0.010; rigid theory may be used at every inclination."),
+        (
+            80.0,
+            0.005,
+            "No other inclination has a larger change; rigid theory may be used at every inclination.",
+        ),
+    ],
+)
+def test_this_inclination_and_the_worst_one_are_two_sentences(short, at, value, words):
+    here = replace(short.here, value=0.01, band=0.01)
+    other = replace(short.here, angle=math.radians(at), value=value, band=0.01)
+    may = box(replace(short, here=here, elsewhere=other, not_known=((), "")))[0][1]
+    assert may.startswith(
+        "YES: at this inclination, 45 degrees, vibration changes e by +0.010 ± 0.010, by the "
+    )
+    assert may.partition("(allowed: 0.05). ")[2].startswith(words) or may.endswith(words)
+
+
+def test_the_share_that_can_heat_the_contact_names_the_bodies_that_it_counts(short):
+    told = "can heat the contact (friction, and plastic work of {} down to 0.1 mm)"
+    assert told.format("the softer body") in box(short)[2][1]
+    free = replace(short.here.free, energy=replace(short.here.free.energy, skin_rod=0.02))
+    assert told.format("both bodies") in box(replace(short, here=replace(short.here, free=free)))[2][1]
+
+
+def test_a_share_that_two_meshes_know_has_its_band(short):
+    told = replace(short, here=replace(short.here, errors={**short.here.errors, "skin": 0.05}))
+    assert " ± 5 % can heat the contact" in box(told)[2][1]
+
+
+def test_energy_of_vibration_is_not_said_to_fall_below_none(short):
+    wide = replace(short, here=replace(short.here, E_vib=0.002, E_vib_band=0.003))
+    assert box(wide)[1][1].startswith("0.2 % of the energy (0 to 0.5 %: ")
+
+
+def test_a_plate_is_called_a_plate_with_its_thickness(short):
+    plate = replace_all(load("t5b"), {"barrier.thickness": "10 mm", "barrier.support": "infinite"})
+    told = replace(short, scene=plate)
+    rest = box(told)[2][1]
+    assert "plastic plate 60" in rest and "the plate is 10 mm thick" in rest and "barrier" not in rest
+    assert "on a plate of 10 mm of plate-steel (free underneath), 45 degrees" in case_sentence(plate)
+    assert "plastic barrier 60" in box(short)[2][1] and "on plate-steel, 45 degrees" in case_sentence(
+        load("t5b")
+    )
+
+
+def test_an_inclined_scene_turns_rod_and_velocity_together():
+    scene = load("t6-60")
+    turned = inclined(scene, 0.3)
+    assert math.hypot(turned.impact.v_n, turned.impact.v_t) == pytest.approx(
+        math.hypot(scene.impact.v_n, scene.impact.v_t)
+    )
+    beside = [math.atan2(-s.impact.v_t, -s.impact.v_n) - s.impact.angle for s in (scene, turned)]
+    assert beside[0] == pytest.approx(beside[1], abs=1e-12)
+    assert inclined(scene, scene.impact.angle).impact.v_n == pytest.approx(scene.impact.v_n)
+
+
+@pytest.mark.parametrize(
+    ("value", "band", "said"),
+    [
+        (0.01, 0.02, "yes"),
+        (-0.01, 0.02, "yes"),
+        (0.04, 0.02, "undecided"),
+        (-0.2, 0.1, "no"),
+        (0.06, 0.02, "undecided"),
+        (0.5, math.inf, "undecided"),
+    ],
+)
+def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
+    change = Change(0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
+    assert change.answer(0.05) == said
+
+
+def test_the_change_of_e_is_that_of_two_runs(short):
+    free, stiff = (simulate(one, "modal").restitution.edge.e for one in twins(load("t5b")))
+    assert short.here.value == free - stiff
+    assert abs(short.worst.value) >= abs(short.here.value)
+    assert (short.answer, short.fidelity) == ("yes", "modal")
+
+
+def test_the_known_error_is_that_of_scenes_of_like_ratio():
+    error = known_error(load("t4"))
+    own = beside("t4")
+    assert error.compared == ("t4",)
+    assert error.change_of_e == abs(own.modal - own.solid) > 0.02
+    long = known_error(load("t2"))
+    assert set(long.compared) == {"t2", "t3-machined", "t3-contaminated", "t3-cleaned"}
+
+
+def test_a_scene_unlike_all_gets_the_largest_error_of_all():
+    error = known_error(aluminium())
+    assert not error.alike
+    assert len(error.compared) == len(stored()) == 13
+    assert error.change_of_e == max(abs(one.modal - one.solid) for one in map(beside, stored()))
+    assert "none of which has a like T1/tau and these materials" in error.sentence
+    other = known_error(replace_all(load("t5b"), {"projectile.material": "alumina"}))  # T1/tau is near
+    assert other == error
+
+
+def test_aluminium_is_not_answered_as_steel():
+    steel = replace_all(load("t5b"), {k: v for k, v in ALUMINIUM.items() if "material" not in k})
+    assert screening(aluminium()).period != pytest.approx(screening(steel).period, rel=0.005)
+    with pytest.raises(SceneError, match=r"about a rod of rod-steel, not of Al 6082-T6"):
+        dropped(aluminium())
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"surface.friction": 0.3}, "not custom ones"),
+        ({"impact.omega": "3 rad/s"}, "without spin"),
+        ({"barrier.material.E": "70 GPa"}, "barrier of plate-steel"),
+    ],
+)
+def test_measured_tests_are_carried_to_what_they_are_about(changes, words):
+    with pytest.raises(SceneError, match=words):
+        dropped(replace_all(load("t5b"), changes))
+
+
+def meshed(monkeypatch, shifts):
+    """Let the reduced model stand for finite elements; e with vibration is moved by a shift on each mesh.
+
+    A shift of None is a run that does not finish.
+    """
+    asked = []
+
+    def stand_in(scenes, fidelity, options, workers):
+        shift = shifts[len(asked)]
+        asked.append(scenes[0].accuracy.tip_size)
+        runs = []
+        for scene, moved in zip(scenes, (shift, 0.0), strict=True):
+            run = simulate(replace(scene, accuracy=load("t5b").accuracy), "modal")
+            edge = replace(run.restitution.edge, e=run.restitution.edge.e + (moved or 0.0))
+            cost = replace(run.cost, tip_size=scene.accuracy.tip_size)
+            run = replace(run, restitution=replace(run.restitution, edge=edge), cost=cost)
+            runs.append(run if moved is not None else cut_short(run))
+        return runs
+
+    monkeypatch.setattr(lanes, "side_by_side", stand_in)
+    return asked
+
+
+def cut_short(run):
+    return replace(run, validity=replace(run.validity, finished=False, stopped_because="the tail."))
+
+
+def test_auto_stays_with_the_reduced_model_where_its_error_leaves_no_doubt(monkeypatch):
+    asked = meshed(monkeypatch, [])
+    assert assess(load("t5b"), tolerance=0.2).fidelity == "modal"
+    assert asked == []
+
+
+def test_auto_takes_meshes_until_the_answer_is_clear(monkeypatch):
+    asked = meshed(monkeypatch, [0.0, 0.001, 0.001])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer, len(asked)) == ("solid", "yes", 2)
+    assert asked[0] > asked[1]
+    assert found.here.band < 0.005
+
+
+def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_inclinations(monkeypatch):
+    """Where they say +.259 and the reduced model +.025, its +.203 elsewhere is not known to .157."""
+    meshed(monkeypatch, [0.3, 0.3])
+    found = assess(load("t5b"), "solid", budget_s=1e5)
+    off = found.here.value - assess(load("t5b"), "modal").here.value
+    assert found.elsewhere.band == pytest.approx(off, abs=1e-12) and off == pytest.approx(0.3, abs=0.05)
+    assert "off by 0.3: so much counts" in found.elsewhere.source
+    assert found.worst is found.here  # its own change is the largest, by finite elements
+
+
+def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
+    meshed(monkeypatch, [0.0, *(0.008,) * 4])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert found.answer == "undecided"
+    assert any("No finer mesh is tried" in note for note in found.notes)
+
+
+def test_one_mesh_that_the_reduced_model_contradicts_does_not_decide(monkeypatch):
+    """An aluminium rod's coarse mesh said no, with a band in which no finer mesh lay."""
+    asked = meshed(monkeypatch, [-0.4, *(0.0,) * 4])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert len(asked) > 1  # the first mesh alone says no beyond its band
+    assert found.answer == "undecided"
+    assert abs(found.here.value) + found.here.band >= 0.39  # the band holds both meshes
+    assert "the band holds both" in found.here.source
+
+
+def test_a_scene_like_none_that_was_computed_both_ways_is_not_left_to_the_reduced_model(monkeypatch):
+    """However wide the tolerance: its error is that of other materials."""
+    asked = meshed(monkeypatch, [0.0, 0.0])
+    copper = replace_all(load("t5b"), {"projectile.material": "copper"})
+    found = assess(copper, tolerance=0.9, budget_s=1e5)
+    assert (found.fidelity, found.answer) == ("solid", "yes")
+    assert len(asked) == 1  # the reduced model bears it out
+    assert assess(load("t5b"), tolerance=0.9, budget_s=1e5).fidelity == "modal"
+
+
+def test_a_mesh_without_an_answer_leaves_one_that_the_reduced_model_contradicts_undecided(monkeypatch):
+    meshed(monkeypatch, [-0.4, None])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer) == ("solid", "undecided")
+    assert any("on the second mesh" in note and "the tail." in note for note in found.notes)
+    assert any("the reduced model +0.0" in note for note in found.notes)
+    assert found.here.value + found.here.band > 0 > found.here.value
+
+
+def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
+    def folded(*_):
+        raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
+
+    monkeypatch.setattr(lanes, "side_by_side", folded)
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.fidelity, found.answer) == ("modal", "undecided")
+    assert any("on the first mesh" in note and "cell 7 is folded" in note for note in found.notes)
+    assert assess(load("t5b"), "solid", tolerance=0.02, budget_s=1e5).fidelity == "modal"
+
+
+def test_a_scene_without_a_mesh_is_left_to_the_reduced_model_or_refused(monkeypatch):
+    refused = SceneError("needs a mesh of 1.6e+06 cells.", key="barrier.thickness")
+    monkeypatch.setattr(change_module, "can_be_made", lambda scene: False)
+    monkeypatch.setattr(lanes, "planned_s", lambda *_: (_ for _ in ()).throw(refused))
+    found = assess(load("t5b"), tolerance=0.02)
+    assert (found.fidelity, found.more) == ("modal", "")
+    assert f"Finite elements have no answer here: {refused}" in found.notes
+    with pytest.raises(SceneError, match=r"1\.6e\+06 cells"):
+        assess(load("t5b"), "solid")
+
+
+def test_a_mesh_that_cannot_be_made_is_passed_over(monkeypatch):
+    ladder = Ladder.of(load("t5b"), 1.0, 2)
+    assert ladder.following() == FAMILY[0]
+    ladder.meshes.append(FAMILY[0])
+    assert ladder.following() == FAMILY[1]
+    (second,) = {on_mesh(scene, FAMILY[1]).accuracy for scene in twins(load("t5b"))}
+    monkeypatch.setattr(change_module, "can_be_made", lambda scene: scene.accuracy != second)
+    assert ladder.following() == FAMILY[2]
+
+
+def test_the_first_mesh_is_the_coarsest_that_can_be_made():
+    """Meshes follow the cells of the section that touches, which is small on a sphere-cone."""
+    for name in ("sphere-cone", "ogive", "tube"):
+        ladder = Ladder.of(load(name), 1.0, 2)
+        assert plan(on_mesh(load(name), ladder.following())).size.rod > 0
+
+
+@pytest.mark.parametrize("scene", [load("t5b"), WIDE])
+def test_finer_meshes_follow_down_to_a_quarter_of_the_first(scene):
+    """Meshes finer than a scene's own can be made, though none that is coarser can under a wide contact."""
+    ladder, edges = Ladder.of(scene, 1.0, 2), []
+    while (mesh := ladder.following()) is not None:
+        edges.append(ladder._edge(mesh))
+        ladder.meshes.append(mesh)
+    assert edges == sorted(edges, reverse=True)
+    assert edges[-1] <= 0.25 * edges[0] * (1 + 1e-9)
+
+
+def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
+    """spinning-rod turns so fast that at other inclinations its lowest point would not approach."""
+    found = assess(load("spinning-rod"), "modal")
+    assert found.not_known[0] and "lifts the contact point" in found.not_known[1]
+
+
+def test_a_spin_that_lifts_the_contact_point_is_refused_before_any_work():
+    lifted = replace_all(load("t5b"), {"impact.omega": "150 rad/s"})
+    for work in (lambda: assess(lifted), lambda: ladder(lifted), lambda: plan(lifted)):
+        with pytest.raises(SceneError, match=r"impact\.omega = .* lifts the contact point off the barrier"):
+            work()
+
+
+def test_a_velocity_beside_the_axis_leaves_out_inclinations_where_it_would_point_up_the_slope():
+    """Straight at the barrier, 45 degrees beside the axis: with less inclination the rod would rise."""
+    found = assess(replace_all(load("t5b"), {"impact.v_t": "0 m/s"}), "modal")
+    assert [math.degrees(angle) for angle in found.not_known[0]] == pytest.approx(range(5, 45, 5))
+    assert found.not_known[1].startswith("impact.v_t: would point up the slope")
+    assert found.worst.angle > math.radians(44)
+
+
+def test_a_budget_that_allows_no_mesh_leaves_the_reduced_model_and_says_so(monkeypatch):
+    asked = meshed(monkeypatch, [])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=0.01)
+    assert (found.fidelity, found.answer, asked) == ("modal", "undecided", [])
+    (note,) = found.notes
+    assert "A first mesh would take about" in note
+    assert re.search(r'give --budget "\d+ s"', note)
+
+
+def test_inclinations_without_an_answer_are_named_and_leave_the_worst_open(monkeypatch):
+    real = assess_module.modal_pair
+
+    def cut_off(scene):
+        free, stiff = real(scene)
+        return (cut_short(free) if math.degrees(scene.impact.angle) < 12 else free), stiff
+
+    monkeypatch.setattr(assess_module, "modal_pair", cut_off)
+    found = assess(load("t5b"), "modal", tolerance=0.2)
+    assert [round(math.degrees(angle)) for angle in found.not_known[0]] == [5, 10]
+    assert found.not_known[1].endswith("the tail.")
+    assert (found.answer, found.worst_answer) == ("yes", "undecided")
+
+
+@pytest.mark.parametrize(
+    ("means", "words"),
+    [({"fidelity": "rigid"}, "fidelity"), ({"tolerance": 2.0}, "tolerance"), ({"budget_s": -1.0}, "budget")],
+)
+def test_wrong_wishes_are_refused_before_any_work(means, words):
+    with pytest.raises(SceneError, match=words):
+        assess(load("t5b"), **means)
+
+
+def test_the_three_lines_and_the_document(short):
+    lines = box(short)
+    assert [title for title, _ in lines] == [
+        "May rigid theory be used here?",
+        "Vibration takes",
+        "The rest goes to",
+    ]
+    assert lines[0][1].startswith("YES: at this inclination, 45 degrees, vibration changes e by +0.010")
+    assert "by the reduced model" in lines[0][1]
+    found = document(short)
+    assert found["answer"] == "yes"
+    json.dumps(found, allow_nan=False)
+
+
+def test_the_command_prints_three_lines_first_and_writes_a_page(cli):
+    code, out, err = cli("assess", "t5b", "--fidelity", "modal", "--out", "page", "--set", "save.frames=0")
+    assert (code, err) == (0, "")
+    assert out.startswith("May rigid theory be used here? YES")
+    page = Path("page/verdict.html").read_text(encoding="utf-8")
+    digest = json.loads(Path("page/verdict.json").read_text(encoding="utf-8"))["scene_digest"]
+    for words in (
+        digest,
+        "measured on the 19 mm bar",
+        "Averill",
+        "does not cover",
+        "Signatures",
+        "fem-impact",
+    ):
+        assert words in page
+    assert 'src="http' not in page
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "words"),
+    [
+        (("t5b", "--length", "80 mm"), 2, "describes a rod, but a scene is named too"),
+        ((), 2, "no scene is given"),
+        (("--length", "80 mm"), 2, "--diameter"),
+        (("t5b", "--tolerance", "five"), 2, "is not a number"),
+        (("t5b", "--tolerance", "5"), 3, "between 0 and 1"),
+        (("t5b", "--budget", "60"), 2, "has no unit"),
+        (("t5bb",), 2, "Did you mean t5b"),
+    ],
+)
+def test_wrong_lines_are_refused(cli, line, code, words):
+    found, out, err = cli("assess", *line)
+    assert (found, out) == (code, "")
+    assert words in err
+
+
+def test_a_plain_run_names_the_command_of_the_verdict(cli):
+    _, out, _ = cli("run", "t5b", "--fidelity", "rigid", "--set", "surface.friction=0.4")
+    words = " ".join(out.split())
+    assert "may rigid theory be used (estimate): T1/tau = " in words
+    assert "fem-impact assess t5b --set surface.friction=0.4" in words
+
+
+@pytest.mark.parametrize(
+    ("name", "reason"),
+    [
+        ("ogive", "solid rods"),
+        ("tube", "solid rods"),
+        ("plate-10mm", "massive plate"),
+        ("moving-barrier", "at rest"),
+    ],
+)
+def test_measured_tests_are_not_carried_over_to_other_bodies_and_barriers(name, reason):
+    with pytest.raises(SceneError, match=reason):
+        dropped(load(name))
+
+
+STRIKER = """
+id = "striker"
+projectile = { mesh = "bar.vtu", mesh_unit = "mm", material = "rod-steel" }
+barrier = { material = "plate-steel" }
+surface = { state = "custom", friction = 0.2, source = "assumed" }
+impact = { angle = "30 deg", speed = "2 m/s" }
+effects = ["vibration", "friction", "barrier-elastic"]
+"""
+
+
+@pytest.fixture
+def striker(tmp_path):
+    points, cells = taper(width=12e-3, length=60e-3, end=0.8, cells=(6, 3, 24))
+    write(tmp_path / "bar.vtu", 1e3 * points, cells)
+    (tmp_path / "striker.toml").write_text(STRIKER)
+    return read_toml(tmp_path / "striker.toml")
+
+
+def solid_alone(monkeypatch, moved, check=0.02):
+    """Let simple outcomes stand for finite elements: e of the vibrating twin is moved on each mesh."""
+    asked = []
+
+    def stand_in(scenes, fidelity, options, workers):
+        assert fidelity == "solid"
+        shift = moved[len(asked)]
+        asked.append(scenes[0].accuracy)
+        plain, made = load("plate-10mm" if scenes[0].barrier.bends else "t5b"), []
+        for effects, by in zip((scene.effects for scene in scenes), (shift, 0.0), strict=True):
+            run = simulate(replace(plain, effects=effects), "modal")
+            edge = replace(run.restitution.edge, e=0.4 + by)
+            energy = replace(run.energy, vibration=0.02, vibration_check=check, vibration_floor=1e-6)
+            made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
+        return made
+
+    monkeypatch.setattr(lanes, "side_by_side", stand_in)
+    return asked
+
+
+def test_layers_are_decided_by_finite_elements_alone_on_two_meshes(monkeypatch):
+    asked = solid_alone(monkeypatch, [0.2, 0.19])
+    found = assess(load("layered"), budget_s=1e5)
+    assert (found.fidelity, found.answer, len(asked)) == ("solid", "no", 2)
+    assert asked[0].tip_size > asked[1].tip_size
+    assert (found.worst, found.worst_answer, found.over_friction) == (None, "no", None)
+    assert any("no reduced model of a barrier of layers" in note for note in found.notes)
+    case = dict(document(found)["basis"])["case"]
+    assert "tip A, 0.168 kg, on 2 mm of steel-4340 on aluminium-6061-t6" in case
+
+
+def test_vibration_is_not_known_better_than_its_two_counts_agree(monkeypatch):
+    """Both meshes give the same energy by chance; the counts by modes and without them differ."""
+    for check, floor in ((0.0215, 0.0015), (0.02, 1e-6)):
+        solid_alone(monkeypatch, [0.2, 0.19], check)
+        here = assess(load("layered"), budget_s=1e5).here
+        assert here.E_vib_band == pytest.approx(floor)
+        assert here.errors["vibration"] == pytest.approx(floor)
+        assert f"at least {100 * floor:.2g} % of E_0" in here.source
+
+
+def test_a_plate_thinner_than_its_contact_is_wide_is_decided_by_finite_elements_alone(monkeypatch):
+    solid_alone(monkeypatch, [0.2, 0.19])
+    found = assess(replace_all(load("plate-10mm"), {"barrier.thickness": "3 mm"}), budget_s=1e5)
+    assert (found.fidelity, found.answer, found.worst) == ("solid", "no", None)
+    assert any("no reduced model of a plate thinner than" in note for note in found.notes)
+
+
+def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plate_may_change():
+    thin, thick = (
+        replace_all(load("plate-10mm"), {"barrier.thickness": thickness}) for thickness in ("8 mm", "12 mm")
+    )
+    change, plain = (modal_change(scene, modal_pair(scene)) for scene in (thin, thick))
+    told = known_error(thin).change_of_e
+    share = (change.band - told) / known(change.free.restitution.edge.e)
+    assert share == pytest.approx(half_space_error(plan(thin).bodies), rel=1e-12)
+    assert "The plate is thin beside the contact" in change.source
+    assert plain.band == known_error(thick).change_of_e
+
+
+def test_one_mesh_that_no_reduced_model_bears_out_decides_nothing(monkeypatch):
+    """However far its change of e lies from the tolerance."""
+    solid_alone(monkeypatch, [0.9])
+    found = assess(load("layered"), budget_s=1e-3)
+    assert (found.answer, found.here.band) == ("undecided", math.inf)
+    assert found.here.errors == {}
+    written = document(found, "fem-impact assess layered")
+    assert (written["here"]["band"], written["here"]["E_vib_band"]) == (None, None)
+    assert re.fullmatch(r'fem-impact assess layered --budget "\d+ s"', written["next_step"])
+    assert "+0.900, error unknown" in box(found)[0][1]
+    assert "error of one mesh of finite elements unknown" in box(found)[1][1]
+    assert "which gives e within" not in found.here.source
+    json.dumps(written, allow_nan=False)
+
+
+def test_a_mesh_of_the_users_own_is_decided_with_the_error_of_its_own_cells(monkeypatch, striker):
+    """Its cells behind the contact are the same on both meshes: two equal answers leave a band."""
+    asked = solid_alone(monkeypatch, [0.3, 0.3])
+    found = assess(striker, budget_s=1e5)
+    assert (found.answer, len(asked)) == ("no", 2)
+    assert asked[1].tip_size < asked[0].tip_size
+    cells = expected_cells(plan(replace(striker, accuracy=asked[1])).bodies)
+    assert found.here.band == pytest.approx(ERROR["elastic"] / cells * 0.7)
+    assert "cells of your file" in found.here.source
+
+
+def test_the_reduced_model_is_refused_for_them_with_the_remedy(striker):
+    for scene, words in ((striker, "no radii of a smooth tip"), (load("layered"), "--fidelity solid")):
+        with pytest.raises(SceneError, match=words):
+            assess(scene, "modal")
+
+
+def test_a_mesh_that_the_solid_model_cannot_hold_is_refused_before_any_run(striker, monkeypatch):
+    asked = solid_alone(monkeypatch, [])
+    with pytest.raises(SceneError, match="machined-skin"):
+        skin = {"surface.skin_depth": "0.1 mm", "surface.skin_factor": 1.5}
+        assess(replace_all(striker, skin | {"effects": ["auto", "machined-skin"]}))
+    assert asked == []
+
+
+def test_shares_of_the_reduced_model_carry_its_known_errors(short):
+    errors = known_error(load("t5b"))
+    own = beside("t5b")
+    assert (
+        errors.shares["friction"] >= abs(own.shares_modal["friction"] - own.shares_solid["friction"]) > 0.05
+    )
+    rest = box(short)[2][1]
+    friction = short.here.free.energy.friction
+    assert f"friction {100 * friction:.0f} ± {100 * errors.shares['friction']:.2g} %" in rest
+    assert f"plastic barrier 60 ± {100 * errors.shares['plastic']:.2g} %" in rest
+    assert "± known error of the reduced model" in rest
+
+
+def test_headline_and_shares_name_what_they_rest_on(monkeypatch):
+    meshed(monkeypatch, [-0.4, None])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    may, takes, rest = (sentence for _, sentence in box(found))
+    assert "by one mesh of finite elements and the reduced model together" in may
+    assert "one mesh of finite elements, and the reduced model within" in takes
+    assert "by one mesh of finite elements" in rest
+    assert not any("meshes" in line for line in (may, takes, rest))
+    quick = modal_change(load("t5b"), modal_pair(load("t5b")))
+    assert abs(found.here.E_vib - quick.E_vib) + quick.E_vib_band <= found.here.E_vib_band
+
+
+def test_friction_without_an_interval_is_said_to_count_as_exact():
+    stated = replace_all(load("t5b"), {"surface": {"state": "custom", "friction": 0.4, "source": "mine"}})
+    told = dict(document(assess(stated, "modal"))["basis"])
+    assert "f = 0.4 is stated without an interval and counts as exact" in told["uncertain friction"]
+    smooth = replace_all(load("t5b"), {"effects": ["auto", "-friction"]})
+    assert "no friction" in dict(document(assess(smooth, "modal"))["basis"])["uncertain friction"]
+
+
+def test_an_undecided_reduced_model_names_the_command_that_may_decide(cli):
+    line = ("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.02", "--set", "impact.angle=44 deg")
+    _, out, _ = cli(*line)
+    command = "fem-impact assess t5b --set 'impact.angle=44 deg' --tolerance 0.02 --fidelity solid"
+    assert f"Next step: {command}\n" in out
+    _, out, _ = cli("assess", "t5b", "--fidelity", "modal", "--tolerance", "0.5")
+    assert "Next step" not in out
+
+
+@pytest.mark.parametrize(("e", "doubted"), [(0.5, False), (-0.2, True), (1.1, True)])
+def test_a_change_of_e_out_of_the_range_of_a_plain_impact_is_doubted(short, e, doubted):
+    """A change by more than 1 means that e of one twin is below 0 or above 1."""
+    free = short.here.free
+    edge = replace(free.restitution.edge, e=e)
+    here = replace(short.here, free=replace(free, restitution=replace(free.restitution, edge=edge)))
+    assert (f"(doubtful: e is {e:.3f} with vibration" in doubt(here)) is doubted
+    for one in (replace(short, here=here), replace(short, elsewhere=replace(here, value=9.0))):
+        assert ("doubtful" in box(one)[0][1]) is doubted
+
+
+def test_the_case_names_the_nose_and_the_segments(tmp_path):
+    text = """id = "lead"
+projectile = {shape = "hemisphere", length = "150 mm", diameter = "12 mm", segments = [{to = "120 mm", \
+material = "copper"}, {material = "lead"}]}
+barrier = {material = "plate-steel"}
+surface = {state = "machined"}
+impact = {angle = "40 deg", height = "1.5 m"}
+"""
+    (tmp_path / "lead.toml").write_text(text, encoding="utf-8")
+    said = case_sentence(read_toml(tmp_path / "lead.toml"))
+    assert "rod of copper to 120 mm, lead to 150 mm, hemispherical nose, " in said
+    assert "rod of rod-steel, tip B, " in case_sentence(load("t5b"))
+
+
+def test_the_published_limit_says_nothing_of_a_straight_impact():
+    straight = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
+    assert "nothing of a straight impact" in screening(straight).sentence
+    assert "rebounds as a rigid body" in screening(load("t5b")).sentence
+
+
+def test_a_face_that_lands_flat_keeps_to_the_budget_and_a_wanted_error():
+    """No reduced model answers, and the first mesh would take longer than the budget: it does not run."""
+    flat = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
+    with pytest.raises(RunError, match=r"no reduced model of a flat face .* A first mesh would take about"):
+        assess(flat, budget_s=0.01)
+    assert isinstance(settle(replace_all(flat, {"accuracy": "5 %"}), budget_s=5.0), OwnLadder)

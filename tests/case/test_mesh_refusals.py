@@ -1,0 +1,93 @@
+"""Projectiles of which no mesh can be made are refused by the plan, with remedies that work."""
+
+from __future__ import annotations
+
+import re
+from time import process_time
+
+import pytest
+
+from fem_impact.case.mesh import _require_mesh
+from fem_impact.case.plan import plan
+from fem_impact.errors import SceneError
+from fem_impact.fem.geometry import build_geometry
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.read import read_dict
+
+ROD = {"length": "150 mm", "diameter": "16 mm", "material": "brass"}
+TUBE = {**ROD, "tip": "plain", "bore": [["4 mm", "6 mm"], ["150 mm", "6 mm"]]}
+CAPPED = {**ROD, "shape": "hemisphere", "bore": [["2 mm", "3 mm"], ["150 mm", "3 mm"]]}
+ROUND = [["0 mm", "8 mm"], ["142 mm", "8 mm"], ["149 mm", "4 mm"], ["150 mm", "0 mm"]]
+SHELL = {"material": "brass", "profile": ROUND, "bore": [["40 mm", "2 mm"], ["148 mm", "2 mm"]]}
+
+
+def scene(projectile, angle=30, **accuracy):
+    return read_dict(
+        {
+            "id": "tube",
+            "projectile": projectile,
+            "barrier": {"material": "plate-steel"},
+            "surface": {"state": "machined"},
+            "impact": {"angle": f"{angle} deg", "height": "0.5 m"},
+            "accuracy": {"across": 8, **accuracy},
+        }
+    )
+
+
+def mesh(stated):
+    planned = plan(stated)
+    return build_geometry(stated, planned.zones, 0.0, meshed_barrier=False).rod.mesh
+
+
+@pytest.mark.parametrize(("angle", "across"), [(0, 8), (30, 6), (30, 8), (30, 10), (60, 8), (60, 10)])
+def test_a_tube_closed_by_four_millimetres_is_meshed(angle, across):
+    made = mesh(scene(TUBE, angle, across=across))
+    inside = made.points[(abs(made.points[:, 2] - 4e-3) < 1e-9) & (abs(made.points[:, 0]) < 5e-3)]
+    assert len(inside) > 8
+
+
+@pytest.mark.parametrize("fault", ["tip", "tail"])
+def test_a_bore_that_begins_in_a_rounding_is_refused_with_what_works(fault):
+    body = CAPPED if fault == "tip" else SHELL
+    number, z = (1, "2") if fault == "tip" else (2, "148")
+    _require_mesh.cache_clear()
+    begun = process_time()
+    with pytest.raises(SceneError, match=rf'bore\[{number}\] = "z = {z} mm": cannot be meshed') as refused:
+        plan(scene(body))
+    assert process_time() - begun < 3.0  # .02 to .2 s on a free core
+    found = re.search(r"Give z = (\S+ mm) there", refused.value.remedy)
+    points = [list(row) for row in body["bore"]]
+    points[number - 1][0] = found[1]
+    assert len(mesh(scene({**body, "bore": points})).cells) > 100
+
+
+def test_a_wall_that_is_thin_beside_its_cells_is_refused_with_cells_that_work():
+    thin = {**TUBE, "bore": [["30 mm", "7.4 mm"], ["150 mm", "7.4 mm"]]}
+    with pytest.raises(SceneError, match=r"projectile: cannot be meshed: a wall of 0\.075") as refused:
+        plan(scene(thin, across=6))
+    across = int(re.search(r"It can be with accuracy.across = (\d+)\.", refused.value.remedy)[1])
+    assert len(mesh(scene(thin, across=across)).cells) > 100
+
+
+def test_the_reduced_model_needs_no_mesh():
+    assert plan(scene(CAPPED), "modal").fidelity == "modal"
+
+
+POINTED = {"material": "brass", "profile": [["0 mm", "0 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]]}
+STEPPED = {
+    "material": "brass",
+    "profile": [["0 mm", "2 mm"], ["20 mm", "2 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]],
+}
+SLIM = {**ROD, "tip": "plain", "bore": [["0 mm", "0.5 mm"], ["150 mm", "0.5 mm"]]}
+
+
+@pytest.mark.parametrize(
+    ("body", "remedy"),
+    [(POINTED, "round it with a radius"), (STEPPED, "spread it over"), (SLIM, "give 0.2 to 0.95 of it")],
+)
+def test_a_shape_without_a_mesh_is_told_what_to_change_of_it_and_is_computed_as_a_rigid_body(body, remedy):
+    for fidelity in ("solid", "modal"):
+        with pytest.raises(SceneError, match=f"cannot be meshed: .*{remedy}.*rigid needs no mesh") as refused:
+            simulate(scene(body), fidelity)
+        assert "longer rod" not in str(refused.value) and "accuracy.tip_size" not in str(refused.value)
+    assert simulate(scene(body), "rigid").motion.mass > 0

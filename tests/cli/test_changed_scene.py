@@ -1,0 +1,118 @@
+"""Scenes changed by ``--set``: their title tells what was changed, paths are told from where one works."""
+
+from pathlib import Path
+
+import pytest
+
+from fem_impact.cli.common import changed_scene, shown_path
+from fem_impact.errors import SceneError
+from fem_impact.scene.shipped import load, replace
+from fem_impact.scene.write import to_toml
+
+
+def test_the_title_follows_every_change_of_the_impact():
+    changed = changed_scene("elastic-frictionless", ["projectile.length=0.1 m", "accuracy.across=12"])
+    assert changed.title.endswith("frictionless plane, changed: projectile.length = 0.1 m")
+    assert changed_scene("t5b", ["surface.friction=0.2"]).title.endswith(", changed: surface.friction = 0.2")
+    plain = changed_scene("t5b", [])
+    assert changed_scene("t5b", ["save.frames=10"]).title == plain.title
+    assert changed_scene("t5b", ["title=mine", "impact.angle=20 deg"]).title == "mine"
+
+
+def test_the_title_of_a_scene_with_own_tests_names_no_file(tmp_path):
+    (tmp_path / "mine.csv").write_text("quantity,mean,sd,n\ne,0.3,0.1,5\n")
+    scene = changed_scene("t5b", ["title=my rod", "id=my-rod", f"measured={tmp_path / 'mine.csv'}"])
+    (tmp_path / "mine.toml").write_text(to_toml(scene))
+    changed = changed_scene(str(tmp_path / "mine.toml"), ["impact.angle=30 deg"])
+    assert (changed.title, changed.measured) == ("my rod, changed: impact.angle = 30 deg", None)
+
+
+BAD = """
+id = "mine"
+projectile = {{ length = "{length}", diameter = "19 mm", tip = "plain", material = "rod-steel" }}
+barrier = {{ material = "plate-steel" }}
+surface = {{ state = "machined" }}
+impact = {{ angle = "{angle}", v_n = "{v_n}", v_t = "-1 m/s" }}
+"""
+GOOD = {"length": "80 mm", "angle": "45 deg", "v_n": "-1 m/s"}
+
+
+@pytest.mark.parametrize(
+    ("bad", "changes"),
+    [
+        ({"length": "80"}, ["projectile.length=0.1 m"]),
+        ({"length": "80"}, ["projectile.length_m=0.1", "accuracy.across=12"]),
+        ({"angle": "95 deg"}, ["impact.angle=30 deg"]),
+        ({"v_n": "1 m/s"}, ["impact.v_n=-2 m/s"]),
+        ({"v_n": "1 m/s"}, ["impact.speed=2 m/s"]),
+    ],
+)
+def test_a_change_mends_what_is_refused_in_the_file(tmp_path, bad, changes):
+    good, wrong = tmp_path / "good.toml", tmp_path / "wrong.toml"
+    good.write_text(BAD.format(**GOOD))
+    wrong.write_text(BAD.format(**GOOD | bad))
+    with pytest.raises(SceneError, match=str(wrong)):
+        changed_scene(str(wrong), [])
+    with pytest.raises(SceneError, match=f"{wrong} with --set: .*{next(iter(bad))}"):
+        changed_scene(str(wrong), ["accuracy.across=10"])
+    mended, changed = (changed_scene(str(path), changes) for path in (wrong, good))
+    assert (mended.projectile, mended.accuracy, mended.title) == (
+        changed.projectile,
+        changed.accuracy,
+        changed.title,
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "lost"),
+    [
+        (["accuracy.tip_size=0.5 mm", "accuracy=5 %"], "accuracy.tip_size"),
+        (["accuracy.tip_size=0.5 mm", "accuracy.target=5 %"], "accuracy.tip_size"),
+        (["projectile.tip_radius=2 mm", "projectile.shape=hemisphere"], "projectile.tip_radius"),
+        (["surface.friction=0.3", "surface.state=cleaned"], "surface.friction"),
+    ],
+)
+def test_a_change_that_another_one_takes_out_is_refused(changes, lost):
+    with pytest.raises(SceneError, match=f"^--set: {lost}: is taken out again by another change"):
+        changed_scene("t5b", changes)
+
+
+def test_a_shape_takes_the_place_of_a_tip():
+    assert changed_scene("t5b", ["projectile.shape=hemisphere"]).projectile.tip_radius == 0.0095
+
+
+def test_paths_are_shown_from_the_working_directory(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert shown_path(str(tmp_path / "a" / "tests.csv")) == str(Path("a") / "tests.csv")
+    assert shown_path("/elsewhere/tests.csv") == "/elsewhere/tests.csv"
+    assert shown_path("t5b") == "t5b"
+
+
+def test_a_bore_that_stays_short_is_told(cli, tmp_path):
+    _, _, err = cli("check", "tube", "--set", "projectile.length=0.4 m")
+    assert "the bore ends at the new tail" in err and "warning" not in err
+    closed = replace(load("tube"), "projectile.bore", [["0 mm", "6 mm"], ["150 mm", "6 mm"]])
+    (tmp_path / "closed.toml").write_text(to_toml(closed))
+    _, _, err = cli("check", str(tmp_path / "closed.toml"), "--set", "projectile.length=0.4 m")
+    assert "warning: the bore is that of the old length, 0 to 150 mm from the tip." in err
+    bore = 'projectile.bore=[["0 mm", "6 mm"], ["400 mm", "6 mm"]]'
+    assert "bore" not in cli("check", "tube", "--set", "projectile.length=0.4 m", "--set", bore)[2]
+    assert "bore" not in cli("check", "t5b", "--set", "projectile.length=0.1 m")[2]
+
+
+def test_a_ball_has_no_axis_to_fall_along(cli):
+    Path("ball.toml").write_text(BALL)
+    for scene, falls in (
+        ("ball.toml", "the ball falls as fast"),
+        ("t5b", "the rod falls along its axis as fast"),
+    ):
+        assert falls in " ".join(cli("check", scene, "--set", "impact.angle=20 deg")[2].split())
+
+
+BALL = """
+id = "ball"
+projectile = { shape = "ball", diameter = "25 mm", material = "rod-steel" }
+barrier = { material = "plate-steel" }
+surface = { state = "machined" }
+impact = { angle = "30 deg", speed = "3 m/s" }
+"""

@@ -1,0 +1,151 @@
+"""``check`` and ``scenes``: a scene's statement, readable and as JSON."""
+
+import json
+import re
+
+from fem_impact.case.choose import active
+from fem_impact.case.effects.registry import EFFECTS, NAMES
+from fem_impact.scene.library import materials, shipped
+from fem_impact.scene.read import read_dict
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import digest, to_toml
+
+
+def test_scenes_lists_every_shipped_scene(cli):
+    code, out, _ = cli("scenes")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[1:]] == list(shipped())
+    listed = json.loads(cli("scenes", "--json")[1])["scenes"]
+    assert [row["digest"] for row in listed] == [digest(load(name)) for name in shipped()]
+
+
+def test_check_prints_what_a_verdict_needs_on_one_screen(cli):
+    code, out, _ = cli("check", "t5b", "--set", "effects=['auto', '-gravity', 'large-rotation']")
+    said = " ".join(out.split())
+    assert code == 0 and len(out.splitlines()) < 75
+    for words in (
+        "80 mm x 19 mm of rod-steel",
+        "Barrier and contact plate-steel angle 45 deg, v_n -1.5024 m/s",
+        "friction f 0.57 (0.45 to 0.7), machined surfaces",
+        "0.1 mm deep, for 141 us",
+        "T1/tau = 0.58",
+        "on friction: f: 0.57, threshold 0.005",
+        "on large-rotation (forced): theta",
+        "gravity (forced)",
+        "MB of memory",
+        "inside the measured",
+        "--long prints every value with its source",
+    ):
+        assert words in said
+    assert "on gravity" not in said and "footnote 2" not in said
+    assert max(map(len, out.splitlines())) < 80
+
+
+def test_a_scene_without_a_title_is_named_once(cli, tmp_path):
+    scene = tmp_path / "plain.toml"
+    stated = to_toml(load("t5b")).splitlines()
+    scene.write_text("\n".join(line for line in stated if not line.startswith("title")))
+    assert cli("check", str(scene))[1].splitlines()[0] == "t5b"
+    assert cli("check", "t5b")[1].splitlines()[0] == f"t5b: {load('t5b').title}"
+
+
+def test_own_files_are_printed_as_seen_from_the_scene(cli, tmp_path):
+    """The path from the root of the machine is no statement of the scene."""
+    (tmp_path / "data").mkdir()
+    (tmp_path / "data" / "tests.csv").write_text("quantity,mean,sd,n\ne,0.5,0.02,5\n")
+    scene = tmp_path / "own.toml"
+    scene.write_text(to_toml(load("t5b")).replace('measured = "t5b"', 'measured = "data/tests.csv"'))
+    long = cli("check", str(scene), "--long")[1]
+    assert 'measured = "data/tests.csv"\n' in long and str(tmp_path) not in long
+    shown = tmp_path / "shown.toml"
+    shown.write_text(long[: long.index("\n\nSources")])
+    assert load(shown) == load(scene)
+
+
+def test_check_names_segments_layers_plates_and_a_friction_that_counts_as_exact(cli):
+    for scene, words in (
+        ("heavy-tail", "of rod-steel up to"),
+        ("layered", "2 mm of steel-4340 on aluminium-6061-t6"),
+        ("plate-10mm", "thickness 10 mm"),
+        ("moving-barrier", "v_n 2"),
+    ):
+        assert words in " ".join(cli("check", scene)[1].split())
+    custom = "surface={state='custom', friction=0.3, source='mine'}"
+    assert (
+        "friction f 0.3 (no interval stated: it counts as exact)" in cli("check", "t5b", "--set", custom)[1]
+    )
+
+
+def test_check_prints_values_units_sources_and_effects_on_demand(cli):
+    code, out, _ = cli("check", "t5b", "--long")
+    assert code == 0
+    for words in (
+        'length = "80 mm"',
+        "footnote 2",
+        "barrier.material.E = 206 GPa: measured on the test plates",
+        "tested 0.002 /s: C of steel 1006",
+        "rate_factor: interval 1.1 to 1.6",
+        "Flow stress at 8 % plastic strain",
+        "barrier 482 615 643 671",
+        "accuracy.tip_size = 5 elements over the estimated radius",
+        "on  friction",
+        "inside the measured",
+    ):
+        assert words in out or words in " ".join(out.split())
+
+
+def test_check_tells_number_threshold_harm_and_time_of_each_effect(cli):
+    text = cli("check", "t5b", "--long", "--set", "effects=['auto', 'barrier-elastic']")[1]
+    parts = [part.partition("\n\n")[0] for part in re.split(r"\n  (?:on  |off )", text)[1:]]
+    about = {part.split()[0].rstrip(":"): " ".join(part.split()) for part in parts}
+    assert "f: 0.57, threshold 0.005; leaving it out changes e by about 0.2, E_vib by " in about["friction"]
+    assert about["friction"].endswith("it takes under 1 % of the run time")
+    assert "run time" not in about["gravity"] and "leaving it out changes e" in about["gravity"]
+    assert "quick estimate, was off by up to 0.3 and 0.05 on 13 measured sets" in about["friction"]
+    assert "not compared with finite elements" in about["gravity"]
+    assert "changes e by" not in about["vibration"] and "fem-impact assess" in about["vibration"]
+    # a barrier is one of three: those not taken are missing nothing
+    assert "leaving it" not in about["barrier-rigid"] and "leaving it" in about["barrier-elastic"]
+
+
+def test_check_as_json_gives_a_scene_that_reads_back(cli):
+    _, out, _ = cli("check", "t5b", "--set", "impact.angle=80 deg", "--json")
+    statement = json.loads(out)
+    scene = read_dict(statement["scene"])
+    assert statement["digest"] == digest(scene)
+    assert any("angle 80 deg" in sentence for sentence in statement["validity"])
+    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(active(scene))
+
+
+def test_check_refuses_a_bad_file_by_name(cli, tmp_path):
+    (tmp_path / "mine.toml").write_text("id = 3")
+    code, out, err = cli("check", "mine.toml")
+    assert (code, out) == (3, "")
+    assert err.startswith("fem-impact: error: mine.toml: ")
+
+
+def test_every_effect_that_a_scene_can_name_is_described():
+    assert tuple(EFFECTS) == NAMES
+
+
+def test_check_answers_at_both_ends_of_the_angle(cli):
+    for angle in ("0 deg", "89.9 deg"):
+        code, out, _ = cli("check", "t5b", "--set", f"impact.angle={angle}", "--json")
+        assert code == 0
+        assert json.loads(out)["scene"]["impact"]["angle"] == angle
+
+
+def test_scenes_lists_every_shipped_material(cli):
+    code, out, _ = cli("scenes", "--materials")
+    assert code == 0
+    assert [line.split()[0] for line in out.splitlines()[1:]] == list(materials())
+    rows = json.loads(cli("scenes", "--materials", "--json")[1])["materials"]
+    assert {row["material"]: row["E_Pa"] for row in rows} == {name: m.E for name, m in materials().items()}
+
+
+def test_a_thickness_without_support_is_said_to_change_nothing(cli):
+    words = "its thickness changes nothing"
+    plate = ("check", "t5b", "--set", "barrier.thickness=20 mm")
+    assert words in " ".join(cli(*plate)[1].split())
+    assert words not in " ".join(cli(*plate, "--set", "barrier.support=infinite")[1].split())
+    assert words not in " ".join(cli("check", "t5b")[1].split())

@@ -1,0 +1,225 @@
+"""``run`` and ``study``: what is passed on, printed and returned."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from fem_impact.answers.report import Request
+from fem_impact.scene.shipped import load
+from fem_impact.scene.write import digest, to_toml
+
+
+def test_run_passes_the_scene_and_prints_the_outcome(cli, stand):
+    code, out, err = cli("run", "t5b", "--out", "here")
+    name, (scene, fidelity, options, _) = stand.calls[0]
+    assert (code, name, scene) == (0, "simulate", load("t5b"))
+    assert fidelity is None
+    assert options.out == Path("here")
+    for words in ("results: here", "0.5 +- 0.01", "not in the stand-in", "E_0 = 0.39 J"):
+        assert words in out
+    assert "t 100/2500 us  about 1 min 01 s left  step 4000  energy drift +1.0e-06  touching, 12 nodes" in err
+
+
+def test_an_own_rod_has_its_restitution_with_the_arms_of_its_tip(cli, stand):
+    stand.outcome = stand.an_outcome(e_edge=0.296)
+    assert "restitution e (tip's arms)     0.296\n" in cli("run", "t5b", "--quiet")[1]
+    stand.outcome = stand.an_outcome(e_edge=0.296, e_paper=0.327)
+    assert "restitution e (paper's arms)   0.327\n" in cli("run", "t5b", "--quiet")[1]
+
+
+def test_changes_are_applied_and_filed_apart(cli, stand):
+    code, _, _ = cli("run", "t5b", "--set", "accuracy.tip_size=0.5 mm", "--set", "save.frames=10", "--quiet")
+    _, (scene, _, options, _) = stand.calls[0]
+    assert code == 0
+    assert (scene.accuracy.tip_size, scene.save.frames) == (0.0005, 10)
+    assert options.out == Path("results") / f"t5b-{digest(scene)[:8]}"
+
+
+def test_a_target_runs_side_by_side_on_the_cores_there_are(cli, stand, monkeypatch):
+    monkeypatch.setattr("fem_impact.cli.run.cores", lambda: 3)
+    assert cli("run", "t5b", "--set", "accuracy=20 %", "--quiet")[0] == 0
+    scene, fidelity, _, workers = stand.calls[0][1]
+    assert (scene.accuracy.target, fidelity, workers) == (0.2, None, 3)
+
+
+def test_effects_may_be_listed_with_commas(cli, stand):
+    code, _, _ = cli("run", "t5b", "--set", "effects=vibration, barrier-rigid", "--quiet")
+    assert code == 0
+    assert stand.calls[0][1][0].effects == ("vibration", "barrier-rigid")
+
+
+def test_json_is_one_document_and_nothing_else(cli, stand):
+    _, out, _ = cli("run", "t5b", "--json")
+    assert json.loads(out)["scene_id"] == "t5b"
+    _, out, _ = cli("study", "sets", "t4", "--json")
+    told = {"rows": [{"id": "t4", "e": 0.2}], "comparison": [], "failures": []}
+    assert json.loads(out) == {**told, "notes": ["f matters", "no film: no GL"]}
+
+
+def test_quiet_shows_no_progress(cli, stand):
+    assert cli("run", "t5b", "--quiet")[2] == ""
+
+
+def test_a_run_that_stops_early_keeps_its_results_and_says_so(cli, stand):
+    stand.outcome = stand.an_outcome(
+        finished=False, stopped_because="the step fell below 1 ps.", E_vib_below_floor=None
+    )
+    code, out, err = cli("run", "t5b", "--quiet")
+    assert code == 6
+    assert "the step fell below 1 ps" in err
+    assert "E_0 = 0.39 J, at the stop of this unfinished run:" in out and "results:" in out
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "words"),
+    [
+        (KeyboardInterrupt(), 130, "interrupted"),
+        (OSError(28, "No space left on device", "results/history.csv"), 4, "disk is full"),
+        (OSError(13, "Permission denied", "results/history.csv"), 4, "Permission denied"),
+        (MemoryError(), 6, "out of memory"),
+    ],
+)
+def test_trouble_during_a_run_is_one_sentence(cli, stand, error, code, words):
+    stand.error = error
+    got, out, err = cli("run", "t5b", "--quiet")
+    assert (got, out) == (code, "")
+    assert words in err
+    assert "Traceback" not in err
+    assert err.count("\n") == 1
+
+
+def test_a_fault_of_the_program_is_not_hidden(cli, stand):
+    stand.error = ZeroDivisionError("a bug")
+    with pytest.raises(ZeroDivisionError):
+        cli("run", "t5b", "--quiet")
+
+
+def test_study_passes_what_is_asked(cli, stand):
+    assert cli("study", "sets", "t4", "t5a", "t4", "--workers", "1")[0] == 0
+    assert cli("study", "convergence", "--quick", "--out", "here")[0] == 0
+    names = [args[0] for _, args in stand.calls]
+    asked = [args[1] for _, args in stand.calls]
+    assert names == ["sets", "convergence"]
+    assert asked[0] == Request(Path("results/sets"), ("t4", "t5a"))
+    assert asked[1] == Request(Path("here"), (), quick=True)
+
+
+def test_options_that_nothing_would_look_at_are_refused(cli, stand):
+    assert "is for finite elements only" in cli("run", "t5b", "--fidelity", "modal", "--resume")[2]
+    assert "there is no option --quick" in cli("study", "report", "--quick")[2]
+    assert "are about one scene" in cli("cost", "paper", "--target", "5 %")[2]
+    assert "lists parameters and runs nothing" in cli("verify", "bar", "--parameters", "--set", "length=1")[2]
+    assert not stand.calls
+
+
+@pytest.mark.parametrize("words", [("gamma", "t5b")])
+def test_what_a_study_would_not_look_at_is_refused(cli, stand, words):
+    code, _, err = cli("study", *words)
+    assert code == 2
+    assert f"study gamma: '{words[-1]}' is not expected here" in err
+    assert not stand.calls
+
+
+def test_an_interrupted_run_says_whether_it_can_go_on(cli, stand):
+    stand.error = KeyboardInterrupt()
+    assert "no checkpoint was due yet" in cli("run", "t5b", "--out", "here")[2]
+    for name in ("scene.toml", "run.checkpoint"):
+        Path("here", name).write_text("of this run")
+    assert "--resume goes on from the last checkpoint" in cli("run", "t5b", "--out", "here")[2]
+
+
+def test_a_closed_output_is_no_traceback():
+    command = [sys.executable, "-m", "fem_impact", "scenes"]
+    done = subprocess.run(["sh", "-c", '"$@" >&-', "sh", *command], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_an_unknown_set_is_refused_with_the_nearest(cli, stand):
+    code, _, err = cli("study", "sets", "t3-machned")
+    assert code == 2
+    assert "Did you mean t3-machined" in err
+    assert not stand.calls
+
+
+def test_sets_may_follow_the_options(cli, stand):
+    assert cli("study", "sets", "t5a", "--quick", "t4", "--quiet")[0] == 0
+    assert stand.calls[0][1][1] == Request(Path("results/sets"), ("t5a", "t4"), quick=True)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["fly"],
+        ["run"],
+        ["run", "t4", "t5a"],
+        ["study", "sets", "--fast"],
+        ["study", "cats"],
+        ["study", "sets", "--workers", "0"],
+    ],
+)
+def test_a_line_that_is_not_understood_ends_with_2(cli, words):
+    assert cli(*words)[0] == 2
+
+
+def test_no_command_shows_the_help(cli):
+    code, out, err = cli()
+    assert (code, out) == (2, "")
+    assert "study" in err
+
+
+def test_resume_and_the_time_between_checkpoints_are_passed_on(cli, stand):
+    assert cli("run", "t5b", "--resume", "--checkpoint", "5", "--quiet")[0] == 0
+    options = stand.calls[0][1][2]
+    assert options.resume is True and options.checkpoint_s == 5.0
+    assert cli("run", "t5b", "--quiet")[0] == 0
+    options = stand.calls[1][1][2]
+    assert options.resume is False and options.checkpoint_s == 30.0
+    for wrong in ("-1", "nan", "soon", "inf"):
+        code, _, err = cli("run", "t5b", "--checkpoint", wrong)
+        assert code == 2 and "not a time in seconds" in err
+
+
+def test_a_spoiled_checkpoint_is_refused_by_the_command(cli, tmp_path):
+    words = ("--set", "accuracy.tip_size=0.8 mm", "--set", "accuracy.across=6", "--set", "save.frames=0")
+    (tmp_path / "here").mkdir()
+    (tmp_path / "here" / "scene.toml").write_text(to_toml(load("t5b")))
+    (tmp_path / "here" / "history.csv").write_text("")
+    (tmp_path / "here" / "run.checkpoint").write_bytes(b"nothing like it")
+    code, out, err = cli("run", "t5b", *words, "--resume", "--quiet", "--out", "here")
+    assert (code, out) == (5, "")
+    assert "is damaged" in err and "Run again without --resume to start anew." in err
+
+
+def test_a_body_that_does_not_yield_has_no_residual_stress(cli, stand):
+    stand.outcome = stand.an_outcome(
+        E_plastic_rod_over_E_0=0.0,
+        E_locked_rod_over_E_0=4e-5,
+        E_plastic_barrier_over_E_0=0.2,
+        E_locked_barrier_over_E_0=0.01,
+    )
+    out = cli("run", "t5b", "--quiet")[1]
+    assert "elastic energy left in rod         0.004 %" in out
+    assert "residual stress in barrier         1.000 %" in out
+
+
+def test_a_rod_that_still_comes_down_is_told(cli, stand):
+    stand.outcome = stand.an_outcome(V_n_m_per_s=-0.3, V_bn_m_per_s=0.1)
+    told = "note: The mass centre still comes down at 0.4 m/s, so that the rod strikes again later."
+    assert told in " ".join(cli("run", "t5b", "--quiet")[1].split())
+    stand.outcome = stand.an_outcome(V_n_m_per_s=0.3, V_bn_m_per_s=0.1)
+    assert "strikes again" not in cli("run", "t5b", "--quiet")[1]
+
+
+def test_vibration_above_the_modes_is_listed_so_that_the_shares_add_up(cli):
+    """A blunt end on a rigid plane excites shapes that the modes do not hold."""
+    flat = ("--set", "impact.angle=0 deg", "--set", "effects=auto,barrier-rigid")
+    said = cli("run", "quick", *flat, "--out", "flat")[1]
+    listed = said.split("E_0 = ")[1].split("not accounted")[0]
+    shares = [float(part) for part in re.findall(r"([\d.]+) %", listed)]
+    assert "vibration above its modes" in said
+    assert sum(shares) == pytest.approx(100, abs=0.02)
+    assert "above its modes" not in cli("run", "quick", "--out", "inclined")[1]

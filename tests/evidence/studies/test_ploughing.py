@@ -1,0 +1,25 @@
+"""The impulse ratio of a tip that yields while it slides exceeds its friction by what it ploughs."""
+
+import numpy as np
+import pytest
+
+from fem_impact.answers.refine.levels import FAMILY, on_mesh
+from fem_impact.run.simulate import simulate
+from fem_impact.scene.shipped import load, replace_all
+
+F = 0.2
+
+
+@pytest.mark.validation
+def test_ploughing_does_not_hang_on_the_mesh():
+    """.049, .044, .044 at one place of the barrier's grid."""
+    scene = replace_all(
+        load("t5b"),
+        {"surface.friction": F, "surface.friction_low": F, "surface.friction_high": F},
+    )
+    runs = [simulate(on_mesh(scene, mesh)) for mesh in FAMILY[:3]]
+    ploughed = np.array([run.restitution.mu - F for run in runs])
+    assert (ploughed > 0.03).all()
+    assert np.ptp(ploughed) < 0.01
+    e = np.array([run.restitution.paper.e for run in runs])
+    assert np.ptp(e) < 0.03

@@ -1,0 +1,44 @@
+"""The study of the reduced model: scenes on both models, near or not, and the stored copy of its table."""
+
+import pytest
+from study_fakes import outcome
+
+from fem_impact.answers.report import Request
+from fem_impact.case.measured import reduced_table
+from fem_impact.evidence.studies.reduced import HEAD, conclude, plan, scenes, study_report
+from fem_impact.evidence.studies.reduced_scenes import COUNT, SIDES, design
+from fem_impact.jobs.job import Failure
+from fem_impact.progress import NullMeter
+
+
+def fake(job):
+    off = 0.05 if job.fidelity == "modal" else 0.0
+    return outcome(e_edge=0.4 + off, mu=0.3, E_vib_over_E_0=0.02 - 0.08 * off, W_skin_over_E_0=0.1)
+
+
+def test_every_scene_runs_on_both_models_and_lies_within_the_hypercube():
+    assert len({job.name for job in plan(Request("x"), {})}) == 2 * (13 + 6 + COUNT)
+    for row in design(COUNT):
+        assert all(side.low <= row[side.name] <= side.high for side in SIDES)
+    assert {group for group, _ in scenes(True)} == {"hypercube"}
+
+
+def test_near_and_far_are_counted_and_a_failed_run_leaves_its_row_out(tmp_path):
+    request = Request(tmp_path, quick=True)
+    results = {job.name: fake(job) for job in plan(request, {})}
+    results["reduced-1-solid"] = Failure("reduced-1-solid", "folded")
+    found = conclude(request, results, NullMeter())
+    assert "e within 0.06 in 3 of 3 scenes" in found.text and "both in 3" in found.text
+    assert "median difference of e 0.050" in found.text
+
+
+def test_a_difference_beyond_the_limit_is_not_near():
+    row = ("a", "hypercube", 0.47, 0.40, 0.3, 0.3, 1.0, 1.0, 0.026, 0.02, 0.1, 0.1)
+    (sentence,) = study_report([row]).findings
+    assert "in 0 of 1 scenes" in sentence and "in 0, both in 0" in sentence
+
+
+def test_the_stored_table_has_the_columns_of_the_study():
+    assert tuple(reduced_table()[0]) == HEAD
+    assert {row["group"] for row in reduced_table()} >= {"measured", "hypercube"}
+    assert len([r for r in reduced_table() if r["group"] == "measured"]) == pytest.approx(13)

@@ -1,0 +1,74 @@
+"""The words around the views of a film: none is cut, and none runs into another."""
+
+from itertools import pairwise
+
+import pytest
+from matplotlib.figure import Figure
+
+from fem_impact.figures.style import QUIET
+from fem_impact.films.board import below, blank, clock, colour_bar, heading, picture
+from fem_impact.films.layout import Abreast, FrameLayout
+from fem_impact.films.motion import FIELDS
+from fem_impact.films.side_by_side import TITLE, _title
+
+LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3
+
+
+def boxes(drawn: Figure):
+    """Return the boxes of a figure's words, pixels from the upper left corner: left, top, right, bottom."""
+    drawn.draw_without_rendering()
+    found = [text.get_window_extent() for text in drawn.texts]
+    return [(box.x0, drawn.bbox.y1 - box.y1, box.x1, drawn.bbox.y1 - box.y0) for box in found]
+
+
+@pytest.mark.parametrize("field", FIELDS)
+@pytest.mark.parametrize("count", [None, 3, 4])
+def test_words_under_a_view_clear_the_view_the_bar_and_the_strip(field, count):
+    frame = FrameLayout(1280, 720) if count is None else Abreast(1280, 720, count)
+    view = frame.close if count is None else frame.views[1]
+    drawn = blank(frame)
+    colour_bar(drawn, frame, view, field, (-1.0, 1.0))
+    if count:
+        words = "one scale; deformation × 1000,\nfading to × 1 at the contact"
+        below(drawn, frame, frame.views[0], words, QUIET)
+    for left, top, right, bottom in boxes(drawn):
+        assert view.top + view.height <= top
+        assert bottom < frame.height - 176
+        assert right - left < (130 if left == view.left else view.width)
+
+
+class Pen:
+    """Takes the place of a word that is written anew on every frame."""
+
+    def text(self, place, text, font, **_):
+        self.left = place[0] - font.getlength(text)
+
+
+@pytest.mark.parametrize("title", [TITLE, LONG])
+def test_a_title_ends_before_the_clock(title):
+    frame, pen = FrameLayout(1280, 720), Pen()
+    drawn = blank(frame)
+    heading(drawn, frame, title)
+    clock(pen, frame, 8000e-6)
+    ((_, _, right, _),) = boxes(drawn)
+    assert right < pen.left
+    assert title == LONG or drawn.texts[0].get_text() == TITLE
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_titles_of_rods_clear_the_heading_and_each_other(count):
+    frame = Abreast(1280, 720, count)
+    drawn = blank(frame)
+    heading(drawn, frame, TITLE)
+    for view in frame.views:
+        _title(drawn, frame, view, LONG)
+    (_, _, _, bottom), *titles = boxes(drawn)
+    assert all(top >= bottom for _, top, _, _ in titles)
+    assert all(a[2] <= b[0] for a, b in pairwise(titles))
+
+
+def test_a_title_with_dollar_signs_is_no_formula():
+    frame = FrameLayout(1280, 720)
+    drawn = blank(frame)
+    heading(drawn, frame, "costs $5 and $x_{$")
+    assert picture(drawn).size == (1280, 720)
