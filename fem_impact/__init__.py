@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fem_impact.answers.wanted_error import simulate
     from fem_impact.case.plan import Plan
     from fem_impact.case.plan import plan as make_plan
-    from fem_impact.files.fields_read import read_fields
+    from fem_impact.files.fields import read_fields
     from fem_impact.options import RunOptions
     from fem_impact.outcome.keys import Unknown, known
     from fem_impact.outcome.record import Outcome
@@ -73,7 +73,7 @@ _PLACES = {
     "load": "scene.shipped:load",
     "make_plan": "case.plan:plan",  # the package `fem_impact.case` has the name itself
     "parse_quantity": "scene.units:parse_quantity",
-    "read_fields": "files.fields_read:read_fields",
+    "read_fields": "files.fields:read_fields",
     "read_history": "tables.history:read_history",
     "replace": "scene.shipped:replace",
     "replace_all": "scene.shipped:replace_all",

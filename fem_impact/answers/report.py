@@ -17,8 +17,8 @@ from fem_impact.figures.live import live
 from fem_impact.figures.panels import Picture
 from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.files.digests import read_signed, signed
 from fem_impact.files.run_directory import set_aside
-from fem_impact.files.signed_json import read_signed, signed
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import Results
 from fem_impact.outcome.keys import or_none

@@ -19,8 +19,8 @@ from fem_impact.answers.vary import cases, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory
+from fem_impact.files.digests import checksum
 from fem_impact.files.lock import directory_lock
-from fem_impact.files.signed_json import checksum
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import run_jobs

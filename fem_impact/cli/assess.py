@@ -32,7 +32,7 @@ def assess(options: Options) -> int:
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
     if out is not None:
-        from fem_impact.files.ownership import refuse_other_scene
+        from fem_impact.files.run_directory import refuse_other_scene
         from fem_impact.scene.write import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from fem_impact.cli.options import Options
 from fem_impact.errors import OutputPathError, ResultError, UsageError
-from fem_impact.files.ownership import stranger
-from fem_impact.files.run_directory import COMPUTED
+from fem_impact.files.run_directory import COMPUTED, stranger
 
 if TYPE_CHECKING:
     from fem_impact.case.size import RunSize

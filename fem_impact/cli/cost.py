@@ -70,7 +70,7 @@ def _write(study: CostStudy, report: StudyReport, line: str, out: Path) -> list[
     """Write the tables of a scene's costs and its page; return what could not be made."""
     from fem_impact.answers.cost.document import write_cost
     from fem_impact.answers.report import Request, publish
-    from fem_impact.pages.present import page
+    from fem_impact.pages.write import page
 
     write_cost(study, out)
     publish(report, Request(out, line=line), study.runs)
@@ -143,7 +143,7 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
     from fem_impact.files.atomic import write_text
     from fem_impact.files.lock import directory_lock
-    from fem_impact.pages.present import page
+    from fem_impact.pages.write import page
     from fem_impact.scene.types import MEASURED_SETS
 
     stated_page = asked_page(options)

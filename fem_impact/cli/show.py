@@ -12,7 +12,7 @@ from fem_impact.cli.options import Options
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
 
 if TYPE_CHECKING:
-    from fem_impact.films.timeline import Span
+    from fem_impact.films.movement import Span
 
 FIELDS = "fields.vtkhdf"
 
@@ -24,7 +24,7 @@ def render(options: Options) -> int:
     for result in results:
         _check_fields(result)
     from fem_impact.films import film as films
-    from fem_impact.films.side_by_side import render_side_by_side
+    from fem_impact.films.film import render_side_by_side
 
     span = _span(options)
     if len(results) > 1 and options.field != FILMED[0]:
@@ -52,7 +52,7 @@ def render(options: Options) -> int:
 
 def _span(options: Options) -> Span:
     """Return what the film shall show."""
-    from fem_impact.films.timeline import Span
+    from fem_impact.films.movement import Span
     from fem_impact.scene.units import option_quantity
 
     first, last, speed = (

@@ -17,8 +17,7 @@ from fem_impact.errors import RunError, UsageError, did_you_mean
 
 if TYPE_CHECKING:
     from fem_impact.answers.report import Request
-    from fem_impact.jobs.forecast import JobGroup, WorkForecast
-    from fem_impact.jobs.run import Pace
+    from fem_impact.jobs.run import JobGroup, Pace, WorkForecast
     from fem_impact.progress import ProgressMeter
 
 
@@ -68,8 +67,8 @@ def _study(
 
     result, notes = run_study(options.name, request, meter, executor), []
     if result.runs:
-        from fem_impact.films.timeline import QUICK_FRAMES, STUDY_FRAMES
-        from fem_impact.pages.present import present
+        from fem_impact.films.movement import QUICK_FRAMES, STUDY_FRAMES
+        from fem_impact.pages.write import present
 
         frames = QUICK_FRAMES if request.quick else STUDY_FRAMES
         here = None if options.scheduler else executor  # workers of a cluster may not see the files

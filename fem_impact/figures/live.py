@@ -9,7 +9,7 @@ import numpy as np
 
 from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap, half_widths, numbers
 from fem_impact.figures.style import INK, QUIET, colour_of, sides
-from fem_impact.tables.symbols import markup
+from fem_impact.tables.text import markup
 
 DIGITS = 5
 """Significant digits of the numbers in a page; those of a shaded map have `SHADED`."""

@@ -12,7 +12,7 @@ import numpy as np
 from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap
 from fem_impact.figures.style import INK, QUIET, colour_of, figure, sides
 from fem_impact.files.atomic import write_text
-from fem_impact.tables.symbols import formula
+from fem_impact.tables.text import formula
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist

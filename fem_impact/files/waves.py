@@ -11,7 +11,7 @@ import numpy as np
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import atomic_path
 from fem_impact.files.digests import check_digest
-from fem_impact.files.fields_check import check_finite, check_times
+from fem_impact.files.fields import check_finite, check_times
 
 if TYPE_CHECKING:
     import h5py

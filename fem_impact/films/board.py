@@ -1,4 +1,4 @@
-"""The still picture around the views, title, colour bars and force curve, and the moving marker."""
+"""A frame: its layout in pixels, and what stands around the views, still or moving."""
 
 from __future__ import annotations
 
@@ -11,17 +11,124 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact.errors import UsageError
 from fem_impact.figures.style import INK, PALETTE, QUIET
-from fem_impact.films.layout import Frame, FrameLayout, Rectangle
+from fem_impact.files.waves import Waves
 from fem_impact.films.motion import FIELDS, FilmData
-from fem_impact.films.profile import Profile
-from fem_impact.films.views import CLOSE_WIDTH
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
+
+@dataclass(frozen=True, slots=True)
+class Rectangle:
+    """A rectangle in pixels."""
+
+    left: int
+    top: int
+    width: int
+    height: int
+
+    @property
+    def corner(self) -> tuple[int, int]:
+        """The upper left corner."""
+        return (self.left, self.top)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height."""
+        return (self.width, self.height)
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """A picture of a film.
+
+    Parameters
+    ----------
+    width, height : int, px
+        Multiples of 16, as video encoders want them.
+    """
+
+    width: int
+    height: int
+
+    def __post_init__(self) -> None:
+        if self.width % 16 or self.height % 16 or self.width < 640 or self.height < 480:
+            raise UsageError(
+                "is no size of a film.",
+                key="--size",
+                value=f"{self.width}x{self.height}",
+                remedy="Use multiples of 16, 640x480 at least.",
+            )
+
+    def share(self, left: int, top: int, width: int, height: int) -> tuple[float, float, float, float]:
+        """Return a rectangle as matplotlib wants it: shares of the frame from the lower left corner."""
+        across, down = self.width, self.height
+        return (left / across, 1.0 - (top + height) / down, width / across, height / down)
+
+
+@dataclass(frozen=True, slots=True)
+class FrameLayout(Frame):
+    """Two views side by side over a strip with the force curve."""
+
+    @property
+    def rod(self) -> Rectangle:
+        """The view of the whole rod."""
+        return Rectangle(24, 74, self.width // 2 - 36, self.height - 310)
+
+    @property
+    def close(self) -> Rectangle:
+        """The view of the contact."""
+        return Rectangle(self.width // 2 + 12, 74, self.width // 2 - 36, self.height - 310)
+
+    @property
+    def beside(self) -> Rectangle:
+        """The place of curves instead of the view of the contact: its colour bar is not needed."""
+        close = self.close
+        return Rectangle(close.left, close.top, close.width, close.height + 36)
+
+    @property
+    def strip(self) -> Rectangle:
+        """The strip of the force curve."""
+        return Rectangle(74, self.height - 176, self.width - 108, 132)
+
+
+@dataclass(frozen=True, slots=True)
+class Abreast(Frame):
+    """Views of several rods side by side, each over its own force curve.
+
+    Parameters
+    ----------
+    count : int
+        Number of rods.
+    """
+
+    count: int
+
+    @property
+    def views(self) -> tuple[Rectangle, ...]:
+        """The views of the rods."""
+        return tuple(Rectangle(left, 74, self._across - 16, self.height - 290) for left in self._lefts)
+
+    @property
+    def strips(self) -> tuple[Rectangle, ...]:
+        """The strips of the force curves."""
+        return tuple(Rectangle(left + 46, self.height - 176, self._across - 66, 132) for left in self._lefts)
+
+    @property
+    def _across(self) -> int:
+        return (self.width - 32) // self.count
+
+    @property
+    def _lefts(self) -> tuple[int, ...]:
+        return tuple(16 + at * self._across for at in range(self.count))
+
+
+CLOSE_WIDTH = 0.45
+"""Width of the close-up in diameters of the rod."""
 
 CLOCK, LETTER = 220, 11
 """Widths of clock and margins, and of a letter of the title, px."""
@@ -226,3 +333,62 @@ def _track(axes: Axes, height: int, limits: Limits) -> tuple[float, float, float
     corners = axes.transData.transform([(first * 1e6, 0.0), (last * 1e6, largest / 1e3)])
     (left, zero), (right, top) = corners
     return float(left), float(right), height - float(zero), height - float(top)
+
+
+CURVES = (("stretch: mean of the section", "blue"), ("bending: side facing the barrier", "vermilion"))
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """Axes drawn once into the still picture, and the curves of each frame.
+
+    Parameters
+    ----------
+    waves : Waves
+    corner : tuple of float
+        Pixel of position 0 and strain 0.
+    slope : tuple of float
+        px per m, and px per unit of strain, downwards.
+    """
+
+    waves: Waves
+    corner: tuple[float, float]
+    slope: tuple[float, float]
+
+    @classmethod
+    def draw(cls, drawn: Figure, frame: Frame, place: Rectangle, waves: Waves, times: np.ndarray) -> Profile:
+        """Draw the axes into a figure that is as large as the frame, high enough for all times."""
+        limit = 1.1e6 * max(float(np.abs(part).max()) for part in waves.strain(times))
+        axes = drawn.add_axes(
+            frame.share(place.left + 54, place.top + 6, place.width - 66, place.height - 48)
+        )
+        axes.set(xlim=(0.0, 1e3 * waves.length), ylim=(-limit, limit))
+        axes.set_xlabel("position along the axis from the tip, mm", fontsize=9, labelpad=1)
+        axes.set_ylabel("axial strain, µm/m", fontsize=9, labelpad=1)
+        axes.tick_params(labelsize=8, color=QUIET)
+        axes.spines[["top", "right"]].set_visible(False)
+        axes.grid(color="#e2e5e9", linewidth=0.7)
+        axes.axhline(0.0, color=QUIET, linewidth=0.7)
+        for at, (words, colour) in enumerate(CURVES):
+            axes.text(
+                0.02,
+                0.98 - 0.06 * at,
+                words,
+                color=PALETTE[colour],
+                transform=axes.transAxes,
+                va="top",
+                fontsize=9,
+            )
+        (left, zero), (right, top) = axes.transData.transform([(0.0, 0.0), (1e3 * waves.length, limit)])
+        slope = (float(right - left) / waves.length, float(top - zero) / limit * 1e6)
+        return cls(waves, (float(left), frame.height - float(zero)), slope)
+
+    def mark(self, pen: Any, time: float) -> None:
+        """Draw the curves at a time, s."""
+        left, zero = self.corner
+        x = left + self.slope[0] * self.waves.position
+        for rows, (_, colour) in zip(self.waves.strain(np.array([time])), CURVES, strict=True):
+            y = zero - self.slope[1] * rows[0]
+            pen.line(
+                list(zip(x.tolist(), y.tolist(), strict=True)), fill=PALETTE[colour], width=3, joint="curve"
+            )

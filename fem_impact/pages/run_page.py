@@ -8,16 +8,26 @@ from html import escape
 from pathlib import Path
 
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
-from fem_impact.figures.partition import partition_picture
+from fem_impact.figures.runs import partition_picture
 from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory, read_text
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
-from fem_impact.pages.comparison import beside_tests
-from fem_impact.pages.html import Markup, bullets, details, join, paragraph, section, table
-from fem_impact.pages.page import figure, page, sources
+from fem_impact.pages.page import (
+    Markup,
+    bullets,
+    details,
+    figure,
+    join,
+    page,
+    paragraph,
+    section,
+    sources,
+    table,
+)
 from fem_impact.pages.sections import (
     all_keys,
+    beside_tests,
     card,
     contacts_table,
     effects_section,

@@ -1,32 +1,234 @@
-"""The report of a study."""
+"""The report of a study: its study.json read and checked, its findings, its runs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from html import escape
 from pathlib import Path
+from typing import Any
 
-from fem_impact.figures.partition import study_partition_picture
-from fem_impact.files.atomic import make_directory
+import fastjsonschema
+
+from fem_impact.answers.report import SCHEMA
+from fem_impact.errors import ResultError
+from fem_impact.figures.runs import study_partition_picture
+from fem_impact.files.atomic import make_directory, read_text
+from fem_impact.files.digests import read_signed
 from fem_impact.outcome.groups import RunCost
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.pages.comparison import comparison_part, comparison_tables, is_inside
-from fem_impact.pages.findings import findings_section
-from fem_impact.pages.html import Markup, bullets, details, join, section, table
-from fem_impact.pages.page import download, figure, page, sources
+from fem_impact.pages.page import (
+    Markup,
+    bullets,
+    details,
+    download,
+    figure,
+    join,
+    page,
+    paragraph,
+    place,
+    section,
+    sources,
+    stored_figure,
+    table,
+)
 from fem_impact.pages.sections import (
     card,
+    comparison_part,
+    comparison_tables,
     estimated,
     has_film,
     history_figures,
+    is_inside,
     known_cell,
     notices,
     sentences,
     unknown,
 )
-from fem_impact.pages.study_data import Study, read_study
-from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.table import COMPARISON, Cell, Column, Table
+from fem_impact.tables.text import readable
+
+Record = Mapping[str, Any]
+TEXTS = ("study", "title", "command")
+SENTENCES = ("findings", "assumptions", "sources")
+NUMBERS = ("model", "measured_mean", "measured_low", "measured_high")
+WIDTHS = ("band", "measured_sd", "n")  # numbers that are never below zero
+
+
+def _list(items: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "array", "items": items}
+
+
+def _record(**properties: Mapping[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": list(properties)}
+
+
+_TEXT, _NUMBER = {"type": "string"}, {"type": ["number", "null"]}
+_WIDTH = {**_NUMBER, "minimum": 0}
+_FILE = {"type": "string", "pattern": r"^[A-Za-z0-9][\w.-]*$"}  # it becomes part of a path
+RECORDS: Mapping[str, dict[str, Any]] = {
+    "conclusions": _record(name=_TEXT, sentence=_TEXT),
+    "figures": _record(name=_FILE, caption=_TEXT),
+    "sheets": _record(
+        name=_FILE,
+        caption=_TEXT,
+        columns=_list(_TEXT),
+        rows=_list(_list({"type": ["string", "number", "boolean", "null"]})),
+    ),
+    "failures": _record(scene_id=_TEXT, error=_TEXT),
+    "comparison": _record(
+        **dict.fromkeys(COMPARISON, _TEXT) | dict.fromkeys(NUMBERS, _NUMBER) | dict.fromkeys(WIDTHS, _WIDTH)
+    ),
+}
+STUDY_SCHEMA = _record(
+    **dict.fromkeys(TEXTS, _TEXT),
+    **dict.fromkeys(SENTENCES, _list(_TEXT)),
+    **{name: _list(record) for name, record in RECORDS.items()},
+    runs={"type": "integer", "minimum": 0},
+    rows=_list({"type": "object"}),
+)
+"""JSON Schema (draft 7) of study.json; its rows are outcomes."""
+
+
+@dataclass(frozen=True, slots=True)
+class Study:
+    """What a study published (`fem_impact.answers.report.StudyReport`), as its page needs it.
+
+    Parameters
+    ----------
+    folder : Path
+        Directory of the study, with its figures and CSV tables.
+    study, title, command : str
+    findings, assumptions, sources : tuple of str
+    conclusions, figures, sheets : tuple of mappings
+    runs : int
+        Jobs of the study.
+    failures : tuple of mappings
+        Runs that gave no record: ``scene_id`` and ``error``.
+    rows : tuple of Outcome
+        Runs that the page shows one by one.
+    comparison : tuple of mappings
+        Rows with the keys of `fem_impact.tables.table.COMPARISON`.
+    """
+
+    folder: Path
+    study: str
+    title: str
+    command: str
+    findings: tuple[str, ...]
+    assumptions: tuple[str, ...]
+    sources: tuple[str, ...]
+    conclusions: tuple[Record, ...]
+    figures: tuple[Record, ...]
+    sheets: tuple[Record, ...]
+    runs: int
+    failures: tuple[Record, ...]
+    rows: tuple[Outcome, ...]
+    comparison: tuple[Record, ...]
+
+
+def read_study(folder: Path) -> Study:
+    """Read ``folder/study.json``.
+
+    Raises
+    ------
+    ResultError
+        The file is missing, damaged or of another schema, or a part of it is wrong; file and place are named.
+    """
+    path = folder / "study.json"
+    document = read_signed(read_text(path), str(path))
+    if document.get("schema") != SCHEMA:
+        stated = json.dumps(document.get("schema"))[:40]
+        raise ResultError(f'{path}: key "schema" = {stated} is not "{SCHEMA}"; run the study again.')
+    _check_shape(document, path)
+    rows = tuple(
+        Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in enumerate(document["rows"])
+    )
+    parts: dict[str, Any] = {name: tuple(document[name]) for name in (*SENTENCES, *RECORDS)}
+    texts = {name: document[name] for name in TEXTS}
+    return Study(folder, **texts, **parts, rows=rows, runs=document["runs"])
+
+
+def _check_shape(document: Record, path: Path) -> None:
+    """Refuse a document that breaks `STUDY_SCHEMA`, or a table whose rows do not fit its columns."""
+    try:
+        _validator()(document)
+    except fastjsonschema.JsonSchemaValueException as error:
+        raise ResultError(f"{path}: {error.message.removeprefix('data').lstrip('. ')}.") from None
+    for sheet in document["sheets"]:
+        if any(len(row) != len(sheet["columns"]) for row in sheet["rows"]):
+            raise ResultError(f'{path}: a row of the table "{sheet["name"]}" does not fit its columns.')
+
+
+@cache
+def _validator() -> Callable[[Any], Any]:
+    validate: Callable[[Any], Any] = fastjsonschema.compile(STUDY_SCHEMA)
+    return validate
+
+
+def findings_section(study: Study, title: str = "", lead: Markup | None = None) -> Markup:
+    """Return the answer, which is the first finding, and the first figure; all else folded, with its data.
+
+    ``lead`` is the first figure where it is not one of the study's own.
+    """
+    runs = f"{study.runs} runs, {len(study.failures)} failed."
+    failed = [(failure["scene_id"], failure["error"]) for failure in study.failures]
+    drawn = (lead or Markup(""), *(_figure(entry, study) for entry in study.figures))
+    figures = [one for one in drawn if one.text]
+    return section(
+        title,
+        paragraph("".join(study.findings[:1]), "answer"),
+        *figures[:1],
+        _folded("What else was found", bullets(study.findings[1:])),
+        _folded("More figures", *figures[1:]),
+        *(_sheet(sheet, study) for sheet in study.sheets if sheet["rows"]),
+        _folded("More tables", *(_file(sheet, study) for sheet in study.sheets if not sheet["rows"])),
+        _folded("What it rests on", bullets(study.assumptions)),
+        Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
+        table(Table.of(("run", "why"), failed, left=(0, 1))),
+    )
+
+
+def _folded(title: str, *content: Markup) -> Markup:
+    """Return a folded block, nothing when it would be empty."""
+    inner = join(content)
+    return details(title, inner) if inner.text else inner
+
+
+def figure_id(study: str, name: str) -> str:
+    """Return the id of a study's figure in a page."""
+    return f"{study}-{name}"
+
+
+def _figure(entry: Mapping[str, Any], study: Study) -> Markup:
+    stem = study.folder / "figures" / entry["name"]
+    shown = place(figure_id(study.study, entry["name"]), stored_figure(stem))
+    return join([shown, download(stem.with_suffix(".csv"), "its data")])
+
+
+def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
+    columns, rows = sheet["columns"], sheet["rows"]
+    texts = {at for at in range(len(columns)) if _holds_words([row[at] for row in rows])}
+    named = Table(
+        tuple(Column(name, readable(name), left=at in texts) for at, name in enumerate(columns)),
+        tuple(map(tuple, rows)),
+    )
+    data = download(study.folder / f"{sheet['name']}.csv", f"its data ({sheet['name']}.csv)")
+    return details(sheet["caption"], table(named, compact=True), data)
+
+
+def _holds_words(cells: Sequence[Any]) -> bool:
+    """Return whether most texts of a column start with a letter; numbers with a sign or band do not."""
+    texts = [cell for cell in cells if isinstance(cell, str) and cell]
+    return 2 * sum(text[0].isalpha() for text in texts) > len(texts)
+
+
+def _file(sheet: Mapping[str, Any], study: Study) -> Markup:
+    name = f"{sheet['name']}.csv"
+    return download(study.folder / name, f"{sheet['caption']} ({name})")
 
 
 def draw_study(folder: Path) -> None:

@@ -12,10 +12,8 @@ from fem_impact.errors import UsageError
 from fem_impact.figures.live import RED_BLUE
 from fem_impact.files.atomic import write_text
 from fem_impact.films.film import RenderResult, context
-from fem_impact.films.kinematics import to_points
-from fem_impact.films.motion import FIELDS, FilmData, prepare
-from fem_impact.films.movement import read_movement
-from fem_impact.films.timeline import Span, film_times
+from fem_impact.films.motion import FIELDS, FilmData, prepare, to_points
+from fem_impact.films.movement import Span, film_times, read_movement
 from fem_impact.films.views import outer_surface
 from fem_impact.pages.page import live_figure, page, sources
 

@@ -14,13 +14,12 @@ from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import Line, screening_lines
 from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, write_text
-from fem_impact.files.signed_json import signed
-from fem_impact.pages.html import Markup, bullets, paragraph, section, table
-from fem_impact.pages.page import figure, page, sources
+from fem_impact.files.digests import signed
+from fem_impact.pages.page import Markup, bullets, figure, page, paragraph, section, sources, table
 from fem_impact.scene.inputs import inputs
 from fem_impact.scene.types import Scene
 from fem_impact.scene.write import to_toml
-from fem_impact.tables.symbols import markup
+from fem_impact.tables.text import markup
 
 
 def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:

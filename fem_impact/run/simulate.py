@@ -81,8 +81,7 @@ def _compute_in(out: Path, plan: Plan, options: RunOptions) -> Outcome:
 def _begin(scene: Scene, out: Path) -> None:
     """Move the files of an older run aside and write the scene; one that is of no run is not replaced."""
     from fem_impact.files.atomic import write_text
-    from fem_impact.files.ownership import refuse_other_scene
-    from fem_impact.files.run_directory import set_aside
+    from fem_impact.files.run_directory import refuse_other_scene, set_aside
     from fem_impact.scene.write import to_toml
 
     path, text = out / "scene.toml", to_toml(scene)
@@ -122,8 +121,7 @@ def _write(outcome: Outcome, out: Path) -> None:
     from fem_impact.files.atomic import write_text
     from fem_impact.files.digests import write_digests
     from fem_impact.files.run_directory import BESIDE
-    from fem_impact.tables.csv import CONTACTS
-    from fem_impact.tables.table import Table
+    from fem_impact.tables.table import CONTACTS, Table
 
     contacts = outcome.to_dict()["contacts"]
     if contacts is not None:

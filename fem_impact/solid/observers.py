@@ -17,7 +17,7 @@ from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import FieldSampler, RodState
 from fem_impact.solid.state import State
-from fem_impact.tables.growing import HistoryWriter
+from fem_impact.tables.history import HistoryWriter
 
 QUIET = 20e-6  # s without contact before the free flight is evaluated: waves cross the block a few times
 GROWTH = 1e-2  # of E_0, growth of the total energy at which a run stops as unstable

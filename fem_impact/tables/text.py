@@ -1,9 +1,12 @@
-"""Sentences broken to the width of a terminal, and numbers in plain digits."""
+"""Texts: sentences broken to a terminal's width, numbers in plain digits, symbols and units typeset."""
 
 from __future__ import annotations
 
+import re
 import textwrap
+from collections.abc import Callable
 from decimal import Decimal
+from html import escape
 from math import ceil
 
 WIDTH = 79
@@ -45,3 +48,86 @@ def rounded_up(value: float, places: int) -> str:
     ('0.01', '0.03')
     """
     return f"{ceil(round(value * 10**places, 6)) / 10**places:.{places}f}"
+
+
+GREEK = {"gamma": "γ", "mu": "µ", "Omega": "Ω", "alpha": "α", "tau": "τ"}
+"""Letters whose English name stands for them in plain texts."""
+
+SYMBOL = re.compile(
+    r"(?<![\w`.^/\\-])(?P<base>E|W|V|v|T|T1|d|e|u|k|f|t|n|mu|gamma|Omega|alpha|tau)"
+    r"(?:_(?P<index>0|[A-Za-z]{1,4}))?(?![\w`^\\])"
+    r"|(?<=/)(?P<under>E_0|tau)(?!\w)"
+    r"|(?<=\bm)\^(?P<power>-?[\d.]*\d)"
+)
+"""A letter with an index, the name of a Greek letter, and a power of a metre."""
+
+STRONG, CODE = re.compile(r"\*\*(.+?)\*\*"), re.compile(r"`([^`]+)`")
+UNITS = {"_deg": "degrees", "_m": "m", "_mm": "mm", "_s": "s", "_J": "J", "_N": "N", "_Pa": "Pa"}
+"""Endings of the names of columns, and the units that they stand for."""
+
+PLAIN = ((re.compile(r"(?<=\d )us\b"), "µs"), (re.compile(r"<=|&lt;="), "≤"), (re.compile(r"\+-"), "±"))
+"""Signs in plain letters, and what stands for them."""
+
+
+def markup(text: str) -> str:
+    """Return a text as HTML, escaped: indices, powers, Greek letters, ``**strong**`` and `` `code` ``.
+
+    Examples
+    --------
+    >>> markup("E_vib < 1 at gamma = 26 m^-0.3815 after 3 us: `E_vib`")
+    '<i>E</i><sub>vib</sub> &lt; 1 at γ = 26 m<sup>−0.3815</sup> after 3 µs: <code>E_vib</code>'
+    """
+
+    def shown(base: str, index: str, power: str) -> str:
+        if power:
+            return f"<sup>{power}</sup>"
+        return f"<i>{base}</i><sub>{index}</sub>" if index else base
+
+    parts = CODE.split(escape(text))  # code at the odd places
+    return "".join(
+        f"<code>{part}</code>" if at % 2 else STRONG.sub(r"<strong>\1</strong>", _replaced(part, shown))
+        for at, part in enumerate(parts)
+    )
+
+
+def readable(name: str) -> str:
+    """Return the name of a column of a file as words, its unit after a comma; other names as they are.
+
+    Examples
+    --------
+    >>> readable("T1_over_tau"), readable("angle_deg"), readable("E_vib_modal"), readable("E_vib/E_0, %")
+    ('T1/tau', 'angle, degrees', 'E_vib modal', 'E_vib/E_0, %')
+    """
+    if not re.fullmatch(r"\w+", name):
+        return name
+    words, unit = name.replace("_over_", "/"), ""
+    for ending, shown in UNITS.items():
+        if words.endswith(ending):
+            words, unit = words.removesuffix(ending), f", {shown}"
+    return re.sub(r"(?<!\bE)(?<!\bu)(?<!\bV)_", " ", words) + unit
+
+
+def formula(text: str) -> str:
+    """Return a text for matplotlib: indices and powers between dollar signs, its own dollar signs escaped."""
+
+    def shown(base: str, index: str, power: str) -> str:
+        if power:
+            return f"$^{{{power}}}$"
+        return rf"${base}_{{\mathrm{{{index}}}}}$" if index else base
+
+    return _replaced(text.replace("$", r"\$"), shown)
+
+
+def _replaced(text: str, shown: Callable[[str, str, str], str]) -> str:
+    def one(match: re.Match[str]) -> str:
+        base, _, index = (match["under"] or match["base"] or "").partition("_")
+        index = index or match["index"] or ""
+        if base == "T1":
+            base, index = "T", "1"
+        if not index and base not in GREEK and not match["power"]:
+            return match[0]
+        return shown(GREEK.get(base, base), index, (match["power"] or "").replace("-", "−"))
+
+    for plain, sign in PLAIN:
+        text = plain.sub(sign, text)
+    return SYMBOL.sub(one, text)

@@ -55,9 +55,9 @@ def stand(monkeypatch):
         "fem_impact.answers.wanted_error.simulate": lambda: stand.outcome or an_outcome(),
         "fem_impact.evidence.studies.catalogue.run_study": lambda: table,
         "fem_impact.films.film.render": lambda: film,
-        "fem_impact.films.side_by_side.render_side_by_side": lambda: film,
+        "fem_impact.films.film.render_side_by_side": lambda: film,
         "fem_impact.pages.write.write_report": lambda: "report.html",
     }.items():
         monkeypatch.setattr(place, work(place.rpartition(".")[2], result))
-    monkeypatch.setattr("fem_impact.pages.present.present", lambda *_: ["no film: no GL"])
+    monkeypatch.setattr("fem_impact.pages.write.present", lambda *_: ["no film: no GL"])
     return stand

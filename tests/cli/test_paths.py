@@ -10,7 +10,7 @@ from outcome_maker import outcome as an_outcome
 
 import fem_impact
 from fem_impact.errors import OutputPathError
-from fem_impact.films.timeline import Span
+from fem_impact.films.movement import Span
 from fem_impact.options import RunOptions
 from fem_impact.scene.shipped import load
 from fem_impact.scene.write import to_toml

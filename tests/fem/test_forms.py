@@ -14,7 +14,7 @@ from fem_impact.fem.elements import element_stiffness, lame_constants, lumped_ma
 from fem_impact.fem.hexmodes import dummy_element
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import NodeProduct, assemble, tie_operator
-from fem_impact.films.kinematics import stretch
+from fem_impact.films.motion import stretch
 from fem_impact.physics.hardening import linear_hardening
 from fem_impact.solid.yielding import YieldingZone
 from meshes import OUTER, Zone

@@ -11,16 +11,20 @@ from outcome_maker import altered
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.figures import style
-from fem_impact.figures.history import force_picture, ledger_picture
 from fem_impact.figures.live import live
-from fem_impact.figures.partition import comparison_picture, partition_picture, study_partition_picture
+from fem_impact.figures.runs import (
+    comparison_picture,
+    force_picture,
+    ledger_picture,
+    partition_picture,
+    study_partition_picture,
+)
 from fem_impact.figures.still import draw
 from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ACCOUNTS, shares
-from fem_impact.tables.csv import HISTORY
-from fem_impact.tables.table import read_csv
+from fem_impact.tables.table import HISTORY, read_csv
 
 
 @pytest.fixture(scope="module")

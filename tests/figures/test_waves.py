@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import result_maker
 
-from fem_impact.figures.waves import ROWS, waves_picture
+from fem_impact.figures.runs import ROWS, waves_picture
 from fem_impact.files.waves import read_waves
 
 

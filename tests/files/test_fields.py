@@ -10,7 +10,7 @@ import pytest
 import result_maker
 
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 from fem_impact.files.fields_write import FieldWriter
 
 POINTS, CELLS = result_maker.grid((2, 1, 1))

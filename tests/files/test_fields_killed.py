@@ -6,9 +6,8 @@ import h5py
 import numpy as np
 import pytest
 
-from fem_impact.files.fields_layout import add_frame
-from fem_impact.files.fields_read import read_fields
-from fem_impact.files.fields_write import FieldWriter
+from fem_impact.files.fields import read_fields
+from fem_impact.files.fields_write import FieldWriter, add_frame
 
 NODES, CELLS = 90, 40
 RNG = np.random.default_rng(1)

@@ -11,9 +11,8 @@ from hypothesis import strategies as st
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import atomic_path, make_directory, write_text
-from fem_impact.tables.csv import HISTORY
-from fem_impact.tables.growing import HistoryWriter
-from fem_impact.tables.table import Table, read_csv
+from fem_impact.tables.history import HistoryWriter
+from fem_impact.tables.table import HISTORY, Table, read_csv
 
 
 def test_failing_block_leaves_the_old_file_and_nothing_else(tmp_path):
@@ -44,7 +43,7 @@ FULL = """
 import resource, signal, sys
 from fem_impact.errors import OutputPathError
 from fem_impact.files.atomic import write_text
-from fem_impact.tables.growing import HistoryWriter
+from fem_impact.tables.history import HistoryWriter
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 folder = sys.argv[1]
 write_text(folder + "/note.txt", "old")
@@ -136,7 +135,7 @@ def test_last_line_cut_off_by_a_kill_is_not_counted(tmp_path):
 
 ENDLESS = """
 import itertools, sys
-from fem_impact.tables.growing import HistoryWriter
+from fem_impact.tables.history import HistoryWriter
 history = HistoryWriter(sys.argv[1], ("time_s", "step"), batch=3)
 for step in itertools.count():
     history.append((step * 1e-8, step))

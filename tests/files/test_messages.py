@@ -17,7 +17,7 @@ from fem_impact.cli.options import Options
 from fem_impact.cli.outcome import print_outcome
 from fem_impact.cli.terminal import chosen_meter, printable_streams
 from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.progress import Progress
 

@@ -6,10 +6,9 @@ import pytest
 from matplotlib.figure import Figure
 
 from fem_impact.figures.style import QUIET
-from fem_impact.films.board import below, blank, clock, colour_bar, heading, picture
-from fem_impact.films.layout import Abreast, FrameLayout
+from fem_impact.films.board import Abreast, FrameLayout, below, blank, clock, colour_bar, heading, picture
+from fem_impact.films.film import TITLE, _title
 from fem_impact.films.motion import FIELDS
-from fem_impact.films.side_by_side import TITLE, _title
 
 LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3
 

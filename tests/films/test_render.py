@@ -13,24 +13,22 @@ from PIL import Image
 import fem_impact.films.encode as encoding
 import fem_impact.films.encode as probe
 from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError, UsageError
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
+from fem_impact.films.board import Abreast, FrameLayout
 from fem_impact.films.encode import require_gl
-from fem_impact.films.film import render
-from fem_impact.films.kinematics import (
+from fem_impact.films.film import _alike, render, render_side_by_side
+from fem_impact.films.motion import (
     axis_of,
     hex_volumes,
     magnified,
     nice_factor,
     nodal_volumes,
+    prepare,
     rigid_motion,
     stretch,
     to_points,
 )
-from fem_impact.films.layout import Abreast, FrameLayout
-from fem_impact.films.motion import prepare
-from fem_impact.films.movement import Movement
-from fem_impact.films.side_by_side import _alike, render_side_by_side
-from fem_impact.films.timeline import Span
+from fem_impact.films.movement import Movement, Span
 
 POINTS, CELLS = result_maker.grid((3, 2, 4))
 

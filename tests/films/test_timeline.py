@@ -5,8 +5,7 @@ import pytest
 import result_maker
 
 from fem_impact.errors import ResultError, UsageError
-from fem_impact.films.movement import Movement, read_movement
-from fem_impact.films.timeline import FRAMES, WHOLE, Span, film_times, slow_motion
+from fem_impact.films.movement import FRAMES, WHOLE, Movement, Span, film_times, read_movement, slow_motion
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,8 @@ from scale_tasks import Acting, Here, job, record
 
 from fem_impact.case.plan import plan
 from fem_impact.cli.study import _estimate_text
-from fem_impact.jobs.forecast import estimate
 from fem_impact.jobs.job import GUESS, REFUSED, Failure, Job
-from fem_impact.jobs.run import Eta, Pace, expected_costs, makespan, run_jobs
+from fem_impact.jobs.run import Eta, Pace, estimate, expected_costs, makespan, run_jobs
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace
 

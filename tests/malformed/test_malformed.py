@@ -229,7 +229,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from fem_impact.errors import FemImpactError, ResultError
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 whole, refused = Path("fields.vtkhdf").read_bytes(), 0
 chance = np.random.default_rng(int(sys.argv[1]))
 for k in range(int(sys.argv[2])):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_impact.figures.history import force_picture, ledger_picture
+from fem_impact.figures.runs import force_picture, ledger_picture
 from fem_impact.modal.motion import MOST_ROWS
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import known

@@ -12,8 +12,7 @@ import result_maker
 from fem_impact.cli.main import main
 from fem_impact.errors import UsageError
 from fem_impact.films.motion import prepare
-from fem_impact.films.movement import read_movement
-from fem_impact.films.timeline import Span
+from fem_impact.films.movement import Span, read_movement
 from fem_impact.pages.turning import write_view
 
 

@@ -10,7 +10,7 @@ import time
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all

@@ -9,7 +9,7 @@ import solid_scenes as scenes
 from fem_impact.case.effects.registry import NAMES
 from fem_impact.case.plan import plan
 from fem_impact.errors import ResultError
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions

@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from fem_impact.files.fields_read import read_fields
+from fem_impact.files.fields import read_fields
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
@@ -14,8 +14,7 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 from fem_impact.solid.rodview import centre_gradients, mises
-from fem_impact.tables.csv import HISTORY
-from fem_impact.tables.table import read_csv
+from fem_impact.tables.table import HISTORY, read_csv
 
 ACCOUNTS = [name for name in HISTORY if name.startswith(("E_", "W_", "residual"))]
 

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.answers.report import Conclude, Plan, Request, StudyResult
 from fem_impact.files.lock import directory_lock
-from fem_impact.jobs.forecast import WorkForecast, estimate
-from fem_impact.jobs.run import Results, run_jobs
+from fem_impact.jobs.run import Results, WorkForecast, estimate, run_jobs
 from fem_impact.jobs.store import STORE
 
 if TYPE_CHECKING:

@@ -29,8 +29,7 @@ from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
-from fem_impact.tables.csv import COMPARISON
-from fem_impact.tables.table import DASH, Table
+from fem_impact.tables.table import COMPARISON, DASH, Table
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:

@@ -16,8 +16,7 @@ from fem_impact.evidence.studies.pairs import COARSER, finer_and_coarser
 from fem_impact.evidence.studies.sets import QUICK_SETS, conclude, jobs_of, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import Outcome
-from fem_impact.pages.study_data import read_study
-from fem_impact.pages.study_page import study_page
+from fem_impact.pages.study_page import read_study, study_page
 from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import read_csv

@@ -14,10 +14,10 @@ from fem_impact.evidence.studies.sets import jobs_of, sets_report
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.shares import shares
-from fem_impact.pages.present import film, present
+from fem_impact.pages.write import film, present
 from fem_impact.physics.hardening import rate_gain
 from fem_impact.progress import NullMeter
-from fem_impact.tables.csv import COMPARISON as COLUMNS
+from fem_impact.tables.table import COMPARISON as COLUMNS
 
 
 def row(quantity, verdict, model=0.3, band=0.01):

@@ -1,0 +1,269 @@
+"""Pictures of runs: force and energies over time, waves, shares of E_0, model beside measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fem_impact.figures.panels import Interval, Look, Mark, Panel, Picture, Series, ShadedMap
+from fem_impact.figures.style import percent
+from fem_impact.files.waves import Waves
+from fem_impact.outcome.groups import ContactInterval
+from fem_impact.outcome.keys import Unknown, known, or_none
+from fem_impact.outcome.record import Outcome
+from fem_impact.outcome.shares import ABOVE, ACCOUNTS, OF_SOME, EnergyShare, above_modes, shares
+from fem_impact.tables.table import COMPARISON, Table
+
+FORCE_COLUMNS = ("time_s", "force_n_N", "force_t_N")
+MOST = 800
+"""Times of a curve that are drawn at most; the CSV beside the figure has all."""
+
+
+def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Picture:
+    """Return normal and tangential contact force on the whole rod, contact intervals shaded.
+
+    Parameters
+    ----------
+    history : Table
+        history.csv, forces in N.
+    contacts : sequence of ContactInterval
+
+    Raises
+    ------
+    ResultError
+        A column is missing or holds no numbers.
+    """
+    time, normal, tangential = (history.numbers(name) for name in FORCE_COLUMNS)
+    series = (
+        Series("normal (out of the barrier)", time * 1e6, normal / 1e3, "line", "blue"),
+        Series("tangential (up the slope)", time * 1e6, tangential / 1e3, "dashed", "vermilion"),
+    )
+    intervals = [Interval(c.start * 1e6, c.end * 1e6, f"{c.impulse_n:.3g} N s") for c in contacts]
+    panel = Panel("", "time, µs", "contact force on the rod, kN", series, intervals=tuple(intervals))
+    caption = "Contact force on the whole rod; contact intervals shaded, with their normal impulse."
+    numbers = Table.of(FORCE_COLUMNS, zip(time, normal, tangential, strict=True))
+    return Picture("force", caption, (panel,), 1, numbers)
+
+
+def ledger_picture(history: Table, e_0: float) -> Picture:
+    """Return the energy accounts over time as stacked areas, fractions of E_0.
+
+    Parameters
+    ----------
+    history : Table
+        history.csv, energies in J.
+    e_0 : float, J
+        Kinetic energy at first contact.
+
+    Raises
+    ------
+    ResultError
+        A column is missing or holds no numbers.
+    """
+    time = history.numbers("time_s")
+    accounts = [*ACCOUNTS, *(account for account in OF_SOME if account.column in history.names)]
+    shares = {account: history.numbers(account.column) / e_0 for account in accounts}
+    gravity = history.numbers("E_gravity_J") / e_0
+    worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
+    kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), MOST)).astype(int))
+    ends = [percent(float(share[-1])) if len(share) else "-" for share in shares.values()]
+    areas = [
+        Series(f"{account.label}  {end}", 1e6 * time[kept], share[kept], "area", account.colour)
+        for (account, share), end in zip(shares.items(), ends, strict=True)
+    ]
+    total = "E_0 less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E_0"
+    whole = Series(total, 1e6 * time[kept], 1.0 - gravity[kept], "dashed", "ink")
+    title = f"largest residual {worst:.1e} of E_0"
+    panel = Panel(title, "time, µs", "fraction of E_0", (*areas, whole), y_range=(0.0, 1.05))
+    names = [account.column.removesuffix("_J") + "_over_E_0" for account in shares]
+    columns = ("time_s", *names, "E_gravity_over_E_0", "worst_residual_over_E_0")
+    rows = zip(time, *shares.values(), gravity, np.full(len(time), worst), strict=True)
+    caption = (
+        "Ledger: each account as a fraction of E₀; the number beside a name is its last value. "
+        "Strain energies include that of residual stress."
+    )
+    return Picture("ledger", caption, (panel,), 1, Table.of(columns, rows))
+
+
+WAVE_COLUMNS = ("time_s", "position_m", "stretch", "bending")
+ROWS = 240
+"""Times that are drawn and written beside the figure; waves.h5 has all."""
+
+AFTER = 4
+"""Lengths of the rod that a stretching wave runs in the part after the run."""
+
+QUIETEST = 0.01
+"""Least range of a panel's colours, share of that of the other: less is numerical noise."""
+
+NAMES = ("stretch: mean strain of each section", "bending: strain of the side facing the barrier")
+CAPTION = (
+    "Position along the axis against time: the mean strain of each section, and the part by which "
+    "the side facing the barrier differs from it. Dashed: where a front from the contact would be."
+)
+
+
+class _Front(NamedTuple):
+    """A wave front: its speed, m/s, its words, and along how many lengths of the rod its line is drawn."""
+
+    speed: float
+    words: str
+    passes: int
+
+
+def waves_picture(waves: Waves) -> Picture:
+    """Return stretch and bending strain along the axis over time, and where fronts from the contact would be.
+
+    The time axis ends four lengths of the rod, run by a stretching wave, after the run.
+    """
+    until = waves.end + (AFTER * waves.transit if waves.ringing else 0.0)
+    times = np.linspace(0.0, until, ROWS)
+    fronts = (
+        _Front(waves.speed, "bar wave √(E/ρ)", 4),
+        _Front(waves.bending_speed, "fastest bending waves", 2),
+    )
+    parts = waves.strain(times)
+    tops = [1e6 * float(np.percentile(np.abs(part), 99.8)) for part in parts]
+    panels = tuple(
+        _wave_panel(waves, times, part, max(top, QUIETEST * max(tops), 1e-9), words, front)
+        for part, top, words, front in zip(parts, tops, NAMES, fronts, strict=True)
+    )
+    return Picture("waves", CAPTION, panels, 2, _numbers(times, waves.position, *parts))
+
+
+def _wave_panel(
+    waves: Waves, times: np.ndarray, strain: np.ndarray, limit: float, words: str, front: _Front
+) -> Panel:
+    label = "axial strain, µm/m (red: tension)"
+    shaded = ShadedMap(1e3 * waves.position, 1e6 * times, 1e6 * strain, limit, label)
+    turns = np.arange(front.passes + 1)
+    line = Series(
+        f"{front.words}, {front.speed:.0f} m/s",
+        1e3 * waves.length * (turns % 2),
+        1e6 * waves.length / front.speed * turns,
+        "dashed",
+        "ink",
+    )
+    flight = waves.ringing is not None and waves.ringing.start < times[-1]
+    levels = (Mark(1e6 * waves.end, "free ringing, by modes"),) if flight else ()
+    return Panel(
+        words,
+        "position along the axis from the tip, mm",
+        "time, µs",
+        (line,),
+        levels=levels,
+        shaded=shaded,
+        x_range=(0.0, 1e3 * waves.length),
+        y_range=(0.0, 1e6 * float(times[-1])),
+    )
+
+
+def _numbers(times: np.ndarray, position: np.ndarray, stretch: np.ndarray, bending: np.ndarray) -> Table:
+    time, place = np.meshgrid(times, position, indexing="ij")
+    columns = (time, place, stretch, bending)
+    rows = zip(*(column.ravel() for column in columns), strict=True)
+    return Table.of(WAVE_COLUMNS, [[float(f"{x:.6g}") for x in row] for row in rows])
+
+
+UNSEEN = 1e-5
+"""Fraction of E_0 below which a bar is not drawn."""
+
+AXIS = "share of E_0, %"
+
+
+def partition_picture(outcome: Outcome) -> Picture:
+    """Return the known shares of E_0 after the last separation, of two meshes their limits and bands.
+
+    Shares that are not known are left out (the record holds the reasons).
+    """
+    listed = [share for share in shares("figure") if not isinstance(share.of(outcome.energy), Unknown)]
+    rows = [
+        (
+            share.label,
+            share.key.name.removesuffix("_over_E_0"),
+            known(outcome.estimate(share.key)[0]),
+            share.colour,
+            _label(share, outcome),
+        )
+        for share in listed
+    ]
+    if above := above_modes(outcome.energy):
+        at = [row[0] for row in rows].index("vibration") + 1
+        rows.insert(at, (ABOVE, "E_vib_above_modes", above, rows[at - 1][3], percent(above)))
+    labels, names, values, colours, texts = zip(*rows, strict=True)
+    # bars below UNSEEN are 0: the number beside a negative one would cover its name
+    widths = [100.0 * value if abs(value) > UNSEEN else 0.0 for value in values]
+    bars = tuple(
+        Series("", [width], [at], "bars", colour, texts=(text,))
+        for at, (width, colour, text) in enumerate(zip(widths, colours, texts, strict=True))
+    )
+    right = 1.3 * max([*widths, 1e-3])  # leaves room for the numbers
+    panel = Panel("", AXIS, "", bars, rows=labels, x_range=(min(0.0, *widths), right))
+    numbers = Table.of(("account", "fraction_of_E_0"), zip(names, values, strict=True))
+    return Picture("partition", "Shares of E₀ after the last separation.", (panel,), 1, numbers)
+
+
+def _label(share: EnergyShare, outcome: Outcome) -> str:
+    energy = outcome.energy
+    if share.key.path[-1] == "vibration" and or_none(energy.below_floor):
+        return f"below floor ({percent(or_none(energy.vibration_floor) or 0.0)})"
+    value, width = outcome.estimate(share.key)
+    return percent(known(value), width)
+
+
+def study_partition_picture(rows: Sequence[Outcome]) -> Picture:
+    """Return one stacked bar a run, shares that are not known left white."""
+    listed, at = shares("figure"), range(len(rows))
+    fractions = {share: [or_none(share.of(row.energy)) for row in rows] for share in listed}
+    bars = tuple(
+        Series(share.label, [100.0 * (part or 0.0) for part in parts], at, "bars", share.colour)
+        for share, parts in fractions.items()
+    )
+    names = tuple(row.provenance.scene_id for row in rows)
+    panel = Panel("", AXIS, "", bars, rows=names, x_range=(0.0, 103.0))
+    columns = ("scene_id", *(share.key.name for share in listed))
+    numbers = Table.of(columns, zip(names, *fractions.values(), strict=True))
+    caption = "Shares of E₀ after the last separation; a white part is not known."
+    return Picture("partition", caption, (panel,), 1, numbers)
+
+
+def comparison_picture(rows: Sequence[Mapping[str, Any]]) -> Picture:
+    """Return measured means with their 95 % intervals, and the model with its two-mesh band.
+
+    Parameters
+    ----------
+    rows : sequence of mappings
+        Rows of ``comparison`` in study.json; null values are left out of the picture, and
+        quantities that nobody measured.
+    """
+    quantities, sets = ([*dict.fromkeys(row[name] for row in rows)] for name in ("quantity", "set"))
+    groups = ([row for row in rows if row["quantity"] == name] for name in quantities)
+    panels = [
+        _compared(group, sets) for group in groups if any(row["measured_mean"] is not None for row in group)
+    ]
+    numbers = Table.of(COMPARISON, [[row[name] for name in COMPARISON] for row in rows])
+    caption = (
+        "Measured means with 95 % intervals of the mean and standard deviations; the model with its "
+        "two-mesh band where two meshes were run."
+    )
+    return Picture("comparison", caption, tuple(panels), 4, numbers)
+
+
+def _compared(rows: Sequence[Mapping[str, Any]], sets: list[str]) -> Panel:
+    unit = rows[0]["unit"]
+    title = rows[0]["quantity"] + (f", {unit}" if unit not in ("", "-") else "")
+    at = np.array([sets.index(row["set"]) for row in rows])
+    mean, sd, low, high, model, band = (
+        np.array([np.nan if row[name] is None else row[name] for row in rows], float)
+        for name in ("measured_mean", "measured_sd", "measured_low", "measured_high", "model", "band")
+    )
+    above = at - 0.16
+    interval: tuple[Look, str] = ("interval", "ink")
+    series = (
+        Series("± one standard deviation", mean, above, "spread", "grey", sd),
+        Series("95 % interval of the mean", (low + high) / 2, above, *interval, (high - low) / 2),
+        Series("measured mean", mean, above, "points", "ink"),
+        Series("model, two-mesh band", model, at + 0.16, "diamonds", "vermilion", band),
+    )
+    return Panel(title, "", "", series, rows=tuple(sets))
