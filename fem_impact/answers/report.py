@@ -1,16 +1,15 @@
 """Request and result of a study, its report, and how the report is written.
 
-A study is a module with two functions: ``plan`` returns its jobs (`Plan`), ``conclude`` evaluates their
-results, puts them into a `StudyReport` and writes it by `publish` (`Conclude`).
+A study of `fem_impact.evidence` makes such a report from its results; so do `sweep` and `cost`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.errors import ResultError
 from fem_impact.figures.live import live
@@ -19,15 +18,12 @@ from fem_impact.figures.still import draw
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.files.digests import read_signed, signed
 from fem_impact.files.run_directory import set_aside
-from fem_impact.jobs.job import Failure, Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.job import Failure
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import shares
 from fem_impact.tables.table import Cell, Table
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,11 +70,7 @@ class StudyResult:
     runs: tuple[Path, ...] = ()
 
 
-Plan = Callable[[Request, Results], list[Job]]
-Conclude = Callable[[Request, Results, "ProgressMeter"], StudyResult]
-
-
-def failures_of(results: Results) -> list[dict[str, str]]:
+def failures_of(results: JobResults) -> list[dict[str, str]]:
     """Return one row per failed job: its name and reason."""
     failed = (result for result in results.values() if isinstance(result, Failure))
     return [{"scene_id": failure.name, "error": failure.reason} for failure in failed]
@@ -131,6 +123,8 @@ class StudyReport:
         Runs that the page shows one by one, with energies, curves and costs.
     comparison : sequence of mappings
         Rows of model beside measurement (`fem_impact.answers.compare`).
+    runs : sequence of Path
+        Directories of runs to be presented with pages and films.
     """
 
     study: str
@@ -143,9 +137,10 @@ class StudyReport:
     conclusions: Sequence[tuple[str, str]] = ()
     outcomes: Sequence[Outcome] = ()
     comparison: Sequence[Mapping[str, Any]] = ()
+    runs: Sequence[Path] = ()
 
 
-def publish(report: StudyReport, request: Request, results: Results) -> StudyResult:
+def publish(report: StudyReport, request: Request, results: JobResults) -> StudyResult:
     """Write study.json, summary.md, a CSV a sheet, and each picture (SVG, PNG, JSON) with its data.
 
     A run, another study, or a report of other cases that stands in the directory is set aside.
@@ -169,7 +164,7 @@ def publish(report: StudyReport, request: Request, results: Results) -> StudyRes
     text = _markdown(report, document)
     write_text(request.out / "summary.md", text)
     write_text(request.out / "study.json", json.dumps(signed(document), indent=1, allow_nan=False))
-    return StudyResult(document, text)
+    return StudyResult(document, text, tuple(report.runs))
 
 
 def _stands_another(out: Path, document: Mapping[str, Any]) -> bool:
@@ -184,7 +179,7 @@ def _stands_another(out: Path, document: Mapping[str, Any]) -> bool:
     return any(old.get(key, "") != document[key] for key in ("study", "about"))
 
 
-def _title(report: StudyReport, request: Request, results: Results) -> str:
+def _title(report: StudyReport, request: Request, results: JobResults) -> str:
     return (
         f"{report.title} (quick look: {len(results)} runs, not a result)" if request.quick else report.title
     )
@@ -196,7 +191,7 @@ def _telling(pictures: Sequence[Picture]) -> list[Picture]:
     return [one for one in cut if one.panels]
 
 
-def _document(report: StudyReport, request: Request, results: Results) -> dict[str, Any]:
+def _document(report: StudyReport, request: Request, results: JobResults) -> dict[str, Any]:
     drawn = {picture.name for picture in report.pictures}
     return {
         "schema": SCHEMA,

@@ -63,9 +63,9 @@ def _study(
     options: Options, request: Request, meter: ProgressMeter, executor: Executor, page: Path | None
 ) -> int:
     from fem_impact.cli.page import write_study_page
-    from fem_impact.evidence.studies.catalogue import run_study
+    from fem_impact.evidence.runner import run_study
 
-    result, notes = run_study(options.name, request, meter, executor), []
+    result, notes = run_study(f"studies.{options.name}", request, meter, executor), []
     if result.runs:
         from fem_impact.films.movement import QUICK_FRAMES, STUDY_FRAMES
         from fem_impact.pages.write import present
@@ -88,9 +88,9 @@ def _study(
 def _estimate(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
     from dataclasses import asdict
 
-    from fem_impact.evidence.studies.catalogue import estimate_study
+    from fem_impact.evidence.runner import estimate_study
 
-    forecast = estimate_study(options.name, request, meter, executor)
+    forecast = estimate_study(f"studies.{options.name}", request, meter, executor)
     meter.close()
     if options.json:
         print_json(asdict(forecast))

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
 
-Results = dict[str, "Outcome | Failure"]
+JobResults = dict[str, "Outcome | Failure"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Pace:
     measured: int = 0
 
 
-def paces(jobs: Iterable[Job], results: Results) -> dict[str, Pace]:
+def paces(jobs: Iterable[Job], results: JobResults) -> dict[str, Pace]:
     """Return the pace of each fidelity among the jobs."""
     ratios: dict[str, list[float]] = {}
     for job in jobs:
@@ -47,7 +47,7 @@ def paces(jobs: Iterable[Job], results: Results) -> dict[str, Pace]:
     return {name: Pace(median(known), len(known)) if known else Pace() for name, known in ratios.items()}
 
 
-def expected_costs(jobs: Iterable[Job], results: Results) -> dict[str, float]:
+def expected_costs(jobs: Iterable[Job], results: JobResults) -> dict[str, float]:
     """Return the expected processor time, s, of each job without a result, by its name.
 
     It is what the plan of the job says, times the pace of the jobs of its fidelity that have run.
@@ -96,7 +96,7 @@ class Eta:
 
 def run_jobs(
     jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
-) -> Results:
+) -> JobResults:
     """Return outcome or failure of every job by its name, in the order of the jobs.
 
     Results are kept in ``store`` as they come, so that an interrupted study goes on where it stopped.
@@ -127,9 +127,9 @@ def run_jobs(
     return {name: results[name] for name in wanted}
 
 
-def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> Results:
+def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> JobResults:
     """Return the stored results of jobs by name; answers not of their job are reported and left out."""
-    results: Results = {}
+    results: JobResults = {}
     for job in jobs:
         try:
             answer = base.get(job)
@@ -141,7 +141,7 @@ def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) ->
     return results
 
 
-def _compute(waiting: list[Job], base: Store, executor: Executor, results: Results, meter: Eta) -> None:
+def _compute(waiting: list[Job], base: Store, executor: Executor, results: JobResults, meter: Eta) -> None:
     futures = {executor.submit(compute, job): job for job in waiting}
     try:
         for future in as_completed(futures):
@@ -240,7 +240,7 @@ def estimate(
     )
 
 
-def _samples(jobs: list[Job], done: Results) -> list[Job]:
+def _samples(jobs: list[Job], done: JobResults) -> list[Job]:
     """Return a few jobs of each fidelity of which none has run, evenly spread over its cheaper half."""
     chosen: list[Job] = []
     measured = {fidelity for fidelity, pace in paces(jobs, done).items() if pace.measured}

@@ -53,7 +53,7 @@ def stand(monkeypatch):
     film = types.SimpleNamespace(path=None, notes=["install libegl1"])
     for place, result in {
         "fem_impact.answers.wanted_error.simulate": lambda: stand.outcome or an_outcome(),
-        "fem_impact.evidence.studies.catalogue.run_study": lambda: table,
+        "fem_impact.evidence.runner.run_study": lambda: table,
         "fem_impact.films.film.render": lambda: film,
         "fem_impact.films.film.render_side_by_side": lambda: film,
         "fem_impact.pages.write.write_report": lambda: "report.html",

@@ -20,7 +20,7 @@ from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
 from fem_impact.jobs.executors import LocalProcesses
 from fem_impact.jobs.job import Failure, Job, compute
-from fem_impact.jobs.run import Results, run_jobs, stored_results
+from fem_impact.jobs.run import JobResults, run_jobs, stored_results
 from fem_impact.jobs.store import STORE, Store
 from fem_impact.outcome.record import Outcome, installed_versions, utc_now
 from fem_impact.scene.write import to_dict
@@ -52,7 +52,7 @@ class CostStudy:
     truth: dict[str, Truth]
     settings: list[Judged]
     failures: list[dict[str, str]]
-    runs: Results
+    runs: JobResults
 
     @property
     def quantities(self) -> dict[str, dict[str, Any]]:
@@ -173,7 +173,7 @@ def _compile(scene: Scene, executor: Executor) -> None:
         executor.submit(compute, Job("compilation", brief)).result()
 
 
-def conclude(scene: Scene, settings: Sequence[Setting], results: Results) -> CostStudy:
+def conclude(scene: Scene, settings: Sequence[Setting], results: JobResults) -> CostStudy:
     """Judge the runs of a ladder; settings that lack one are left out.
 
     Settings are in order of CPU time, each with the quantities on whose Pareto front it lies.
@@ -211,7 +211,7 @@ def _failure(result: Outcome | Failure) -> str | None:
     return None if result.validity.finished else result.validity.stopped_because
 
 
-def _runs(setting: Setting, results: Results) -> list[Placed]:
+def _runs(setting: Setting, results: JobResults) -> list[Placed]:
     """Return the outcomes of a setting on each mesh, none if one is missing."""
     good: list[Placed] = [
         [run for job in jobs if isinstance(run := results.get(job.name), Outcome) and _failure(run) is None]

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.answers.compare import MEASURED
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.sets import QUICK
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load, replace_all
@@ -26,7 +26,6 @@ from fem_impact.tables.table import Cell, Table
 from rigid.experiments import Statistic, measured_set
 
 if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
 
@@ -70,7 +69,7 @@ LADDER = tuple(STEPS)[: len(CAUSES) + 1]
 ALONE = (LADDER[1], *tuple(STEPS)[len(CAUSES) + 1 :])
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return one job a set and step."""
     coarse = {**(QUICK if request.quick else {}), "save.frames": 0}
     return [
@@ -80,7 +79,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     ]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: results of every step beside the measured ones."""
     runs = {
         name: {step: run for step in STEPS if isinstance(run := results[f"{name}: {step}"], Outcome)}
@@ -88,7 +87,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     }
     complete = {name: found for name, found in runs.items() if len(found) == len(STEPS)}
     sentences = [_sentence(name, found) for name, found in complete.items()]
-    report = StudyReport(
+    return StudyReport(
         "causes",
         "Ladder of causes: what rate, hardness and skin do, one after the other and alone",
         [_answer(complete), *sentences] if complete else ["No set has all its runs: see those that failed."],
@@ -103,7 +102,6 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         ],
         conclusions=[("causes", sentence) for sentence in sentences],
     )
-    return publish(report, request, results)
 
 
 def _sets(request: Request) -> tuple[str, ...]:

@@ -6,23 +6,19 @@ from collections.abc import Sequence
 from dataclasses import astuple
 from itertools import combinations
 from statistics import fmean
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from fem_impact.answers.refine.extrapolate import limit, pair_limit
 from fem_impact.answers.refine.levels import FAMILY, Mesh, family, placed
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.outcome.shares import shares
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Cell, Table
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
 
 Row = dict[str, Any]
 
@@ -62,12 +58,12 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     ]
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs of the requested sets, by default of `SETS`."""
     return [job for name in request.ids or SETS for mesh in jobs_of(name, request.quick) for job in mesh]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Extrapolate every quantity of every set; write table, data and figure."""
     rows = []
     for name in request.ids or SETS:
@@ -75,7 +71,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         done = [[run for run in mesh if isinstance(run, Outcome)] for mesh in runs]
         rows += convergence_rows(name, [mesh for mesh in done if mesh])
     panels = tuple(_panel(name, rows) for name in QUANTITIES)
-    report = StudyReport(
+    return StudyReport(
         "convergence",
         "What vanishing elements would give",
         [*_answer(rows), *(_sentence(row) for row in rows if row["quantity"] in STATED), *_pairs(rows)],
@@ -85,7 +81,6 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         ("convergence",),
         [("convergence", _sentence(row)) for row in rows if row["quantity"] == "e"],
     )
-    return publish(report, request, results)
 
 
 def convergence_rows(name: str, meshes: Sequence[Sequence[Outcome]]) -> list[Row]:

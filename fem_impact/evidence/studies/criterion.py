@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.answers.report import Request, StudyResult, publish
+from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies import criterion_solid
 from fem_impact.evidence.studies.criterion_measure import linear_rods, modal_restitution, rods_of
 from fem_impact.evidence.studies.criterion_report import HERTZ, YIELDING, study_report
 from fem_impact.evidence.studies.criterion_solid import member, restitution, solid_rods, without
 from fem_impact.evidence.studies.rods import BODY, PAPER_RODS, TIP, Drop, length_of
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
+from fem_impact.jobs.run import JobResults
 
 GAMMAS, QUICK_GAMMAS = (10, 14, 18, 20, 22, 24, 26.45, 30, 36, 45), (14.0, 26.45, 42.0)
 ANGLES = (1.0, 5.0, 10.0, 20.0, 30.0, 40.0, 45.0, 50.0, 60.0, 70.0, 80.0)
@@ -55,7 +50,7 @@ def blind_drops(quick: bool) -> list[Drop]:
     return [Drop(length, friction=float(f)) for length in PAPER_RODS.values() for f in frictions]
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs by finite elements, the longest first, and those by modes."""
     solid = sorted(criterion_solid.jobs(request.quick), key=lambda job: job.planned_s, reverse=True)
     return [*solid, *modal_jobs(request.quick)]
@@ -69,7 +64,7 @@ def modal_jobs(quick: bool) -> list[Job]:
     return [Job(name, drop.scene(), "modal") for name, drop in chosen.items()]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: error of rigid theory per rod, where it passes `LEVELS`, and its governing group."""
     quick = request.quick
     families = {name: rods_of(drops(family, quick), results) for name, family in FAMILIES.items()}
@@ -78,10 +73,10 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
     families |= {name: rods for name, rods in found.items() if rods}
     confirmed = criterion_solid.elastic_ends(quick)
     ends = [(drop, *_ends(drop, quick, results)) for drop in confirmed]
-    return publish(study_report(families, tuple(found), ends, blind_drops(quick), results), request, results)
+    return study_report(families, tuple(found), ends, blind_drops(quick), results)
 
 
-def _ends(drop: Drop, quick: bool, results: Results) -> tuple[float | None, float | None]:
+def _ends(drop: Drop, quick: bool, results: JobResults) -> tuple[float | None, float | None]:
     """Return the change of e by vibration of an elastic drop by finite elements and by modes."""
     factor, stiff = (criterion_solid.QUICK if quick else criterion_solid.FULL).own, without(drop)
     solid = [restitution(member(one, quick), factor, results) for one in (drop, stiff)]

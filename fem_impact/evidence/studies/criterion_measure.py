@@ -17,7 +17,7 @@ from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.point_mass import contact_time, spring_drop
 from fem_impact.evidence.studies.rods import BODY, Drop, length_of
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
@@ -91,7 +91,7 @@ error_low, error_high = attrgetter("error_low"), attrgetter("error_high")
 gamma_of, group_of = attrgetter("drop.gamma"), attrgetter("group")
 
 
-def rods_of(drops: Iterable[Drop], results: Results) -> Rods:
+def rods_of(drops: Iterable[Drop], results: JobResults) -> Rods:
     """Return the rods of a family, drops sorted by rod; angles whose runs failed are left out."""
     rods = []
     for _, same in groupby(drops, lambda drop: (drop.diameter, drop.length)):
@@ -126,7 +126,7 @@ def whole_ratio(drop: Drop) -> float:
     return drop.first_period / contact_time(contact_law(planned.bodies), flow, mass, drop.speed)
 
 
-def modal_restitution(drop: Drop, results: Results) -> float | None:
+def modal_restitution(drop: Drop, results: JobResults) -> float | None:
     """Return e of a drop by modes, None where its run failed."""
     run = results.get(drop.name)
     return known(run.restitution.edge.e) if isinstance(run, Outcome) else None

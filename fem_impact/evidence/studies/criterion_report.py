@@ -28,7 +28,7 @@ from fem_impact.evidence.studies.criterion_measure import (
 from fem_impact.evidence.studies.rods import BODY, DROP_NOTES, MODAL_NOTE, PAPER_RODS, Drop
 from fem_impact.evidence.studies.static_give import give_picture, give_sentences, give_sheet, gives_of
 from fem_impact.figures.panels import Mark, Panel, Picture, Series
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.table import Cell, Table
@@ -61,7 +61,7 @@ ASSUMPTIONS = (
 
 
 def study_report(
-    families: Families, solid: Sequence[str], ends: Ends, blind: Sequence[Drop], results: Results
+    families: Families, solid: Sequence[str], ends: Ends, blind: Sequence[Drop], results: JobResults
 ) -> StudyReport:
     """Return the study from the rods of each family and the drops over friction.
 
@@ -151,7 +151,7 @@ def _master(families: Families) -> Picture:
     return Picture("master", caption, tuple(panels), 3)
 
 
-def _blind(blind: Sequence[Drop], results: Results) -> Picture:
+def _blind(blind: Sequence[Drop], results: JobResults) -> Picture:
     """Return vibration against friction of the paper's rods, with mu* of each."""
     series, marks = [], []
     for at, (rod, length) in enumerate(PAPER_RODS.items()):
@@ -163,7 +163,7 @@ def _blind(blind: Sequence[Drop], results: Results) -> Picture:
     return Picture("blind-direction", caption, (panel,), 1)
 
 
-def _over_friction(blind: Sequence[Drop], results: Results, length: float) -> Array:
+def _over_friction(blind: Sequence[Drop], results: JobResults, length: float) -> Array:
     """Return f and E_vib/E_0 (2, n) of the drops of a rod length, m, without the failed ones."""
     runs = [(d.friction, results[d.name]) for d in blind if d.length == length]
     pairs = [(f, known(run.energy.vibration)) for f, run in runs if isinstance(run, Outcome)]
@@ -327,7 +327,7 @@ def _scatter(x: np.ndarray, y: np.ndarray) -> float:
     return float(np.sqrt(np.mean((y[2:-2] - around) ** 2)))
 
 
-def _blind_sentences(blind: Sequence[Drop], results: Results) -> list[str]:
+def _blind_sentences(blind: Sequence[Drop], results: JobResults) -> list[str]:
     """Return mu* of the paper's rods and the friction at which they vibrate least."""
     sentences = []
     for rod, length in PAPER_RODS.items():

@@ -14,7 +14,7 @@ from fem_impact.evidence.studies.gamma_points import Member, Meshes
 from fem_impact.evidence.studies.pairs import COARSER, PLACES
 from fem_impact.evidence.studies.rods import STATES, Drop, length_of
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from rigid import LIMIT
@@ -69,7 +69,7 @@ def without(drop: Drop) -> Drop:
     return replace(drop, vibrates=False)
 
 
-def restitution(one: Member, factor: float, results: Results) -> list[float] | None:
+def restitution(one: Member, factor: float, results: JobResults) -> list[float] | None:
     """Return e of a drop on a mesh at each place, None where one of them is not known."""
     runs = [results.get(job.name) for job in one.jobs(factor)]
     found = [or_none(run.restitution.edge.e) for run in runs if isinstance(run, Outcome)]
@@ -77,7 +77,7 @@ def restitution(one: Member, factor: float, results: Results) -> list[float] | N
     return known if len(known) == len(runs) else None
 
 
-def solid_rods(drops: Iterable[Drop], quick: bool, results: Results) -> Rods:
+def solid_rods(drops: Iterable[Drop], quick: bool, results: JobResults) -> Rods:
     """Return the rods of a family; angles at which one of the four runs has no e are left out.
 
     e with and without vibration are limits of two meshes, and so is their difference, whose band is the
@@ -93,7 +93,7 @@ def solid_rods(drops: Iterable[Drop], quick: bool, results: Results) -> Rods:
     return rods
 
 
-def _angle(drop: Drop, quick: bool, results: Results) -> Sequence[float] | None:
+def _angle(drop: Drop, quick: bool, results: JobResults) -> Sequence[float] | None:
     """Return limits of e with and without vibration, the band of their difference, and T1/tau."""
     meshes, stiff = QUICK if quick else FULL, member(without(drop), quick)
     sizes = [meshes.own, meshes.second]

@@ -10,14 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.case.cells import widest_tip_size
 from fem_impact.case.choose import choices, everything, resolved
 from fem_impact.case.effects.registry import BARRIERS, EFFECTS, NAMES
 from fem_impact.case.effects.slots import Harm, quick_impact
 from fem_impact.case.plan import plan as plan_of
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam_impact import BeamImpact
@@ -26,7 +26,6 @@ from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table
 
 if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
 
@@ -79,7 +78,7 @@ DESIGNED: Mapping[str, Mapping[str, Any]] = {
 }
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the runs of every scene with ``auto`` and all effects; of `COSTED`, those with one changed."""
     jobs = []
     for name, scene in _scenes(request).items():
@@ -89,7 +88,7 @@ def plan(request: Request, results: Results) -> list[Job]:
     return jobs
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: where ``auto`` differs from all effects, and what each effect costs."""
     scenes = _scenes(request)
     pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
@@ -110,7 +109,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         for name, (_, whole) in pairs.items()
         if isinstance(whole, Outcome)
     ]
-    return publish(_study_report(rows, costs, beside), request, results)
+    return _study_report(rows, costs, beside)
 
 
 def all_on(scene: Scene) -> Scene:

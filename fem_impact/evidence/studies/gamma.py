@@ -6,19 +6,18 @@ from dataclasses import replace
 from math import degrees, hypot
 from typing import TYPE_CHECKING
 
-from fem_impact.answers.report import Request, StudyResult, publish
+from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.gamma_findings import PLAIN, Curves
 from fem_impact.evidence.studies.gamma_points import Member, Meshes, first_jobs, more_jobs, point_of
 from fem_impact.evidence.studies.gamma_report import study_report
 from fem_impact.evidence.studies.pairs import COARSER, PLACES
 from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, Drop, length_of
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.scene.shipped import load
 from rigid import LIMIT
 
 if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
     from fem_impact.scene.types import Scene
 
 
@@ -89,7 +88,7 @@ def reduced(quick: bool) -> list[Drop]:
     ]
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs, the longest first; with results also those that these call for."""
     quick = request.quick
     meshes, jobs = QUICK if quick else FULL, [Job(d.name, d.scene(), "modal") for d in reduced(quick)]
@@ -100,14 +99,14 @@ def plan(request: Request, results: Results) -> list[Job]:
     return sorted(unique, key=lambda job: job.planned_s, reverse=True)
 
 
-def _more(one: Member, meshes: Meshes, results: Results) -> list[Job]:
+def _more(one: Member, meshes: Meshes, results: JobResults) -> list[Job]:
     """Return the jobs that the results of a point call for; measured sets keep the meshes of their study."""
     only = replace(meshes, finer=()) if one.name in SETS else meshes
     wanted = (job for job in more_jobs(one, only, results) if job.kind[1])  # a mesh that is not refused
     return [job for job in wanted if job.planned_s <= MOST]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: curves with bands, where the energy went, and the modal fidelity beside them."""
     quick = request.quick
     meshes = QUICK if quick else FULL
@@ -118,4 +117,4 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         [points[name] for name in SETS],
         [(drop, results.get(drop.name)) for drop in reduced(quick)],
     )
-    return publish(study_report(curves), request, results)
+    return study_report(curves)

@@ -10,7 +10,7 @@ from fem_impact.answers.refine.extrapolate import vibration_floor
 from fem_impact.evidence.studies.pairs import resized, shifted, with_limits
 from fem_impact.evidence.studies.rods import Drop
 from fem_impact.jobs.job import Failure, Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.groups import ContactInterval
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -145,7 +145,7 @@ def first_jobs(one: Member, meshes: Meshes) -> list[Job]:
     return [*one.jobs(meshes.own), *one.jobs(meshes.second), one.twin(meshes.second)]
 
 
-def more_jobs(one: Member, meshes: Meshes, results: Results) -> list[Job]:
+def more_jobs(one: Member, meshes: Meshes, results: JobResults) -> list[Job]:
     """Return the jobs that the results of a point call for: finer meshes, and one cut at a second contact."""
     jobs = []
     for level, factor in enumerate(meshes.finer):
@@ -159,7 +159,7 @@ def more_jobs(one: Member, meshes: Meshes, results: Results) -> list[Job]:
     return [*jobs, *cut]
 
 
-def point_of(one: Member, meshes: Meshes, results: Results) -> Point:
+def point_of(one: Member, meshes: Meshes, results: JobResults) -> Point:
     """Return a point from the results of its jobs."""
     second, own, *finer = (
         _runs(one.jobs(factor), results) for factor in (meshes.second, meshes.own, *meshes.finer)
@@ -189,7 +189,7 @@ def _limited(own: Sequence[Result], second: Sequence[Result], finer: Iterable[Se
     return with_limits(fine, coarse)
 
 
-def _runs(jobs: Sequence[Job], results: Results) -> list[Result]:
+def _runs(jobs: Sequence[Job], results: JobResults) -> list[Result]:
     return [results.get(job.name, Failure(job.name, "was not computed")) for job in jobs]
 
 

@@ -7,24 +7,19 @@ Its table `beside` is what every outcome of the reduced model is judged by: a co
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.reduced_scenes import CALIBRATION, COUNT, design, scene_of
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import Key, Unknown
 from fem_impact.outcome.record import KEY_TABLE, Outcome
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS, Scene
 from fem_impact.tables.table import Cell, Table
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
 
 QUICK_COUNT = 4
 MODELS = ("modal", "solid")
@@ -52,21 +47,21 @@ def scenes(quick: bool) -> list[tuple[str, Scene]]:
     return [*measured, *read_from, *hypercube]
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return both runs of every scene."""
     return [
         Job(f"{scene.id}-{model}", scene, model) for _, scene in scenes(request.quick) for model in MODELS
     ]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: every scene by both models, and how many are near."""
     rows = [
         row
         for group, scene in scenes(request.quick)
         if (row := _row(group, scene.id, [results[f"{scene.id}-{model}"] for model in MODELS]))
     ]
-    return publish(study_report(rows), request, results)
+    return study_report(rows)
 
 
 def _row(group: str, name: str, runs: Sequence[object]) -> Row | None:

@@ -9,10 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from fem_impact.answers.compare import COMPARED, Row, compare
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.inputs import (
     DESCRIPTIONS,
     INPUT_CHANGES,
@@ -22,7 +21,7 @@ from fem_impact.evidence.studies.inputs import (
 )
 from fem_impact.evidence.studies.pairs import PLACES, finer_and_coarser, shifted, with_limits
 from fem_impact.jobs.job import Failure, Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ADDED, EnergyShare, shares
@@ -31,10 +30,6 @@ from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import COMPARISON, DASH, Table
 from fem_impact.tables.text import plain
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
 
 QUICK = {"save.frames": 40}  # a third of the frames
 QUICK_SETS = ("t3-machined", "t4", "t5b")
@@ -74,13 +69,13 @@ def chosen(request: Request) -> tuple[str, ...]:
     return request.ids or (QUICK_SETS if request.quick else MEASURED_SETS)
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs of the measured sets."""
     groups = (jobs_of(name, request.quick, request.out) for name in chosen(request))
     return [job for group in groups for job in group.values()]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
     out, outcomes, comparison, changed = request.out, list[Outcome](), list[Row](), list[Row]()
     for name in chosen(request):
@@ -93,11 +88,11 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
             comparison += compare(limited, tests_of(scene))
         if not request.quick:
             changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
-    published = publish(sets_report(outcomes, comparison, changed), request, results)
-    return replace(published, runs=tuple(out / outcome.provenance.scene_id for outcome in outcomes))
+    report = sets_report(outcomes, comparison, changed)
+    return replace(report, runs=[out / outcome.provenance.scene_id for outcome in outcomes])
 
 
-def at_places(runs: Results, mesh: str) -> list[Outcome | Failure]:
+def at_places(runs: JobResults, mesh: str) -> list[Outcome | Failure]:
     """Return the runs of a mesh at its places of the barrier's grid, of `mesh_jobs`."""
     return [runs[kind] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in runs]
 

@@ -8,27 +8,22 @@ are a second reading, shown beside: they are none of the thirteen sets and count
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from fem_impact.answers.compare import MEASURED, Row, compare
-from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
+from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
 from fem_impact.evidence.studies.pairs import with_limits
 from fem_impact.evidence.studies.sets import at_places, mesh_jobs
 from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set
-
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
 
 SETS = ("t3-machined", "t3-contaminated", "t3-cleaned")
 TIPS = {"B": "{}", "A": "{}-tip-a"}
@@ -79,12 +74,12 @@ def readings() -> tuple[Reading, ...]:
     return tuple(found)
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the runs of Table 3 with either tip, two meshes at two places; one set if quick."""
     return [job for tip in TIPS for name in _sets(request) for job in _jobs(name, tip, request).values()]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: rotation by momentum alone, and finite elements with either tip."""
     rows: dict[str, list[Row]] = {}
     for tip in TIPS:
@@ -95,7 +90,7 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
                 found = compare(limited, tests_of(load(TIPS[tip].format(name))))
                 rows.setdefault(tip, []).extend(row for row in found if row["quantity"] in COUNTED)
     sentences = [*_momentum_sentences(), *_model_sentences(rows)]
-    report = StudyReport(
+    return StudyReport(
         "tip",
         "Table 3: tip A or tip B?",
         sentences,
@@ -110,7 +105,6 @@ def conclude(request: Request, results: Results, progress: ProgressMeter) -> Stu
         ],
         conclusions=[("", sentence) for sentence in sentences],
     )
-    return publish(report, request, results)
 
 
 def _sets(request: Request) -> tuple[str, ...]:

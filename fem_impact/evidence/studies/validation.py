@@ -8,11 +8,9 @@ sets at once (`.calibration`).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
-from fem_impact.answers.report import Request, StudyResult, publish
+from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, sample_values
 from fem_impact.evidence.studies.pairs import with_limits
 from fem_impact.evidence.studies.response import fit
@@ -29,32 +27,28 @@ from fem_impact.evidence.studies.validated import (
 )
 from fem_impact.evidence.studies.validation_report import study_report
 from fem_impact.jobs.job import Failure, Job
-from fem_impact.jobs.run import Results
+from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import measured_set
 
-if TYPE_CHECKING:
-    from fem_impact.progress import ProgressMeter
-
-
 SIZE, QUICK_SIZE = 64, 16  # runs of a set's sample
 FEWEST = 2 * len(UNCERTAIN_INPUTS)  # finished runs of a sample
 
 
-def plan(request: Request, results: Results) -> list[Job]:
+def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs of the requested sets: two meshes at two places, and the sample."""
     return [
         job for name in _sets(request) for job in (*_meshes(name, request).values(), *_sample(name, request))
     ]
 
 
-def conclude(request: Request, results: Results, progress: ProgressMeter) -> StudyResult:
+def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, what causes them, calibrated constants."""
     sets = [found for name in _sets(request) if (found := _validated(name, request, results))]
-    return publish(study_report(sets), request, results)
+    return study_report(sets)
 
 
 def _sets(request: Request) -> tuple[str, ...]:
@@ -78,7 +72,7 @@ def _sample(name: str, request: Request) -> list[Job]:
     ]
 
 
-def _validated(name: str, request: Request, results: Results) -> ValidatedSet | None:
+def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
     """Return the set from its runs; None where one of its meshes or too much of its sample failed."""
     measured = measured_set(name)
     nominal = {kind: results[job.name] for kind, job in _meshes(name, request).items()}

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.case.effects.plasticity import hardening_of
@@ -11,7 +11,6 @@ from fem_impact.case.effects.skin import layer
 from fem_impact.case.plan import plan as plan_of
 from fem_impact.evidence.studies.causes import ALONE, BASE, LADDER, STEPS, conclude, plan
 from fem_impact.jobs.job import Failure
-from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load
 
 
@@ -43,7 +42,7 @@ def test_each_step_switches_on_what_it_says(tmp_path):
 
 def test_the_study_tells_each_change_and_draws_the_measured_interval(tmp_path):
     request = Request(tmp_path, ("t5b",))
-    found = conclude(request, {j.name: fake(j) for j in plan(request, {})}, NullMeter())
+    found = published(conclude, request, {j.name: fake(j) for j in plan(request, {})})
     assert "Each alone, most changes e of t5b by skin (+1)" in found.text
     assert "e 0.2, +0.13 to the measured mean: rate +0.01, hardness +0.1, skin +1, all +1.1" in found.text
     written = json.loads((tmp_path / "study.json").read_text())
@@ -57,4 +56,4 @@ def test_the_study_tells_each_change_and_draws_the_measured_interval(tmp_path):
 def test_a_set_with_a_failed_run_is_left_out_and_said(tmp_path):
     request = Request(tmp_path, ("t5b",))
     runs = {j.name: fake(j) for j in plan(request, {})} | {f"t5b: {BASE}": Failure(f"t5b: {BASE}", "folded")}
-    assert "No set has all its runs" in conclude(request, runs, NullMeter()).text
+    assert "No set has all its runs" in published(conclude, request, runs).text

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers.refine.extrapolate import Limit
 from fem_impact.answers.report import Request
@@ -16,7 +16,6 @@ from fem_impact.evidence.studies.convergence import (
     plan,
 )
 from fem_impact.jobs.job import Failure
-from fem_impact.progress import NullMeter
 
 NUMBERS = {key.name: 0.5 for key in QUANTITIES.values()}
 
@@ -35,7 +34,7 @@ def study(out, broken=(), ids=("t5b",)):
         size, place = job.scene.accuracy.tip_size, job.scene.accuracy.grid_shift
         failed = job.name.startswith(tuple(broken))
         results[job.name] = Failure(job.name, "An element folded.") if failed else run(size, place)
-    return conclude(request, results, NullMeter())
+    return published(conclude, request, results)
 
 
 def test_every_mesh_is_run_at_the_places_of_the_grid_that_the_ladder_has():

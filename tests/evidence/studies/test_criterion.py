@@ -6,7 +6,7 @@ from math import hypot, pi, sqrt
 
 import numpy as np
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers import report as document
 from fem_impact.answers.refine.extrapolate import EVEN
@@ -47,7 +47,6 @@ from fem_impact.modal.impact import solve
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
-from fem_impact.progress import NullMeter
 from rigid import LIMIT
 
 TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.0}
@@ -183,7 +182,7 @@ def test_a_rod_is_measured_against_its_rigid_twin(results):
 def test_the_study_judges_the_criterion(results, tmp_path, monkeypatch):
     drawn = {}
     monkeypatch.setattr(document, "_draw", lambda picture, _: drawn.update({picture.name: picture}))
-    found = conclude(Request(tmp_path, quick=True), results, NullMeter())
+    found = published(conclude, Request(tmp_path, quick=True), results)
     assert "Hertz, tip in proportion: with 5% allowed, gamma <= 26.45 is unsafe" in found.text
     assert "yielding, machined, by finite elements: vibration changes e by" in found.text
     assert "Elastic, frictionless, 45 degrees: vibration changes e by finite elements by" in found.text

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 from outcome_maker import altered
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers import report as document
 from fem_impact.answers.report import Request
@@ -36,7 +36,6 @@ from fem_impact.evidence.studies.pairs import with_limits
 from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, Drop, length_of
 from fem_impact.evidence.studies.sets import HALF_CELL, jobs_of
 from fem_impact.jobs.job import Failure
-from fem_impact.progress import NullMeter
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.library import surfaces
 from fem_impact.scene.shipped import load
@@ -192,7 +191,7 @@ def test_the_band_of_a_point_is_that_of_its_two_finest_meshes():
 def test_the_study_says_how_much_where_and_why(tmp_path, drawn):
     request = Request(tmp_path, quick=True)
     results = computed(request)
-    found = conclude(request, results, NullMeter())
+    found = published(conclude, request, results)
     assert "tip (machined, 45 degrees, 2.1 m/s) leaves as vibration" in found.text
     assert "(0.24 m rod)" in found.text
     assert "largest at gamma 70" in found.text and "the longest rod" in found.text
@@ -217,7 +216,7 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
     def alone(name, run):
         return altered(run, E_vib_over_E_0=1e-3) if fallen in name else run
 
-    said = conclude(request, computed(request, alone), NullMeter()).text
+    said = published(conclude, request, computed(request, alone)).text
     assert "mostly because the first contact itself leaves less" in said and "no later one follows" in said
 
     def given_back(name, run):
@@ -225,14 +224,14 @@ def test_vibration_that_falls_is_explained_by_its_later_contacts(tmp_path, drawn
             return run
         return altered(run, E_vib_over_E_0=1e-3, contacts=[TOUCH, AGAIN])
 
-    said = conclude(request, computed(request, given_back), NullMeter()).text
+    said = published(conclude, request, computed(request, given_back)).text
     assert "mostly because later contacts give energy back" in said
 
     def hardly(name, run):
         shares = {"x2": 0.0205, "x4": 0.0165}
         return altered(run, E_vib_over_E_0=shares[name[-2:]]) if fallen in name and "-x" in name else run
 
-    said = conclude(request, computed(request, hardly), NullMeter()).text
+    said = published(conclude, request, computed(request, hardly)).text
     assert "largest at gamma 57" in said and "beyond it stays within the bands" in said
 
 
@@ -241,7 +240,7 @@ def test_a_failed_run_leaves_a_gap_with_its_reason(tmp_path, drawn):
     results = computed(request)
     lost = f"{line(True)[0].name}-x2"
     results[lost] = Failure(lost, "folded")
-    found = conclude(request, results, NullMeter())
+    found = published(conclude, request, results)
     assert found.document["failures"] == [{"scene_id": lost, "error": "folded"}]
     gaps = next(sheet for sheet in found.document["sheets"] if sheet["name"] == "gaps")
     assert gaps["rows"][0][-1] == "folded"

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from study_fakes import published
 
 from fem_impact.answers.compare import compare
 from fem_impact.errors import ResultError, SceneError
@@ -120,12 +121,10 @@ def test_a_study_of_sets_takes_scene_files(tmp_path, monkeypatch):
     request = sets.Request(tmp_path / "out", (str(path),), True)
     run = simulate(read_toml(path), "modal")
     monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
-    seen = []
-    monkeypatch.setattr(sets, "publish", lambda report, *_: seen.append(report) or sets.StudyResult({}, ""))
-    sets.conclude(request, {job.name: run for job in jobs.values()}, None)
-    measured = {row["quantity"]: row["measured_mean"] for row in seen[0].comparison}
+    report = sets.conclude(request, {job.name: run for job in jobs.values()})
+    measured = {row["quantity"]: row["measured_mean"] for row in report.comparison}
     assert measured["mu"] == pytest.approx(float(np.mean(measured_set("t5b").recomputed()["mu"])))
-    json.dumps(seen[0].comparison)
+    json.dumps(report.comparison)
 
 
 def means_of(scatter="sd"):
@@ -235,7 +234,7 @@ def test_a_report_over_a_study_of_own_scenes_judges_them_not_the_paper(cli, tmp_
     monkeypatch.setattr(sets, "with_limits", lambda fine, coarse: fine[0])
     jobs = sets.jobs_of(str(path), True, request.out)
     (request.out / "mine").mkdir(parents=True)
-    sets.conclude(request, {job.name: run for job in jobs.values()}, None)
+    published(sets.conclude, request, {job.name: run for job in jobs.values()})
     code, _, err = cli("study", "report", "--quiet")
     assert (code, err) == (0, "")
     page = (tmp_path / "results" / "report" / "report.html").read_text()

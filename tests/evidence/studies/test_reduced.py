@@ -1,14 +1,13 @@
 """The study of the reduced model: scenes on both models, near or not, and the stored copy of its table."""
 
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.case.measured import reduced_table
 from fem_impact.evidence.studies.reduced import HEAD, conclude, plan, scenes, study_report
 from fem_impact.evidence.studies.reduced_scenes import COUNT, SIDES, design
 from fem_impact.jobs.job import Failure
-from fem_impact.progress import NullMeter
 
 
 def fake(job):
@@ -27,7 +26,7 @@ def test_near_and_far_are_counted_and_a_failed_run_leaves_its_row_out(tmp_path):
     request = Request(tmp_path, quick=True)
     results = {job.name: fake(job) for job in plan(request, {})}
     results["reduced-1-solid"] = Failure("reduced-1-solid", "folded")
-    found = conclude(request, results, NullMeter())
+    found = published(conclude, request, results)
     assert "e within 0.06 in 3 of 3 scenes" in found.text and "both in 3" in found.text
     assert "median difference of e 0.050" in found.text
 

@@ -4,13 +4,13 @@ import json
 from dataclasses import replace
 
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 from wide_contact import WIDE
 
 from fem_impact.answers.refine.extrapolate import LOWEST, ONE_RUN
 from fem_impact.answers.report import SCHEMA, Request
 from fem_impact.case.plan import plan as plan_of
-from fem_impact.evidence.studies.catalogue import run_study
+from fem_impact.evidence.runner import run_study
 from fem_impact.evidence.studies.inputs import INPUT_CHANGES
 from fem_impact.evidence.studies.pairs import COARSER, finer_and_coarser
 from fem_impact.evidence.studies.sets import QUICK_SETS, conclude, jobs_of, plan
@@ -34,7 +34,7 @@ def fake(job):
 
 def study(out, *ids, broken=(), quick=True):
     request = Request(out, ids, quick)
-    return conclude(request, computed(plan(request, {}), broken), NullMeter())
+    return published(conclude, request, computed(plan(request, {}), broken))
 
 
 def test_a_set_is_two_meshes_and_a_table(tmp_path):
@@ -58,8 +58,9 @@ def test_the_study_runs_its_jobs_through_the_store(tmp_path, monkeypatch):
         asked.append((store, executor))
         return computed(jobs)
 
-    monkeypatch.setattr("fem_impact.evidence.studies.catalogue.run_jobs", run_jobs)
-    found = run_study("sets", Request(tmp_path / "s", ("t5b",), quick=True), NullMeter(), "an executor")
+    monkeypatch.setattr("fem_impact.evidence.runner.run_jobs", run_jobs)
+    request = Request(tmp_path / "s", ("t5b",), quick=True)
+    found = run_study("studies.sets", request, NullMeter(), "an executor")
     assert asked == [(tmp_path / "s" / "store.sqlite", "an executor")]
     assert found.document["failures"] == []
 

@@ -5,11 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.evidence.studies.tip import SETS, Reading, conclude, fitted_arms, plan, readings
-from fem_impact.progress import NullMeter
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import measured_set
 
@@ -45,7 +44,7 @@ def test_the_study_counts_both_tips_alike_and_adds_no_measured_set(tmp_path):
         mu = 0.724 if job.scene.projectile.tip == "A" else 5.0
         return outcome(scene_id=job.scene.id, tip_size_m=size, mu=mu)
 
-    text = conclude(request, {j.name: fake(j) for j in jobs}, NullMeter()).text
+    text = published(conclude, request, {j.name: fake(j) for j in jobs}).text
     inside = [int(re.search(rf"with tip {tip} (\d) of 8 lie inside", text)[1]) for tip in "BA"]
     assert inside[1] == inside[0] + 1
     assert "turn as rods of tip A rather than of the other" in text

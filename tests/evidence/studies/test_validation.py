@@ -6,7 +6,7 @@ from math import hypot, sqrt
 
 import numpy as np
 import pytest
-from study_fakes import outcome
+from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.case.effects.plasticity import hardening_of
@@ -30,7 +30,6 @@ from fem_impact.evidence.studies.validation import conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.physics.contact import projectile
 from fem_impact.physics.hardening import rate_gain
-from fem_impact.progress import NullMeter
 from fem_impact.scene.shipped import load, replace_all
 from rigid.experiments import measured_set
 
@@ -157,7 +156,7 @@ def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_p
 
 def test_the_study_tells_errors_causes_and_failures(tmp_path):
     request = Request(tmp_path, ("t5b",), quick=True)
-    found = conclude(request, results_of(request, broken=("t5b-3",)), NullMeter())
+    found = published(conclude, request, results_of(request, broken=("t5b-3",)))
     written = json.loads((tmp_path / "study.json").read_text())
     assert written["failures"] == [{"scene_id": "t5b-3", "error": "folded"}]
     sheets = {sheet["name"]: sheet for sheet in written["sheets"]}
@@ -176,7 +175,7 @@ def test_the_study_tells_errors_causes_and_failures(tmp_path):
 
 def test_a_set_whose_mesh_failed_is_left_out_and_said(tmp_path):
     request = Request(tmp_path, ("t5b",), quick=True)
-    found = conclude(request, results_of(request, broken=("t5b-coarse",)), NullMeter())
+    found = published(conclude, request, results_of(request, broken=("t5b-coarse",)))
     assert "No set could be compared" in found.text
     assert "failed: t5b-coarse: folded" in found.text
 

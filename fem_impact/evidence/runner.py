@@ -1,14 +1,14 @@
-"""Run a study, or estimate its processor time, by the name of its module."""
+"""The one way that evidence runs: jobs with a store, a report of their results, and its files."""
 
 from __future__ import annotations
 
 from concurrent.futures import Executor
 from importlib import import_module
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.report import Conclude, Plan, Request, StudyResult
+from fem_impact.answers.report import Request, StudyResult, publish
 from fem_impact.files.lock import directory_lock
-from fem_impact.jobs.run import Results, WorkForecast, estimate, run_jobs
+from fem_impact.jobs.run import JobResults, WorkForecast, estimate, run_jobs
 from fem_impact.jobs.store import STORE
 
 if TYPE_CHECKING:
@@ -18,12 +18,13 @@ if TYPE_CHECKING:
 def run_study(
     name: str, request: Request, progress: ProgressMeter, executor: Executor | None = None
 ) -> StudyResult:
-    """Run the jobs of a study, evaluate their results and write the study to ``request.out``.
+    """Run the jobs of a study, evaluate their results and write its report to ``request.out``.
 
     Parameters
     ----------
-    name : module of ``fem_impact.evidence.studies`` with the functions ``plan`` and ``conclude``; ``plan`` is
-        called with the results so far until it returns no new job, then ``conclude`` with all results
+    name : module of ``fem_impact.evidence``, such as "studies.tip", with two functions. ``plan(request,
+        results)`` returns its jobs; it is called with the results so far until it returns no new one.
+        ``conclude(request, results)`` returns its `StudyReport`
     progress : meter, updated after each job
     executor : where the jobs run; local processes when None
 
@@ -32,12 +33,12 @@ def run_study(
     OutputPathError
         Another process writes to ``request.out``, or it cannot be written.
     """
-    plan, conclude = _study(name)
-    results: Results = {}
+    study = _module(name)
+    results: JobResults = {}
     with directory_lock(request.out):
-        while new := [job for job in plan(request, results) if job.name not in results]:
+        while new := [job for job in study.plan(request, results) if job.name not in results]:
             results |= run_jobs(new, request.out / STORE, progress, executor)
-        return conclude(request, results, progress)
+        return publish(study.conclude(request, results), request, results)
 
 
 def estimate_study(
@@ -48,10 +49,8 @@ def estimate_study(
     Jobs that ``plan`` adds once it has results are not counted.
     """
     with directory_lock(request.out):
-        return estimate(_study(name)[0](request, {}), request.out / STORE, progress, executor)
+        return estimate(_module(name).plan(request, {}), request.out / STORE, progress, executor)
 
 
-def _study(name: str) -> tuple[Plan, Conclude]:
-    """Return ``plan`` and ``conclude`` of a study's module."""
-    module = import_module(f"fem_impact.evidence.studies.{name}")
-    return module.plan, module.conclude
+def _module(name: str) -> Any:
+    return import_module(f"fem_impact.evidence.{name}")
