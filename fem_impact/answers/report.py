@@ -35,13 +35,14 @@ class Request:
     out : Path
         Directory of the study, with the store of its results.
     ids : tuple of str
-        Measured sets, where the study is about them; all when empty.
+        Measured sets or hard cases, where the study is about them; all when empty.
     quick : bool
         Whether to run the small version.
     line : str
         Command line that made it, where that is not one of ``fem-impact study``.
     cases : str
-        Digest of the cases of a sweep, by which the report of another one in ``out`` is known.
+        What is computed, where that is not told by ``ids``, such as the digest of a sweep's cases: by it the
+        report of something else in ``out`` is known.
     """
 
     out: Path

@@ -31,7 +31,7 @@ def add_stress(commands: Commands) -> None:
     """Add ``stress``."""
     summary = "run extreme scenes; each must close its energy balance, or be refused or stopped with a reason"
     examples = ("fem-impact stress --only angle-60",)
-    parser = add_command(commands, "stress", summary, "fem_impact.cli.verify:stress", examples)
+    parser = add_command(commands, "stress", summary, "fem_impact.cli.study:stress", examples)
     parser.add_argument(
         "--only", default="", metavar="NAME", help="one case, such as angle-60 (default: all of them)"
     )

@@ -1,4 +1,4 @@
-"""The command ``study``: many runs, in local processes or on a cluster."""
+"""The commands ``study`` and ``stress``: many runs, in local processes or on a cluster."""
 
 from __future__ import annotations
 
@@ -26,23 +26,46 @@ def study(options: Options) -> int:
     ids = _checked_ids(options.ids, own=options.name in OWN_TESTS)
     out = checked_out(options.out or Path("results") / options.name)
     from fem_impact.answers.report import Request
-    from fem_impact.cli.page import asked_page
     from fem_impact.files.lock import directory_lock
 
     if options.name == "report":
         with directory_lock(out):
             return _report(options, out)
-    request = Request(out, ids, options.quick)
+    return _computed(f"studies.{options.name}", options, Request(out, ids, options.quick))
+
+
+def stress(options: Options) -> int:
+    """Run one hard case, or all of them; the exit code says whether all ended as they must."""
+    from fem_impact.answers.report import Request
+    from fem_impact.evidence.hard_cases.scenes import CASES
+
+    if options.only and options.page:
+        raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
+    if options.only and options.only not in CASES:
+        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
+        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
+    out = checked_out(options.out or Path("results") / "stress")
+    ids = (options.only,) if options.only else ()
+    line = " ".join(["fem-impact stress", *(["--only", options.only] if options.only else [])])
+    # one place keeps all cases, whichever were asked for last
+    return _computed("hard_cases.study", options, Request(out, ids, line=line, cases="hard cases"))
+
+
+def _computed(module: str, options: Options, request: Request) -> int:
+    """Run a study by its module of `fem_impact.evidence` and print its result, or estimate its time."""
+    from fem_impact.cli.page import asked_page
+    from fem_impact.files.lock import directory_lock
+
     page = asked_page(options)
     with (
-        directory_lock(out),
-        told_kept(out, options),
+        directory_lock(request.out),
+        told_kept(request.out, options),
         closing(chosen_meter(options)) as meter,
         _workers(options) as executor,
     ):
         if options.estimate:
-            return _estimate(options, request, meter, executor)
-        return _study(options, request, meter, executor, page)
+            return _estimate(module, options, request, meter, executor)
+        return _study(module, options, request, meter, executor, page)
 
 
 def _report(options: Options, out: Path) -> int:
@@ -60,12 +83,17 @@ def _report(options: Options, out: Path) -> int:
 
 
 def _study(
-    options: Options, request: Request, meter: ProgressMeter, executor: Executor, page: Path | None
+    module: str,
+    options: Options,
+    request: Request,
+    meter: ProgressMeter,
+    executor: Executor,
+    page: Path | None,
 ) -> int:
     from fem_impact.cli.page import write_study_page
     from fem_impact.evidence.runner import run_study
 
-    result, notes = run_study(f"studies.{options.name}", request, meter, executor), []
+    result, notes = run_study(module, request, meter, executor), []
     if result.runs:
         from fem_impact.films.movement import QUICK_FRAMES, STUDY_FRAMES
         from fem_impact.pages.write import present
@@ -85,12 +113,14 @@ def _study(
     return RunError.exit_code if result.document["failures"] else 0
 
 
-def _estimate(options: Options, request: Request, meter: ProgressMeter, executor: Executor) -> int:
+def _estimate(
+    module: str, options: Options, request: Request, meter: ProgressMeter, executor: Executor
+) -> int:
     from dataclasses import asdict
 
     from fem_impact.evidence.runner import estimate_study
 
-    forecast = estimate_study(f"studies.{options.name}", request, meter, executor)
+    forecast = estimate_study(module, request, meter, executor)
     meter.close()
     if options.json:
         print_json(asdict(forecast))

@@ -1,24 +1,17 @@
-"""The commands ``verify``, problems with known answers, and ``stress``, hard cases."""
+"""The command ``verify``: problems with known answers."""
 
 from __future__ import annotations
 
-import itertools
 import sys
-from collections.abc import Callable
-from dataclasses import asdict
-from pathlib import Path
 
-from fem_impact.cli.common import checked_out, print_json
+from fem_impact.cli.common import print_json
 from fem_impact.cli.options import Options
 from fem_impact.cli.page import checked_page, write_page
-from fem_impact.cli.terminal import print_markdown, print_table
-from fem_impact.errors import RunError, UsageError, did_you_mean
-from fem_impact.evidence.hard_cases.run import Row, page, row_line, run_cases
-from fem_impact.evidence.hard_cases.scenes import CASES
+from fem_impact.cli.terminal import print_table
+from fem_impact.errors import RunError, UsageError
 from fem_impact.evidence.problems import catalogue
 from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.evidence.problems.problem import Problem, Verification
-from fem_impact.jobs.executors import cores
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
@@ -55,11 +48,6 @@ def verify(options: Options) -> int:
 VERIFICATION = (
     "Verification",
     "Each problem with a known answer, and of its checks the one nearest to its limit.",
-)
-HARD_CASES = (
-    "Hard cases",
-    "Scenes that are hard on the solver, on coarse meshes. Each must close its balances, be refused before "
-    "the run with its reason, or be detected during it.",
 )
 
 
@@ -125,42 +113,3 @@ def _text(verification: Verification) -> str:
         lines += wrapped(f"{mark} {c.name}: {values},", "  ", " " * 5)
         lines += wrapped(f"error {c.error:+.2e}, {allowed}", " " * 7, "")
     return "\n".join(lines) + "\n"
-
-
-def stress(options: Options) -> int:
-    """Run one hard case, or all of them; the exit code says whether all passed."""
-    names = _chosen(options)
-    path = checked_page(options.page) if options.page else None
-    out = checked_out(options.out or Path("results") / "stress")
-    rows = run_cases(names, out, _progress(options, len(names)), options.workers or cores())
-    text = page(rows)
-    if path:
-        write_page(path, *HARD_CASES, "fem-impact stress --page FILE", text)
-    if options.json:
-        print_json([asdict(row) for row in rows])
-    else:
-        print_markdown(text, options)
-        sys.stdout.write(f"\nresults: {out}\n")
-    return 0 if all(row.passed for row in rows) else RunError.exit_code
-
-
-def _progress(options: Options, total: int) -> Callable[[Row], None]:
-    """Return the function that prints the result of each finished case."""
-    count = itertools.count(1)
-
-    def show(row: Row) -> None:
-        if not options.quiet:
-            sys.stderr.write(f"{next(count)} of {total}: {row_line(row)}\n")
-
-    return show
-
-
-def _chosen(options: Options) -> list[str]:
-    if not options.only:
-        return list(CASES)
-    if options.page:
-        raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
-    if options.only not in CASES:
-        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
-        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
-    return [options.only]

@@ -1,4 +1,4 @@
-"""One job of a study, a scene and a fidelity, and the answer that a worker returns."""
+"""What a worker computes, such as a scene with a fidelity, and the answer that it returns."""
 
 from __future__ import annotations
 
@@ -7,11 +7,12 @@ import time
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 from fem_impact.case.plan import plan
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import or_none
 from fem_impact.run import simulate as run
 from fem_impact.run.program import source_digest
 from fem_impact.scene.write import digest
@@ -21,11 +22,59 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-Kind = tuple[str, float]
+JobKind = tuple[str, float]
 GUESS = {"rigid": 1e-3, "modal": 0.05}
 """Assumed processor time, s, of a job without a mesh, until one of its fidelity was measured."""
 REFUSED = 0.05
 """Time, s, of a solid job whose scene is refused."""
+
+
+Result = TypeVar("Result", covariant=True)
+
+
+class Work(Protocol[Result]):
+    """What a worker computes and a store keeps: the run of a scene (`Job`), or another with a result."""
+
+    @property
+    def name(self) -> str:
+        """Unique within its study."""
+
+    @property
+    def key(self) -> str:
+        """Content address of the result: all that it depends on, and the program."""
+
+    @property
+    def fidelity(self) -> str:
+        """What tells works apart whose times do not compare."""
+
+    @property
+    def kind(self) -> JobKind:
+        """Fidelity and tip size, m (0 without a mesh)."""
+
+    @property
+    def planned_s(self) -> float:
+        """Expected processor time, s."""
+
+    def run(self) -> str:
+        """Compute the result, as text.
+
+        Raises
+        ------
+        FemImpactError
+            There is none: the work counts as failed.
+        """
+
+    def read(self, text: str) -> Result:
+        """Return the result from its text.
+
+        Raises
+        ------
+        ResultError
+            The text is damaged or of other work.
+        """
+
+    def cpu_s(self, result: Any) -> float:
+        """Return the processor time, s, that a result took."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +98,10 @@ class Job:
     fidelity: str = "solid"
     out: Path | None = None
 
+    def __post_init__(self) -> None:
+        if self.out:  # a worker may stand in another directory than this process
+            object.__setattr__(self, "out", self.out.absolute())
+
     @property
     def key(self) -> str:
         """Content address of the result: scene, fidelity, sources and library versions."""
@@ -56,7 +109,7 @@ class Job:
         return hashlib.sha256(text.encode()).hexdigest()
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> JobKind:
         """Fidelity and tip size, m (0 without a mesh)."""
         return self.fidelity, _planned(self.scene)[0] if self.fidelity == "solid" else 0.0
 
@@ -64,6 +117,39 @@ class Job:
     def planned_s(self) -> float:
         """Processor time, s, as the plan of its scene expects it; `GUESS` for a fidelity without a mesh."""
         return _planned(self.scene)[1] if self.fidelity == "solid" else GUESS[self.fidelity]
+
+    def run(self) -> str:
+        """Return the outcome as JSON; a run with files goes on from its checkpoint."""
+        options = RunOptions(out=self.out, resume=True)
+        try:
+            return run.simulate(self.scene, self.fidelity, options).to_json()
+        except ResultError:  # a checkpoint of another scene or program
+            return run.simulate(self.scene, self.fidelity, replace(options, resume=False)).to_json()
+
+    def read(self, text: str) -> Outcome:
+        """Return the outcome from its JSON text.
+
+        Raises
+        ------
+        ResultError
+            The text is damaged, or of another scene or fidelity, or the directory of the run does not hold
+            the files of this run.
+        """
+        from fem_impact.outcome.record import Outcome
+
+        outcome = Outcome.from_json(text, source=self.name)
+        written = outcome.provenance.scene_digest, outcome.provenance.fidelity
+        if written != (digest(self.scene), self.fidelity):
+            raise ResultError(f"{self.name}: is an outcome of another scene or fidelity.")
+        if self.out is not None:
+            path = self.out / "outcome.json"
+            if _run_of(Outcome.read(path)) != _run_of(outcome):
+                raise ResultError(f"{path}: is of another run.")
+        return outcome
+
+    def cpu_s(self, result: Outcome) -> float:
+        """Return the processor time, s, of steps and set-up of an outcome."""
+        return result.cost.cpu + (or_none(result.cost.setup_cpu) or 0.0)
 
 
 @cache
@@ -109,48 +195,18 @@ class Answer:
     wall_s: float
 
 
-def compute(job: Job) -> Answer:
+def compute(job: Work[object]) -> Answer:
     """Run a job in this process. A failure is a value, so that a study goes on."""
     begun = time.perf_counter()
     program = source_digest()  # before the run: files may be changed during it
     text, reason, lasting = "", "", False
     try:
-        text = _run(job)
+        text = job.run()
     except FemImpactError as error:
         reason, lasting = str(error), error.exit_code in (3, 6)  # the scene or the run, not the disk
     except Exception as error:  # whatever went wrong, the other jobs of the study go on
         reason = repr(error)
     return Answer(program, text, reason, lasting, time.perf_counter() - begun)
-
-
-def _run(job: Job) -> str:
-    options = RunOptions(out=job.out, resume=True)
-    try:
-        return run.simulate(job.scene, job.fidelity, options).to_json()
-    except ResultError:  # a checkpoint of another scene or program
-        return run.simulate(job.scene, job.fidelity, replace(options, resume=False)).to_json()
-
-
-def read_outcome(job: Job, text: str) -> Outcome:
-    """Return the outcome of a job from its JSON text.
-
-    Raises
-    ------
-    ResultError
-        The text is damaged, or of another scene or fidelity, or the directory of the run does not hold the
-        files of this run.
-    """
-    from fem_impact.outcome.record import Outcome
-
-    outcome = Outcome.from_json(text, source=job.name)
-    stated = outcome.provenance.scene_digest, outcome.provenance.fidelity
-    if stated != (digest(job.scene), job.fidelity):
-        raise ResultError(f"{job.name}: is an outcome of another scene or fidelity.")
-    if job.out is not None:
-        path = job.out / "outcome.json"
-        if _run_of(Outcome.read(path)) != _run_of(outcome):
-            raise ResultError(f"{path}: is of another run.")
-    return outcome
 
 
 def _run_of(outcome: Outcome) -> tuple[str, str, object]:

@@ -4,24 +4,23 @@ from __future__ import annotations
 
 import heapq
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from contextlib import nullcontext
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from statistics import median
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from fem_impact.errors import ResultError, RunError
 from fem_impact.jobs.executors import LocalProcesses
-from fem_impact.jobs.job import Answer, Failure, Job, compute, read_outcome
+from fem_impact.jobs.job import Answer, Failure, Result, Work, compute
 from fem_impact.jobs.store import Store
-from fem_impact.outcome.keys import or_none
 from fem_impact.progress import CaseProgress, Notice
 from fem_impact.run.program import source_digest
 
 if TYPE_CHECKING:
-    from fem_impact.jobs.job import Job, Kind
+    from fem_impact.jobs.job import JobKind
     from fem_impact.outcome.record import Outcome
     from fem_impact.progress import ProgressMeter
 
@@ -37,17 +36,17 @@ class Pace:
     measured: int = 0
 
 
-def paces(jobs: Iterable[Job], results: JobResults) -> dict[str, Pace]:
+def paces(jobs: Iterable[Work[Any]], results: Mapping[str, Any]) -> dict[str, Pace]:
     """Return the pace of each fidelity among the jobs."""
     ratios: dict[str, list[float]] = {}
     for job in jobs:
         run, known = results.get(job.name), ratios.setdefault(job.fidelity, [])
         if run is not None and not isinstance(run, Failure):
-            known.append((run.cost.cpu + (or_none(run.cost.setup_cpu) or 0.0)) / job.planned_s)
+            known.append(job.cpu_s(run) / job.planned_s)
     return {name: Pace(median(known), len(known)) if known else Pace() for name, known in ratios.items()}
 
 
-def expected_costs(jobs: Iterable[Job], results: JobResults) -> dict[str, float]:
+def expected_costs(jobs: Iterable[Work[Any]], results: Mapping[str, Any]) -> dict[str, float]:
     """Return the expected processor time, s, of each job without a result, by its name.
 
     It is what the plan of the job says, times the pace of the jobs of its fidelity that have run.
@@ -95,9 +94,9 @@ class Eta:
 
 
 def run_jobs(
-    jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
-) -> JobResults:
-    """Return outcome or failure of every job by its name, in the order of the jobs.
+    jobs: Iterable[Work[Result]], store: Path, progress: ProgressMeter, executor: Executor | None = None
+) -> dict[str, Result | Failure]:
+    """Return result or failure of every job by its name, in the order of the jobs.
 
     Results are kept in ``store`` as they come, so that an interrupted study goes on where it stopped.
 
@@ -114,8 +113,7 @@ def run_jobs(
     RunError
         A worker holds another version of the program.
     """
-    # directories by their absolute path: a worker may stand in another one than this process
-    wanted = {j.name: replace(j, out=j.out and j.out.absolute()) for j in jobs}
+    wanted = {job.name: job for job in jobs}
     with Store.open(store) as base:
         results = stored_results(base, wanted.values(), progress)
         costs = expected_costs(wanted.values(), results)
@@ -127,21 +125,29 @@ def run_jobs(
     return {name: results[name] for name in wanted}
 
 
-def stored_results(base: Store, jobs: Iterable[Job], progress: ProgressMeter) -> JobResults:
+def stored_results(
+    base: Store, jobs: Iterable[Work[Result]], progress: ProgressMeter
+) -> dict[str, Result | Failure]:
     """Return the stored results of jobs by name; answers not of their job are reported and left out."""
-    results: JobResults = {}
+    results: dict[str, Result | Failure] = {}
     for job in jobs:
         try:
             answer = base.get(job)
             if answer is not None:
-                outcome, reason = answer
-                results[job.name] = Failure(job.name, reason) if reason else read_outcome(job, outcome)
+                text, reason = answer
+                results[job.name] = Failure(job.name, reason) if reason else job.read(text)
         except ResultError as error:
             progress(Notice(f"{job.name} is not taken from the store: {error}"))
     return results
 
 
-def _compute(waiting: list[Job], base: Store, executor: Executor, results: JobResults, meter: Eta) -> None:
+def _compute(
+    waiting: Sequence[Work[Result]],
+    base: Store,
+    executor: Executor,
+    results: dict[str, Result | Failure],
+    meter: Eta,
+) -> None:
     futures = {executor.submit(compute, job): job for job in waiting}
     try:
         for future in as_completed(futures):
@@ -150,7 +156,7 @@ def _compute(waiting: list[Job], base: Store, executor: Executor, results: JobRe
                 base.put(job, answer)
             try:
                 reason = answer.reason
-                results[job.name] = Failure(job.name, reason) if reason else read_outcome(job, answer.outcome)
+                results[job.name] = Failure(job.name, reason) if reason else job.read(answer.outcome)
             except ResultError as error:  # the text is checked like a stored one
                 results[job.name] = Failure(job.name, str(error))
             meter(job.name, len(results))
@@ -209,7 +215,7 @@ class WorkForecast:
 
 
 def estimate(
-    jobs: Iterable[Job], store: Path, progress: ProgressMeter, executor: Executor | None = None
+    jobs: Iterable[Work[Any]], store: Path, progress: ProgressMeter, executor: Executor | None = None
 ) -> WorkForecast:
     """Return how long the jobs that are not stored will take on 1 to 1000 workers.
 
@@ -222,7 +228,7 @@ def estimate(
         done = stored_results(base, wanted, progress)
     done |= run_jobs(_samples(wanted, done), store, progress, executor)
     expected = expected_costs(wanted, done)
-    groups: dict[Kind, list[float]] = {}
+    groups: dict[JobKind, list[float]] = {}
     for job in wanted:
         if job.name in expected:
             groups.setdefault(job.kind, []).append(expected[job.name])
@@ -240,9 +246,9 @@ def estimate(
     )
 
 
-def _samples(jobs: list[Job], done: JobResults) -> list[Job]:
+def _samples(jobs: Sequence[Work[Any]], done: Mapping[str, Any]) -> list[Work[Any]]:
     """Return a few jobs of each fidelity of which none has run, evenly spread over its cheaper half."""
-    chosen: list[Job] = []
+    chosen: list[Work[Any]] = []
     measured = {fidelity for fidelity, pace in paces(jobs, done).items() if pace.measured}
     for fidelity in dict.fromkeys(job.fidelity for job in jobs if job.fidelity not in measured):
         left = [job for job in jobs if job.fidelity == fidelity and job.name not in done]

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import make_directory
-from fem_impact.jobs.job import Answer, Job
+from fem_impact.jobs.job import Answer, Work
 
 STORE = "store.sqlite"
 _TABLE = """
@@ -67,8 +67,8 @@ class Store:
         finally:
             base.close()
 
-    def get(self, job: Job) -> tuple[str, str] | None:
-        """Return outcome text and reason of a failure, None if there is no answer.
+    def get(self, job: Work[object]) -> tuple[str, str] | None:
+        """Return text of the result and reason of a failure, None if there is no answer.
 
         Raises
         ------
@@ -86,7 +86,7 @@ class Store:
             raise ResultError(f"{job.name}: its stored answer does not match its checksum.")
         return outcome, reason
 
-    def put(self, job: Job, answer: Answer) -> None:
+    def put(self, job: Work[object], answer: Answer) -> None:
         """Keep an answer."""
         row = (job.key, job.name, *job.kind, answer.outcome, answer.reason, answer.wall_s)
         with _named(self._path), self._base:

@@ -1,0 +1,206 @@
+"""The hard cases as a study: each is computed and judged by itself; the report is their table."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import time
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.errors import ResultError, RunError, SceneError
+from fem_impact.evidence.hard_cases.scenes import CASES, HardCase
+from fem_impact.files.atomic import make_directory
+from fem_impact.jobs.job import Failure, JobKind
+from fem_impact.options import RunOptions
+from fem_impact.run.program import source_digest
+from fem_impact.tables.table import Cell, Column, Table
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from fem_impact.case.plan import Plan
+    from fem_impact.solid.model import Model
+    from fem_impact.solid.run import SolidResult
+
+
+CHECKPOINT_INTERVAL = 10.0  # s of wall time
+PLANNED = 2.0  # s of processor time, about what a case takes
+HEAD = (
+    *(Column(name, left=True) for name in ("scene", "what is hard", "verdict")),
+    Column("ledger / E_0", digits=1),
+    *(Column(name) for name in ("elements", "steps")),
+    Column("CPU s", digits=1),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class HardCaseResult:
+    """What became of a hard case that ended as it must.
+
+    Attributes
+    ----------
+    verdict : ``closed``, ``refused`` or ``detected``
+    reason : why it was refused or stopped, empty where it closed
+    residual : largest miss of the energy ledger over E_0; None where nothing was computed
+    steps, elements : of its run, 0 where none was made
+    cpu_s : processor time, s
+    """
+
+    verdict: str
+    reason: str = ""
+    residual: float | None = None
+    steps: int = 0
+    elements: int = 0
+    cpu_s: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class HardCaseJob:
+    """The computation of one hard case; ``out`` takes its history, its outcome and its checkpoint."""
+
+    case: HardCase
+    out: Path
+    fidelity: ClassVar[str] = "hard case"
+    kind: ClassVar[JobKind] = ("hard case", 0.0)
+    planned_s: ClassVar[float] = PLANNED
+
+    @property
+    def name(self) -> str:
+        """Name of the case."""
+        return self.case.name
+
+    @property
+    def key(self) -> str:
+        """Digest of the case and the program."""
+        return hashlib.sha256(f"{self.case!r} {source_digest()}".encode()).hexdigest()
+
+    def run(self) -> str:
+        """Return the `HardCaseResult` as JSON.
+
+        Raises
+        ------
+        RunError
+            The case did not end as it must: the sentence says how, and why.
+        """
+        begun = time.process_time()
+        result = replace(self._result(), cpu_s=time.process_time() - begun)
+        if result.verdict != self.case.expected:
+            raise RunError(f"{result.verdict}, not {self.case.expected}: {result.reason}")
+        return json.dumps(asdict(result))
+
+    def read(self, text: str) -> HardCaseResult:
+        """Return the result from its JSON text; raises ResultError where that is damaged."""
+        try:
+            return HardCaseResult(**json.loads(text))
+        except (ValueError, TypeError) as error:
+            raise ResultError(f"{self.name}: its stored result is damaged ({error}).") from error
+
+    def cpu_s(self, result: HardCaseResult) -> float:
+        """Return the processor time of a result, s."""
+        return result.cpu_s
+
+    def _result(self) -> HardCaseResult:
+        try:
+            return _bounced(self.case.bounces) if self.case.bounces else _judged(self._solved(), self.out)
+        except SceneError as refusal:
+            return HardCaseResult("refused", str(refusal))
+        except RunError as stop:
+            return HardCaseResult("detected", str(stop))
+
+    def _solved(self) -> SolidResult:
+        """Run the case from its checkpoint if there is one, else from the start."""
+        from fem_impact.case.plan import plan
+        from fem_impact.files.run_directory import CHECKPOINT
+        from fem_impact.run.program import stamp
+        from fem_impact.solid.run import solve
+
+        planned = plan(self.case.scene())
+        make_directory(self.out)
+        options = RunOptions(self.out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(planned.scene))
+        if (self.out / CHECKPOINT).exists():
+            try:
+                return solve(planned, replace(options, resume=True), model_of(self.case, planned))
+            except ResultError:  # of another scene or program
+                (self.out / CHECKPOINT).unlink()
+        return solve(planned, options, model_of(self.case, planned))
+
+
+def model_of(case: HardCase, plan: Plan) -> Model:
+    """Return the model of a case, with its own height, shift and step at the start."""
+    from fem_impact.fem.stable import SAFETY
+    from fem_impact.solid.build import build
+
+    model = build(plan, case.gap)
+    x, v = model.start[0].copy(), model.start[1]
+    x[model.layout.rod[:, 0]] += case.shifted
+    steps = {body: step * case.step / SAFETY for body, step in model.steps.items()}
+    return replace(model, start=(x, v), steps=steps)
+
+
+def _judged(result: SolidResult, out: Path) -> HardCaseResult:
+    """Write the outcome of a run, which then holds no NaN, and judge its balances."""
+    from fem_impact.evidence.hard_cases.judge import balance
+    from fem_impact.files.run_directory import CHECKPOINT
+    from fem_impact.outcome.keys import known
+    from fem_impact.run.solid import reduce
+
+    outcome = reduce(result)
+    (out / CHECKPOINT).unlink(missing_ok=True)
+    outcome.write(out / "outcome.json")
+    balances = balance(result, out / "history.csv")
+    faults = balances.faults()
+    elements = known(outcome.cost.elements_rod) + known(outcome.cost.elements_barrier)
+    stopped = "max_time" not in result.reason and not result.finished
+    verdict = "detected" if stopped else "FAILED" if faults else "closed"
+    reason = result.reason if stopped else "; ".join(faults)
+    return HardCaseResult(verdict, reason, balances.residual, result.steps, elements)
+
+
+def _bounced(bounces: int) -> HardCaseResult:
+    """Judge the bounces of a bar between two walls, by the problem of `fem-impact verify bar`."""
+    from fem_impact.evidence.problems.catalogue import verify
+
+    done = verify("bar", {"bounces": bounces})
+    checks = {check.name: check for check in done.checks}
+    gained = max(0.0, checks["largest energy of all bounces / E_0"].computed - 1.0)
+    reason = "; ".join(check.name for check in done.checks if not check.passed)
+    return HardCaseResult("closed" if done.passed else "FAILED", reason, gained, done.cost.steps)
+
+
+def plan(request: Request, results: object) -> list[HardCaseJob]:
+    """Return the requested cases, all when none is named."""
+    out = request.out.absolute()
+    return [HardCaseJob(CASES[name], out / name) for name in request.ids or CASES]
+
+
+def conclude(request: Request, results: Mapping[str, HardCaseResult | Failure]) -> StudyReport:
+    """Return the report: how many cases ended as they must, the table, and why a case did not close."""
+    done = {name: result for name, result in results.items() if not isinstance(result, Failure)}
+    minutes = sum(result.cpu_s for result in done.values()) / 60
+    rows = tuple(_row(CASES[name], result) for name, result in results.items())
+    return StudyReport(
+        "stress",
+        "Hard cases",
+        [
+            f"{len(done)} of {len(results)} as they must be, {minutes:.1f} minutes of CPU.",
+            *(f"`{name}`: {result.reason}" for name, result in done.items() if result.reason),
+        ],
+        sheets=[
+            Sheet(
+                "hard-cases",
+                "Scenes that are hard on the solver, on coarse meshes. Each must close its balances, be "
+                "refused before the run with its reason, or be detected during it.",
+                Table(HEAD, rows),
+            )
+        ],
+    )
+
+
+def _row(case: HardCase, result: HardCaseResult | Failure) -> tuple[Cell, ...]:
+    if isinstance(result, Failure):
+        return (case.name, case.difficulty, "**FAILED**", None, None, None, None)
+    counts = (result.elements or None, result.steps or None)
+    return (case.name, case.difficulty, result.verdict, result.residual, *counts, result.cpu_s)
