@@ -34,12 +34,12 @@ def added(group: str, ours: Collection[str]) -> dict[str, Any]:
     UsageError
         A name is taken, or what it stands for cannot be imported.
     """
-    found: dict[str, Any] = {}
+    entries: dict[str, Any] = {}
     for entry in _entries(group):
-        if entry.name in ours or entry.name in found:
+        if entry.name in ours or entry.name in entries:
             raise wrong(entry.name, group, "is a name that is already taken.")
-        found[entry.name] = _loaded(entry, group)
-    return found
+        entries[entry.name] = _loaded(entry, group)
+    return entries
 
 
 @cache

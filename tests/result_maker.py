@@ -12,7 +12,8 @@ from fem_impact.files.fields_write import FieldWriter
 from fem_impact.files.waves import Ringing, Waves
 from fem_impact.files.waves import write_waves as write_waves_file
 from fem_impact.outcome.record import Outcome
-from fem_impact.tables.table import COMPARISON, CONTACTS, HISTORY, Table
+from fem_impact.tables.history import CONTACTS, HISTORY
+from fem_impact.tables.table import COMPARISON, Table
 
 LENGTH, RADIUS, ALPHA, SPEED = 0.08, 9.5e-3, np.radians(45.0), 2.1
 MASS, E_0 = 0.1766, 0.1766 * SPEED**2 / 2

@@ -47,7 +47,7 @@ def assess(options: Options) -> int:
 
         found["transfer"] = transfer(case)
     if out is not None:
-        from fem_impact.pages.verdict_page import write_verdict
+        from fem_impact.pages.run_page import write_verdict
 
         found["page"] = str(write_verdict(verdict, found, out))
     if options.json:

@@ -179,9 +179,19 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "yaxis": _axis(panel.y, panel.y_range, panel) | _names("y", panel) | _decades("y", panel),
         "shapes": shapes + [_rectangle(part.start, part.end) for part in panel.intervals],
         "annotations": [
-            *(_beside(mark.at, mark.label, side) for mark, side in sides(panel.marks, low, high)),
-            *(_on(level.at, level.label) for level in panel.levels if level.label),
-            *(_above((part.start + part.end) / 2, part.label) for part in panel.intervals),
+            *(
+                _note(mark.label, x=mark.at, xanchor=side, textangle=-90, y=1, yref="paper", yanchor="top")
+                for mark, side in sides(panel.marks, low, high)
+            ),
+            *(
+                _note(level.label, x=0.99, xref="paper", xanchor="right", y=level.at, yanchor="bottom")
+                for level in panel.levels
+                if level.label
+            ),
+            *(
+                _note(part.label, x=(part.start + part.end) / 2, y=1, yref="paper", yanchor="bottom")
+                for part in panel.intervals
+            ),
         ],
     }
 
@@ -253,17 +263,3 @@ def _rectangle(start: float, end: float) -> dict[str, Any]:
 def _note(text: str, **place: Any) -> dict[str, Any]:
     look = {"font": {"size": 10.5, "color": QUIET}, "bgcolor": "rgba(255,255,255,0.8)"}
     return {"text": markup(text), "showarrow": False, **look, **place}
-
-
-def _beside(at: float, label: str, side: str) -> dict[str, Any]:
-    turned = {"textangle": -90, "y": 1, "yref": "paper", "yanchor": "top"}
-    return _note(label, x=at, xanchor=side, **turned)
-
-
-def _on(at: float, label: str) -> dict[str, Any]:
-    place = {"x": 0.99, "xref": "paper", "xanchor": "right", "y": at, "yanchor": "bottom"}
-    return _note(label, **place)
-
-
-def _above(at: float, label: str) -> dict[str, Any]:
-    return _note(label, x=at, y=1, yref="paper", yanchor="bottom")

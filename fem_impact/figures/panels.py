@@ -72,7 +72,7 @@ class Mark:
 
 
 @dataclass(frozen=True, slots=True)
-class Interval:
+class ShadedInterval:
     """A shaded part of the x axis, named above it."""
 
     start: float
@@ -107,7 +107,7 @@ class Panel:
         Vertical and horizontal lines.
     names, rows : tuple of str
         Names of x = 0, 1, 2 ..., and of y = 0, 1, 2 ... from the top.
-    intervals : tuple of Interval
+    intervals : tuple of ShadedInterval
     shaded : ShadedMap, optional
     x_range, y_range : (float, float), optional
         Ends of the axes; those of the data where None.
@@ -123,7 +123,7 @@ class Panel:
     levels: tuple[Mark, ...] = ()
     names: tuple[str, ...] = ()
     rows: tuple[str, ...] = ()
-    intervals: tuple[Interval, ...] = ()
+    intervals: tuple[ShadedInterval, ...] = ()
     shaded: ShadedMap | None = None
     x_range: tuple[float, float] | None = None
     y_range: tuple[float, float] | None = None
@@ -158,7 +158,13 @@ class Picture:
         """Return the numbers that the figure shows."""
         if self.numbers is not None:
             return self.numbers
-        return Table.of(COLUMNS, [row for panel in self.panels for row in _rows(panel)])
+        rows = [
+            [panel.title, series.label, panel.x, panel.y, _named(x, panel.names), _named(y, panel.rows), band]
+            for panel in self.panels
+            for series in panel.series
+            for x, y, band in zip(*map(numbers, (series.x, series.y, half_widths(series))), strict=True)
+        ]
+        return Table.of(COLUMNS, rows)
 
 
 def half_widths(series: Series) -> np.ndarray:
@@ -171,14 +177,6 @@ def half_widths(series: Series) -> np.ndarray:
 def numbers(values: ArrayLike, digits: int = 17) -> list[float | None]:
     """Return numbers rounded to significant digits, None for NaN."""
     return [None if math.isnan(v) else float(f"{v:.{digits}g}") for v in np.asarray(values, float).tolist()]
-
-
-def _rows(panel: Panel) -> list[list[Cell]]:
-    return [
-        [panel.title, series.label, panel.x, panel.y, _named(x, panel.names), _named(y, panel.rows), band]
-        for series in panel.series
-        for x, y, band in zip(*map(numbers, (series.x, series.y, half_widths(series))), strict=True)
-    ]
 
 
 def _named(value: float | None, names: tuple[str, ...]) -> Cell:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, NamedTuple
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from fem_impact.figures.panels import Interval, Look, Mark, Panel, Picture, Series, ShadedMap
+from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
 from fem_impact.figures.style import percent
 from fem_impact.files.waves import Waves
 from fem_impact.outcome.groups import ContactInterval
@@ -40,7 +41,7 @@ def force_picture(history: Table, contacts: Sequence[ContactInterval]) -> Pictur
         Series("normal (out of the barrier)", time * 1e6, normal / 1e3, "line", "blue"),
         Series("tangential (up the slope)", time * 1e6, tangential / 1e3, "dashed", "vermilion"),
     )
-    intervals = [Interval(c.start * 1e6, c.end * 1e6, f"{c.impulse_n:.3g} N s") for c in contacts]
+    intervals = [ShadedInterval(c.start * 1e6, c.end * 1e6, f"{c.impulse_n:.3g} N s") for c in contacts]
     panel = Panel("", "time, µs", "contact force on the rod, kN", series, intervals=tuple(intervals))
     caption = "Contact force on the whole rod; contact intervals shaded, with their normal impulse."
     numbers = Table.of(FORCE_COLUMNS, zip(time, normal, tangential, strict=True))
@@ -67,14 +68,14 @@ def ledger_picture(history: Table, e_0: float) -> Picture:
     shares = {account: history.numbers(account.column) / e_0 for account in accounts}
     gravity = history.numbers("E_gravity_J") / e_0
     worst = float(np.abs(history.numbers("residual_J")).max(initial=0.0)) / e_0
-    kept = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), MOST)).astype(int))
+    drawn = np.unique(np.linspace(0, max(len(time) - 1, 0), min(len(time), MOST)).astype(int))
     ends = [percent(float(share[-1])) if len(share) else "-" for share in shares.values()]
     areas = [
-        Series(f"{account.label}  {end}", 1e6 * time[kept], share[kept], "area", account.colour)
+        Series(f"{account.label}  {end}", 1e6 * time[drawn], share[drawn], "area", account.colour)
         for (account, share), end in zip(shares.items(), ends, strict=True)
     ]
     total = "E_0 less gravity's potential" if np.any(np.abs(gravity) > 1e-9) else "E_0"
-    whole = Series(total, 1e6 * time[kept], 1.0 - gravity[kept], "dashed", "ink")
+    whole = Series(total, 1e6 * time[drawn], 1.0 - gravity[drawn], "dashed", "ink")
     title = f"largest residual {worst:.1e} of E_0"
     panel = Panel(title, "time, µs", "fraction of E_0", (*areas, whole), y_range=(0.0, 1.05))
     names = [account.column.removesuffix("_J") + "_over_E_0" for account in shares]
@@ -98,18 +99,11 @@ QUIETEST = 0.01
 """Least range of a panel's colours, share of that of the other: less is numerical noise."""
 
 NAMES = ("stretch: mean strain of each section", "bending: strain of the side facing the barrier")
+ALONG = "position along the axis from the tip, mm"
 CAPTION = (
     "Position along the axis against time: the mean strain of each section, and the part by which "
     "the side facing the barrier differs from it. Dashed: where a front from the contact would be."
 )
-
-
-class _Front(NamedTuple):
-    """A wave front: its speed, m/s, its words, and along how many lengths of the rod its line is drawn."""
-
-    speed: float
-    words: str
-    passes: int
 
 
 def waves_picture(waves: Waves) -> Picture:
@@ -120,43 +114,29 @@ def waves_picture(waves: Waves) -> Picture:
     until = waves.end + (AFTER * waves.transit if waves.ringing else 0.0)
     times = np.linspace(0.0, until, ROWS)
     fronts = (
-        _Front(waves.speed, "bar wave √(E/ρ)", 4),
-        _Front(waves.bending_speed, "fastest bending waves", 2),
+        _front(waves, "bar wave √(E/ρ)", waves.speed, 4),
+        _front(waves, "fastest bending waves", waves.bending_speed, 2),
     )
     parts = waves.strain(times)
     tops = [1e6 * float(np.percentile(np.abs(part), 99.8)) for part in parts]
-    panels = tuple(
-        _wave_panel(waves, times, part, max(top, QUIETEST * max(tops), 1e-9), words, front)
-        for part, top, words, front in zip(parts, tops, NAMES, fronts, strict=True)
-    )
-    return Picture("waves", CAPTION, panels, 2, _numbers(times, waves.position, *parts))
-
-
-def _wave_panel(
-    waves: Waves, times: np.ndarray, strain: np.ndarray, limit: float, words: str, front: _Front
-) -> Panel:
-    label = "axial strain, µm/m (red: tension)"
-    shaded = ShadedMap(1e3 * waves.position, 1e6 * times, 1e6 * strain, limit, label)
-    turns = np.arange(front.passes + 1)
-    line = Series(
-        f"{front.words}, {front.speed:.0f} m/s",
-        1e3 * waves.length * (turns % 2),
-        1e6 * waves.length / front.speed * turns,
-        "dashed",
-        "ink",
-    )
     flight = waves.ringing is not None and waves.ringing.start < times[-1]
     levels = (Mark(1e6 * waves.end, "free ringing, by modes"),) if flight else ()
-    return Panel(
-        words,
-        "position along the axis from the tip, mm",
-        "time, µs",
-        (line,),
-        levels=levels,
-        shaded=shaded,
-        x_range=(0.0, 1e3 * waves.length),
-        y_range=(0.0, 1e6 * float(times[-1])),
-    )
+    panels = []
+    for strain, top, title, front in zip(parts, tops, NAMES, fronts, strict=True):
+        limit = max(top, QUIETEST * max(tops), 1e-9)
+        label = "axial strain, µm/m (red: tension)"
+        shaded = ShadedMap(1e3 * waves.position, 1e6 * times, 1e6 * strain, limit, label)
+        panel = Panel(title, ALONG, "time, µs", (front,), levels=levels, shaded=shaded)
+        x_range, y_range = (0.0, 1e3 * waves.length), (0.0, 1e6 * float(times[-1]))
+        panels.append(replace(panel, x_range=x_range, y_range=y_range))
+    return Picture("waves", CAPTION, tuple(panels), 2, _numbers(times, waves.position, *parts))
+
+
+def _front(waves: Waves, words: str, speed: float, passes: int) -> Series:
+    """Return the line of a front that runs at ``speed``, m/s, along ``passes`` lengths of the rod."""
+    turns = np.arange(passes + 1)
+    place, time = 1e3 * waves.length * (turns % 2), 1e6 * waves.length / speed * turns
+    return Series(f"{words}, {speed:.0f} m/s", place, time, "dashed", "ink")
 
 
 def _numbers(times: np.ndarray, position: np.ndarray, stretch: np.ndarray, bending: np.ndarray) -> Table:

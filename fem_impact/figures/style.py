@@ -108,10 +108,10 @@ def write_data(picture: Path, columns: Sequence[str], rows: Iterable[Sequence[Ce
     write_text(picture.with_suffix(".csv"), Table.of(columns, rows).csv())
 
 
-def colour_of(wanted: int | str | None, at: int) -> str:
+def colour_of(colour: int | str | None, at: int) -> str:
     """Return the colour of the series at a place, by its index or name, of its place where that is None."""
-    named = wanted if isinstance(wanted, str) else COLOURS[(at if wanted is None else wanted) % len(COLOURS)]
-    return PALETTE[named]
+    name = colour if isinstance(colour, str) else COLOURS[(at if colour is None else colour) % len(COLOURS)]
+    return PALETTE[name]
 
 
 def sides(marks: Iterable[Mark], low: float, high: float) -> list[tuple[Mark, Literal["left", "right"]]]:

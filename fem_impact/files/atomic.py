@@ -25,14 +25,23 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
         older file at ``path`` stands as it was.
     """
     target = Path(path)
-    draft = _draft(target)
+    make_directory(target.parent)
     try:
-        yield draft
-        _settle(draft, target)
+        handle, name = mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
+        os.close(handle)
+        draft = Path(name)
+        try:
+            yield draft
+            with draft.open("rb") as file:
+                os.fsync(file.fileno())
+            mask = os.umask(0o022)  # can only be read by setting it
+            os.umask(mask)
+            draft.chmod(0o666 & ~mask)
+            os.replace(draft, target)
+        finally:
+            draft.unlink(missing_ok=True)
     except OSError as error:
         raise unwritable(target, error) from error
-    finally:
-        draft.unlink(missing_ok=True)
 
 
 def write_bytes(path: str | Path, data: bytes) -> Path:
@@ -76,25 +85,6 @@ def make_directory(path: str | Path) -> Path:
     except OSError as error:
         raise unwritable(Path(path), error) from error
     return Path(path)
-
-
-def _draft(target: Path) -> Path:
-    make_directory(target.parent)
-    try:
-        handle, name = mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-    except OSError as error:
-        raise unwritable(target, error) from error
-    os.close(handle)
-    return Path(name)
-
-
-def _settle(draft: Path, target: Path) -> None:
-    with draft.open("rb") as file:
-        os.fsync(file.fileno())
-    mask = os.umask(0o022)  # can only be read by setting it
-    os.umask(mask)
-    draft.chmod(0o666 & ~mask)
-    os.replace(draft, target)
 
 
 def unwritable(path: Path, error: OSError) -> OutputPathError:

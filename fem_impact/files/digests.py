@@ -39,8 +39,8 @@ def check_digest(path: Path) -> None:
     if not (listed.is_file() and path.is_file()):
         return
     parts = (line.partition("  ") for line in read_text(listed).splitlines())
-    stated = {name: value for value, _, name in parts}
-    if stated.get(path.name, "") not in ("", _digest(path)):
+    digests = {name: value for value, _, name in parts}
+    if digests.get(path.name, "") not in ("", _digest(path)):
         raise ResultError(
             f"{path}: is not the file that the run wrote, by {DIGESTS}: it was cut off or changed, or is of "
             "another run. Restore a copy, or run the scene again."
@@ -82,12 +82,12 @@ def read_signed(text: str, source: str) -> dict[str, Any]:
         It is not JSON, not one record, a key stands twice, or the checksum is missing or wrong.
     """
     values = _parsed(text, source)
-    stated = values.pop(CHECKSUM, None)
-    if stated is None:
+    written = values.pop(CHECKSUM, None)
+    if written is None:
         raise ResultError(f'{source}: key "{CHECKSUM}" is missing; the file is not complete.')
-    if stated != checksum(values):
+    if written != checksum(values):
         raise ResultError(
-            f'{source}: key "{CHECKSUM}" = {str(stated)[:16]}... does not match the contents; '
+            f'{source}: key "{CHECKSUM}" = {str(written)[:16]}... does not match the contents; '
             "the file was damaged or edited. Compute it again or restore a copy."
         )
     return values

@@ -166,9 +166,9 @@ def _rows(dataset: h5py.Dataset, start: int = 0, stop: int | None = None) -> np.
         It states more bytes than the whole file has, or holds what are no numbers.
     """
     first, last, _ = slice(start, stop).indices(dataset.shape[0])
-    stated = (last - first) * math.prod(dataset.shape[1:]) * dataset.dtype.itemsize
-    if stated > dataset.file.id.get_filesize():
-        raise ValueError(f"{dataset.name} states {stated} bytes, more than the file has")
+    size = (last - first) * math.prod(dataset.shape[1:]) * dataset.dtype.itemsize
+    if size > dataset.file.id.get_filesize():
+        raise ValueError(f"{dataset.name} states {size} bytes, more than the file has")
     rows: np.ndarray = dataset[first:last]
     check_finite(dataset.name, rows)
     return rows

@@ -126,7 +126,7 @@ def _put_rows(group: h5py.Group, name: str, at: int, values: np.ndarray) -> None
     rows[at * len(values) :] = values
 
 
-_WAITS = (0.01, 0.03, 0.1, 0.2)  # s before each further try while a reader has the file open
+_WAITS = (0.0, 0.01, 0.03, 0.1, 0.2)  # s before each try while a reader has the file open
 
 
 class FieldWriter:
@@ -219,16 +219,19 @@ class FieldWriter:
             A field has another length or other fields are given than in the first frame.
         """
         cells = dict(cell_data or {})
-        self._check_fields(point_data, cells)
-        trouble = self._try(time, point_data, cells)
+        check_rows("point", self._counts[0], point_data)
+        check_rows("cell", self._counts[1], cells)
+        shapes = {name: np.shape(values) for name, values in (*point_data.items(), *cells.items())}
+        self._shapes = self._shapes or shapes
+        if shapes != self._shapes:
+            raise ValueError(f"the frame holds {shapes}, the first one {self._shapes}.")
         for wait in _WAITS:
-            if not trouble:
-                break
             clock.sleep(wait)
             trouble = self._try(time, point_data, cells)
-        if trouble:
-            self._warnings.append(f"{self.path.name}: the frame at {time:.6g} s was dropped ({trouble}).")
-        return not trouble
+            if not trouble:
+                return True
+        self._warnings.append(f"{self.path.name}: the frame at {time:.6g} s was dropped ({trouble}).")
+        return False
 
     def _try(self, time: float, points: Mapping[str, np.ndarray], cells: Mapping[str, np.ndarray]) -> str:
         import h5py
@@ -254,11 +257,3 @@ class FieldWriter:
         with atomic_path(self.path) as draft:
             shutil.copyfile(self.path, draft)
             yield draft
-
-    def _check_fields(self, points: Mapping[str, np.ndarray], cells: Mapping[str, np.ndarray]) -> None:
-        check_rows("point", self._counts[0], points)
-        check_rows("cell", self._counts[1], cells)
-        shapes = {name: np.shape(values) for name, values in (*points.items(), *cells.items())}
-        self._shapes = self._shapes or shapes
-        if shapes != self._shapes:
-            raise ValueError(f"the frame holds {shapes}, the first one {self._shapes}.")

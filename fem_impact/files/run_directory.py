@@ -26,12 +26,14 @@ def set_aside(out: Path) -> Path | None:
 
     What was made from their files goes with them.
     """
-    names = COMPUTED if not (out / "study.json").exists() else (*COMPUTED, *PUBLISHED)
-    computed = {path for name in names for path in out.glob(name)}
+    patterns = COMPUTED if not (out / "study.json").exists() else (*COMPUTED, *PUBLISHED)
+    computed = {path for name in patterns for path in out.glob(name)}
     if not computed:
         return None
-    place = _free(out, max(path.stat().st_mtime for path in computed))
-    make_directory(place)
+    written = datetime.fromtimestamp(max(path.stat().st_mtime for path in computed), UTC)
+    stem = f"earlier-{written:%Y-%m-%dT%H-%M-%SZ}"
+    names = (stem, *(f"{stem}-{number}" for number in range(2, 1000)))
+    place = make_directory(next(out / name for name in names if not (out / name).exists()))
     for path in computed | {path for name in DERIVED for path in out.glob(name)}:
         path.rename(place / path.name)
     return place
@@ -53,13 +55,6 @@ def remove_scene_alone(out: Path) -> None:
 def earlier(out: Path) -> list[Path]:
     """Return the directories of older runs, the oldest first."""
     return sorted(out.glob("earlier-*"))
-
-
-def _free(out: Path, written: float) -> Path:
-    """Return a new name by the time, s since 1970, when the run was last written."""
-    stem = f"earlier-{datetime.fromtimestamp(written, UTC):%Y-%m-%dT%H-%M-%SZ}"
-    names = (stem, *(f"{stem}-{number}" for number in range(2, 1000)))
-    return next(out / name for name in names if not (out / name).exists())
 
 
 _SIGNED = CHECKSUM.encode()
@@ -92,7 +87,14 @@ def stranger(out: Path) -> Path | None:
     entries = sorted(out.iterdir(), key=lambda path: (path.is_dir(), path))
     study = any((out / name).exists() for name in _STUDIES)
     known = (*_KNOWN, *(_OF_STUDIES if study else ()))
-    foreign = next((path for path in entries if not _is_known(path, known)), None)
+    foreign = next(
+        (
+            path
+            for path in entries
+            if not any(map(path.match, known)) and not (path.is_dir() and stranger(path) is None)
+        ),
+        None,
+    )
     if foreign or any(map(_shows_us, entries)):
         return foreign
     return next(iter(entries), None)
@@ -113,12 +115,6 @@ def refuse_other_scene(path: Path, text: str) -> None:
         )
 
 
-def _is_known(path: Path, names: tuple[str, ...]) -> bool:
-    if any(path.match(name) for name in names):
-        return True
-    return path.is_dir() and stranger(path) is None
-
-
 def _shows_us(path: Path) -> bool:
     """Return whether a file bears the program's mark, or a directory holds one that does."""
     if path.is_dir():
@@ -126,10 +122,6 @@ def _shows_us(path: Path) -> bool:
     mark = _MARKS.get(path.name)
     if mark is None:
         return False
-    data = path.read_bytes() if path.suffix == ".json" else _head(path)
-    return mark in data or (path.name == "history.csv" and not data)
-
-
-def _head(path: Path) -> bytes:
     with path.open("rb") as file:
-        return file.read(32)
+        data = file.read(-1 if path.suffix == ".json" else 32)
+    return mark in data or (path.name == "history.csv" and not data)

@@ -109,22 +109,16 @@ class Waves:
 
     def strain(self, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return stretch and bending ``(times, m)``: between the samples linear, after them by the modes."""
-        within = [_rows_at(self.times, rows, times) for rows in (self.stretch, self.bending)]
+        at = np.clip(np.searchsorted(self.times, times) - 1, 0, max(len(self.times) - 2, 0))
+        following = np.minimum(at + 1, len(self.times) - 1)
+        span = np.maximum(self.times[following] - self.times[at], 1e-30)
+        share = np.clip((times - self.times[at]) / span, 0.0, 1.0)[:, None]
+        within = [(1 - share) * rows[at] + share * rows[following] for rows in (self.stretch, self.bending)]
         after = times > self.end
         if self.ringing is not None and after.any():
             for rows, free in zip(within, self.ringing.strain(times[after]), strict=True):
                 rows[after] = free
         return within[0], within[1]
-
-
-def _rows_at(times: np.ndarray, rows: np.ndarray, wanted: np.ndarray) -> np.ndarray:
-    """Return rows interpolated at the wanted times, the first and last beyond."""
-    at = np.clip(np.searchsorted(times, wanted) - 1, 0, max(len(times) - 2, 0))
-    following = np.minimum(at + 1, len(times) - 1)
-    span = np.maximum(times[following] - times[at], 1e-30)
-    share = np.clip((wanted - times[at]) / span, 0.0, 1.0)[:, None]
-    between: np.ndarray = (1 - share) * rows[at] + share * rows[following]
-    return between
 
 
 def write_waves(path: Path, waves: Waves) -> None:
@@ -182,10 +176,10 @@ def _taken(group: h5py.Group) -> dict[str, Any]:
 
 def _check(waves: Waves) -> None:
     check_times(waves.times, len(waves.times))
-    wanted = (len(waves.times), len(waves.position))
+    shape = (len(waves.times), len(waves.position))
     for name in ("stretch", "bending"):
-        if getattr(waves, name).shape != wanted or not wanted[0]:
-            raise ValueError(f"{name} has shape {getattr(waves, name).shape}, not {wanted}")
+        if getattr(waves, name).shape != shape or not shape[0]:
+            raise ValueError(f"{name} has shape {getattr(waves, name).shape}, not {shape}")
     ringing = waves.ringing
     if ringing is not None and ringing.shape.shape != (len(ringing.omega), len(ringing.rest), 3):
         raise ValueError(f"the mode shapes have shape {ringing.shape.shape}")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import io
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from textwrap import shorten
 from typing import TYPE_CHECKING, Any
@@ -17,7 +17,6 @@ from fem_impact.files.waves import Waves
 from fem_impact.films.motion import FIELDS, FilmData
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from PIL.Image import Image
 
@@ -153,14 +152,14 @@ class FilmBackground:
     base : Image
         The still picture that the views are pasted into.
     strip : Strip
-    profile : Profile, optional
+    profile : StrainProfile, optional
         The strain along the axis, in the place of the close-up.
     """
 
     layout: FrameLayout
     base: Image
     strip: Strip
-    profile: Profile | None
+    profile: StrainProfile | None
 
     @classmethod
     def make(
@@ -180,7 +179,7 @@ class FilmBackground:
         colour_bar(drawn, layout, layout.rod, motion.field, motion.far)
         if waves is None:
             colour_bar(drawn, layout, layout.close, motion.field, motion.near)
-        profile = None if waves is None else Profile.draw(drawn, layout, layout.beside, waves, times)
+        profile = None if waves is None else StrainProfile.draw(drawn, layout, layout.beside, waves, times)
         strip = Strip.draw(drawn, layout, layout.strip, curve, limits_of([curve], times))
         return cls(layout, picture(drawn), strip, profile)
 
@@ -309,7 +308,10 @@ class Strip:
         axes.tick_params(labelsize=8, color=QUIET)
         axes.spines[["top", "right"]].set_visible(False)
         axes.grid(color="#e2e5e9", linewidth=0.7)
-        return cls(curve, limits, _track(axes, frame.height, limits))
+        corners = axes.transData.transform([(first * 1e6, 0.0), (last * 1e6, largest / 1e3)])
+        (left, zero), (right, top) = corners
+        track = (float(left), float(right), frame.height - float(zero), frame.height - float(top))
+        return cls(curve, limits, track)
 
     def mark(self, pen: Any, time: float) -> None:
         """Draw the marker at a time, s; none where the curve has ended."""
@@ -322,24 +324,17 @@ class Strip:
             pen.ellipse([x - 6, y - 6, x + 6, y + 6], fill=PALETTE["vermilion"], outline="white", width=2)
 
 
-def limits_of(curves: list[Curve], times: np.ndarray) -> Limits:
+def limits_of(curves: Sequence[Curve], times: np.ndarray) -> Limits:
     """Return limits that contain several curves over the times of a film."""
     first, last = float(times[0]), float(max(times[-1], times[0] + 1e-9))
     return first, last, max(1.0, *(float(force.max(initial=0.0)) for _, force in curves))
-
-
-def _track(axes: Axes, height: int, limits: Limits) -> tuple[float, float, float, float]:
-    first, last, largest = limits
-    corners = axes.transData.transform([(first * 1e6, 0.0), (last * 1e6, largest / 1e3)])
-    (left, zero), (right, top) = corners
-    return float(left), float(right), height - float(zero), height - float(top)
 
 
 CURVES = (("stretch: mean of the section", "blue"), ("bending: side facing the barrier", "vermilion"))
 
 
 @dataclass(frozen=True, slots=True)
-class Profile:
+class StrainProfile:
     """Axes drawn once into the still picture, and the curves of each frame.
 
     Parameters
@@ -356,7 +351,9 @@ class Profile:
     slope: tuple[float, float]
 
     @classmethod
-    def draw(cls, drawn: Figure, frame: Frame, place: Rectangle, waves: Waves, times: np.ndarray) -> Profile:
+    def draw(
+        cls, drawn: Figure, frame: Frame, place: Rectangle, waves: Waves, times: np.ndarray
+    ) -> StrainProfile:
         """Draw the axes into a figure that is as large as the frame, high enough for all times."""
         limit = 1.1e6 * max(float(np.abs(part).max()) for part in waves.strain(times))
         axes = drawn.add_axes(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING
@@ -13,25 +14,11 @@ import numpy as np
 
 from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.style import INK, QUIET
-from fem_impact.films.board import (
-    Abreast,
-    Curve,
-    FrameLayout,
-    Rectangle,
-    Strip,
-    below,
-    blank,
-    clock,
-    colour_bar,
-    heading,
-    limits_of,
-    picture,
-    write,
-)
+from fem_impact.films import board
 from fem_impact.films.encode import best_suffix, encode, require_gl
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
-from fem_impact.films.views import RodPicture, needed_height
+from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
 from fem_impact.outcome.record import Outcome
 from fem_impact.tables.history import read_history
 
@@ -92,15 +79,15 @@ def render(
     MissingLibraryError, OutputPathError
         Off-screen drawing or the encoder is missing; the film cannot be written.
     """
-    folder, layout = Path(result_dir), FrameLayout(*size)
+    folder, layout = Path(result_dir), board.FrameLayout(*size)
     movement, left_out = read_movement(folder)
     times = film_times(movement, field, span)
     motion = prepare(movement, field, times)
     require_libraries()
     path, notes = target(folder, out)
     title, curve, missing = context(folder)
-    made = encode(_frames(motion, layout, times, title, curve), path, FPS)
-    return RenderResult(made, (*notes, *left_out, *missing), len(times))
+    film = encode(_frames(motion, layout, times, title, curve), path, FPS)
+    return RenderResult(film, (*notes, *left_out, *missing), len(times))
 
 
 def require_libraries() -> None:
@@ -139,18 +126,15 @@ def context(folder: Path) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]
 
 def _frames(
     motion: FilmData,
-    layout: FrameLayout,
+    layout: board.FrameLayout,
     times: np.ndarray,
     title: str,
     curve: tuple[np.ndarray, np.ndarray],
 ) -> Iterator[np.ndarray]:
-    from fem_impact.films.board import FilmBackground
-    from fem_impact.films.views import CloseView, Overlay, RodPicture, needed_height
-
-    board = FilmBackground.make(layout, motion, title, curve, times)
+    background = board.FilmBackground.make(layout, motion, title, curve, times)
     size = layout.rod.size
     whole = RodPicture(motion, size, needed_height(motion, size))
-    near = None if board.profile else CloseView(motion, layout.close.size)
+    near = None if background.profile else CloseView(motion, layout.close.size)
     marks = Overlay.of(layout.rod, whole, motion)
     try:
         for at, time in enumerate(times.tolist()):
@@ -158,7 +142,7 @@ def _frames(
             colours = motion.colours(time)
             close = near.draw(true, colours) if near else None
             over = partial(marks.draw, true=true, time=time)
-            yield board.compose(whole.draw(shown, colours), close, time, over, slow_motion(times, at))
+            yield background.compose(whole.draw(shown, colours), close, time, over, slow_motion(times, at))
     finally:
         for view in (whole, near):
             if view is not None:
@@ -200,13 +184,12 @@ def render_side_by_side(
     motions = _alike([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
     require_libraries()
     path, notes = target(folders[0], out, "film-side-by-side")
-    contexts = [context(folder) for folder in folders]
+    titles, curves, missing = zip(*map(context, folders), strict=True)
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
-    board = PairBackground.make(Abreast(*size, len(folders)), motions, [c[:2] for c in contexts], times)
-    made = encode(_abreast(board, motions, times), path, FPS)
-    groups = [*(left_out for _, left_out in read), *(missing for *_, missing in contexts)]
-    left_out = [sentence for sentences in groups for sentence in sentences]
-    return RenderResult(made, (*notes, *left_out), len(times))
+    background = PairBackground.make(board.Abreast(*size, len(folders)), motions, titles, curves, times)
+    film = encode(_abreast(background, motions, times), path, FPS)
+    left_out = [left_out for _, left_out in read]
+    return RenderResult(film, (*notes, *chain(*left_out, *missing)), len(times))
 
 
 def _alike(motions: Sequence[FilmData]) -> list[FilmData]:
@@ -230,33 +213,34 @@ class PairBackground:
         End of each run, s.
     """
 
-    layout: Abreast
+    layout: board.Abreast
     base: Image
-    strips: tuple[Strip, ...]
+    strips: tuple[board.Strip, ...]
     ends: tuple[float, ...]
 
     @classmethod
     def make(
         cls,
-        layout: Abreast,
+        layout: board.Abreast,
         motions: Sequence[FilmData],
-        runs: Sequence[tuple[str, Curve]],
+        titles: Sequence[str],
+        curves: Sequence[board.Curve],
         times: np.ndarray,
     ) -> PairBackground:
-        """Draw the still parts once; ``runs`` holds title and force curve of each run."""
-        drawn = blank(layout)
-        heading(drawn, layout, TITLE)
-        limits = limits_of([curve for _, curve in runs], times)
+        """Draw the still parts once, with title and force curve of each run."""
+        drawn = board.blank(layout)
+        board.heading(drawn, layout, TITLE)
+        limits = board.limits_of(curves, times)
         strips = []
-        for (title, curve), view, place in zip(runs, layout.views, layout.strips, strict=True):
+        for title, curve, view, place in zip(titles, curves, layout.views, layout.strips, strict=True):
             _title(drawn, layout, view, title)
-            strips.append(Strip.draw(drawn, layout, place, curve, limits))
+            strips.append(board.Strip.draw(drawn, layout, place, curve, limits))
         middle = layout.views[len(layout.views) // 2]
-        colour_bar(drawn, layout, middle, "strain", motions[0].far)
+        board.colour_bar(drawn, layout, middle, "strain", motions[0].far)
         scale = f"one scale; deformation × {motions[0].peak:g},\nfading to × 1 at the contact"
-        below(drawn, layout, layout.views[0], scale, QUIET)
+        board.below(drawn, layout, layout.views[0], scale, QUIET)
         ends = tuple(motion.movement.end for motion in motions)
-        return cls(layout, picture(drawn), tuple(strips), ends)
+        return cls(layout, board.picture(drawn), tuple(strips), ends)
 
     def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
         """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s."""
@@ -270,19 +254,21 @@ class PairBackground:
             strip.mark(pen, time)
             if time > end:
                 place = (view.left + view.width - 8, view.top + 4)
-                write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
-        clock(pen, self.layout, time)
+                board.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
+        board.clock(pen, self.layout, time)
         return np.asarray(frame)
 
 
-def _title(drawn: Figure, layout: Abreast, view: Rectangle, title: str) -> None:
+def _title(drawn: Figure, layout: board.Abreast, view: board.Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
     lines = fill(title, view.width // 8, max_lines=2, placeholder=" …")
     drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
-def _abreast(board: PairBackground, motions: Sequence[FilmData], times: np.ndarray) -> Iterator[np.ndarray]:
-    sizes = [view.size for view in board.layout.views]
+def _abreast(
+    background: PairBackground, motions: Sequence[FilmData], times: np.ndarray
+) -> Iterator[np.ndarray]:
+    sizes = [view.size for view in background.layout.views]
     height = max(needed_height(motion, size) for motion, size in zip(motions, sizes, strict=True))
     views = [RodPicture(motion, size, height) for motion, size in zip(motions, sizes, strict=True)]
     try:
@@ -292,7 +278,7 @@ def _abreast(board: PairBackground, motions: Sequence[FilmData], times: np.ndarr
                 view.draw(motion.positions(at)[1], motion.colours(at))
                 for view, motion, at in zip(views, motions, shown, strict=True)
             ]
-            yield board.compose(drawn, float(time))
+            yield background.compose(drawn, float(time))
     finally:
         for view in views:
             view.close()

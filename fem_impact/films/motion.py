@@ -10,7 +10,6 @@ import numpy as np
 
 from fem_impact.errors import ResultError
 from fem_impact.files.fields import FieldFile
-from fem_impact.files.waves import Waves
 from fem_impact.films.movement import Movement
 
 _CORNERS = np.array(
@@ -219,7 +218,10 @@ def prepare(movement: Movement, field: str, times: Sequence[float] | np.ndarray)
     peak = _peak(movement, looked, rod, weights, distance, span)
     near, far = _ranges(movement, field, looked, distance, rod)
     contact = np.array([lowest[0], 0.0, min(lowest[2], 0.0)])
-    return FilmData(movement, field, rod, weights, _fade(distance), peak, contact, span, near, far)
+    # no magnification within half a diameter of the contact, all of it beyond two diameters
+    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
+    fade = share**2 * (3.0 - 2.0 * share)
+    return FilmData(movement, field, rod, weights, fade, peak, contact, span, near, far)
 
 
 def _rod_cells(fields: FieldFile) -> np.ndarray:
@@ -232,13 +234,6 @@ def _rod_cells(fields: FieldFile) -> np.ndarray:
         problem = f"cell {int(np.argmin(volumes))} of the rod has the volume {volumes.min():.3g} m3"
         raise ResultError(f"{fields.path}: {problem}; the file is damaged.")
     return cells
-
-
-def _fade(distance: np.ndarray) -> np.ndarray:
-    # no magnification within half a diameter of the contact, all of it beyond two diameters
-    share = np.clip((distance - 0.5) / 1.5, 0.0, 1.0)
-    fade: np.ndarray = share**2 * (3.0 - 2.0 * share)
-    return fade
 
 
 def _peak(
@@ -271,24 +266,24 @@ def _colours(movement: Movement, field: str, time: float) -> np.ndarray:
 
 
 def _strain(movement: Movement, time: float) -> np.ndarray:
-    """Return the strain along the rod's axis ``(m,)``, zero in the barrier."""
+    """Return the strain along the rod's axis ``(m,)``, zero in the barrier.
+
+    That of the cylinder's cells is stretch and bending of waves.h5, where the run stored it.
+    """
     fields = movement.fields
     rod = fields.static["body"] == 0
     cells, strain = fields.cells[rod], np.zeros(len(rod))
     axis = axis_of(fields.points[np.unique(cells)])
     strain[rod] = stretch(fields.points, movement.points(time), cells, axis) - 1.0
-    if movement.waves is not None:
-        _put_waves(strain, fields.points[fields.cells].mean(axis=1), rod, movement.waves, time)
+    waves = movement.waves
+    if waves is not None:
+        arm = fields.points[fields.cells].mean(axis=1) - waves.origin
+        along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
+        body = rod & (along > waves.position[0])
+        rows = waves.strain(np.array([time]))
+        mean, bent = (np.interp(along[body], waves.position, row[0]) for row in rows)
+        strain[body] = mean + bent * across[body] / waves.radius
     return strain
-
-
-def _put_waves(strain: np.ndarray, centres: np.ndarray, rod: np.ndarray, waves: Waves, time: float) -> None:
-    """Set the strain of the cylinder's cells, at ``centres``, by stretch and bending along the axis."""
-    arm = centres - waves.origin
-    along, across = arm @ waves.axis, arm @ np.array([waves.axis[2], 0.0, -waves.axis[0]])
-    body = rod & (along > waves.position[0])
-    mean, bent = (np.interp(along[body], waves.position, rows[0]) for rows in waves.strain(np.array([time])))
-    strain[body] = mean + bent * across[body] / waves.radius
 
 
 def _ranges(

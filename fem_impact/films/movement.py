@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -66,24 +67,22 @@ class Movement:
 
     def point_data(self, name: str, time: float) -> np.ndarray:
         """Return stored point data at a time, the last ones after the last frame."""
-        before, after, share = self._between(time)
-        first = self.fields.point_data(name, before).astype(float)
-        return np.asarray((1 - share) * first + share * self.fields.point_data(name, after))
+        return self._between_frames(self.fields.point_data, name, time)
 
     def cell_data(self, name: str, time: float) -> np.ndarray:
         """Return stored cell data at a time, the last ones after the last frame."""
-        before, after, share = self._between(time)
-        first = self.fields.cell_data(name, before).astype(float)
-        return np.asarray((1 - share) * first + share * self.fields.cell_data(name, after))
+        return self._between_frames(self.fields.cell_data, name, time)
 
-    def _between(self, time: float) -> tuple[int, int, float]:
-        """Return the frames around a time and the share of the later one."""
+    def _between_frames(self, read: Callable[[str, int], np.ndarray], name: str, time: float) -> np.ndarray:
         times = self.fields.times
         after = int(np.clip(np.searchsorted(times, time), 0, len(times) - 1))
-        before = max(after - 1, 0)
+        before, share = max(after - 1, 0), 0.0
         if times[after] <= time or before == after:
-            return after, after, 0.0
-        return before, after, float(max(0.0, (time - times[before]) / (times[after] - times[before])))
+            before = after
+        else:
+            share = float(max(0.0, (time - times[before]) / (times[after] - times[before])))
+        first = read(name, before).astype(float)
+        return np.asarray((1 - share) * first + share * read(name, after))
 
 
 def read_movement(folder: Path) -> tuple[Movement, list[str]]:
@@ -151,8 +150,12 @@ def film_times(movement: Movement, field: str, span: Span) -> np.ndarray:
     if span.first is not None or span.last is not None or span.speed is not None:
         return _even(span, end)
     if movement.waves is None:
-        return _stored(movement, span.frames)
-    return _parts(movement, end, span.frames or FRAMES)
+        stored = movement.fields.times
+        count = len(stored) if span.frames is None else min(span.frames, len(stored))
+        return np.asarray(stored[np.unique(np.linspace(0, len(stored) - 1, count).round()).astype(int)])
+    parts = (PASSES * movement.waves.transit, movement.waves.end)
+    marks = sorted({0.0, *(mark for mark in parts if mark < end * (1 - 1e-9)), end})
+    return np.interp(np.linspace(0, len(marks) - 1, span.frames or FRAMES), np.arange(len(marks)), marks)
 
 
 def _even(span: Span, end: float) -> np.ndarray:
@@ -166,19 +169,6 @@ def _even(span: Span, end: float) -> np.ndarray:
     if span.speed is None:
         return np.linspace(first, last, span.frames or FRAMES)
     return np.linspace(first, last, max(2, round((last - first) / span.speed * FPS)))
-
-
-def _stored(movement: Movement, frames: int | None) -> np.ndarray:
-    stored = movement.fields.times
-    count = len(stored) if frames is None else min(frames, len(stored))
-    return np.asarray(stored[np.unique(np.linspace(0, len(stored) - 1, count).round()).astype(int)])
-
-
-def _parts(movement: Movement, end: float, frames: int) -> np.ndarray:
-    assert movement.waves is not None
-    early, run = PASSES * movement.waves.transit, movement.waves.end
-    marks = sorted({0.0, *(mark for mark in (early, run) if mark < end * (1 - 1e-9)), end})
-    return np.interp(np.linspace(0, len(marks) - 1, frames), np.arange(len(marks)), marks)
 
 
 def slow_motion(times: np.ndarray, at: int) -> float:

@@ -73,7 +73,12 @@ class RodPicture(_View):
             self._put(mesh, motion.fields.points, np.zeros(len(motion.fields.points)))
             self.plotter.add_mesh(mesh, scalars="colour", culling=hidden, **self.look)
         _add_plane(self.plotter, motion)
-        self._aim(height, size[1])
+        low, high = _corners(motion)
+        self.middle = np.array([(low[0] + high[0]) / 2, 0.0, low[2] - MARGIN * motion.span + height / 2])
+        side, up = np.radians(-20.0), np.radians(14.0)
+        self.towards = np.array([np.sin(side) * np.cos(up), -np.cos(side) * np.cos(up), np.sin(up)])
+        self.pixels = size[1] / height  # a metre across the line of sight
+        _look_at(self.plotter, self.middle, self.towards, height)
 
     def draw(self, shown: np.ndarray, colours: np.ndarray) -> np.ndarray:
         """Return the picture ``(h, w, 3) uint8`` of positions ``(n, 3) m`` and colours."""
@@ -89,14 +94,6 @@ class RodPicture(_View):
         right = np.cross(-self.towards, [0.0, 0.0, 1.0])
         right /= np.linalg.norm(right)
         return np.array([right @ vector, np.cross(self.towards, right) @ vector * -1.0])
-
-    def _aim(self, height: float, pixels: int) -> None:
-        low, high = _corners(self.motion)
-        self.middle = np.array([(low[0] + high[0]) / 2, 0.0, low[2] - MARGIN * self.motion.span + height / 2])
-        side, up = np.radians(-20.0), np.radians(14.0)
-        self.towards = np.array([np.sin(side) * np.cos(up), -np.cos(side) * np.cos(up), np.sin(up)])
-        self.pixels = pixels / height  # a metre across the line of sight
-        _look_at(self.plotter, self.middle, self.towards, height)
 
 
 class CloseView(_View):
@@ -191,16 +188,12 @@ class Overlay:
         self._axes(pen)
         velocity = self.motion.movement.velocity(time, self.motion.weights)
         centre = self.motion.weights @ true / self.motion.weights.sum() * [1.0, 0.0, 1.0]
-        tail = self._pixel(centre)
+        middle = np.array([self.place.left + self.place.width / 2, self.place.top + self.place.height / 2])
+        tail = middle + self.view.turned(centre - self.view.middle) * self.view.pixels
         head = tail + self.view.turned(velocity) * ARROW / self.fastest
         arrow(pen, tail, head, PALETTE["vermilion"], 3)
         beside = np.array([10.0 + 0.7 * self.motion.span * self.view.pixels, -8.0])
         write_at(pen, tail + beside, f"{np.linalg.norm(velocity):.2f} m/s", PALETTE["vermilion"])
-
-    def _pixel(self, point: np.ndarray) -> np.ndarray:
-        middle = np.array([self.place.left + self.place.width / 2, self.place.top + self.place.height / 2])
-        pixel: np.ndarray = middle + self.view.turned(point - self.view.middle) * self.view.pixels
-        return pixel
 
     def _scale(self, pen: Any) -> None:
         """Draw a length of 1, 2 or 5 times a power of ten, at most a third of the view."""

@@ -76,21 +76,17 @@ class LocalProcesses(Executor):
             if self._closed:
                 break
             try:
-                return self._worker().call(fn, args, kwargs)
+                if getattr(self._own, "worker", None) is None:
+                    self._own.worker = _Worker()
+                    self._workers.add(self._own.worker)
+                worker: _Worker = self._own.worker
+                return worker.call(fn, args, kwargs)
             except _DiedError:
                 self._drop()
             finally:
                 if not self._reuse:
                     self._drop()
         raise BrokenExecutor("the process that computed it was killed")
-
-    def _worker(self) -> _Worker:
-        """Return the process of this thread, a new one if it has none."""
-        if getattr(self._own, "worker", None) is None:
-            self._own.worker = _Worker()
-            self._workers.add(self._own.worker)
-        worker: _Worker = self._own.worker
-        return worker
 
     def _drop(self) -> None:
         """End the process of this thread, if it has one."""

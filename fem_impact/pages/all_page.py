@@ -16,23 +16,10 @@ from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.atomic import make_directory, read_text, write_text
 from fem_impact.outcome.keys import Unknown, known
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.pages.page import (
-    Markup,
-    bullets,
-    data_link,
-    details,
-    download,
-    figure,
-    join,
-    page,
-    paragraph,
-    place,
-    section,
-    sources,
-    table,
-)
+from fem_impact.pages import html
+from fem_impact.pages.html import Markup
 from fem_impact.pages.sections import comparison_part
-from fem_impact.pages.study_page import Study, figure_id, findings_section, partition_part, read_study
+from fem_impact.pages.study_page import StudyRecord, figure_id, findings_section, partition_part, read_study
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table, read_csv
 from fem_impact.tables.text import markup, plain
@@ -44,7 +31,7 @@ MARKED = {"V_n": "m/s", "V_t": "m/s", "Omega": "rad/s"}
 
 
 @dataclass(frozen=True, slots=True)
-class Verdict:
+class PaperVerdict:
     """Verdict on a conclusion of the paper: name of the figure, sentence, and the figure's panel."""
 
     name: str
@@ -52,7 +39,7 @@ class Verdict:
     panel: Panel
 
 
-def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
+def verdicts(rows: Sequence[Outcome]) -> list[PaperVerdict]:
     """Return the verdicts on closure, e_m, mu_c as a bound and E_lt as heat, from outcomes of the sets.
 
     They are about the paper's own sets: scenes of other tests are left out.
@@ -62,25 +49,27 @@ def verdicts(rows: Sequence[Outcome]) -> list[Verdict]:
     return [part(rows) for part in (_closure, _moment, _critical, _heat)] if rows else []
 
 
-def verdict_section(judged: Sequence[Verdict], figures: Path) -> Markup:
+def verdict_section(judged: Sequence[PaperVerdict], figures: Path) -> Markup:
     """Return the verdicts with their figures, drawn into a folder."""
     title = "What the paper concluded, what stands and what does not"
-    return section(title, *(_shown(verdict, figures) for verdict in judged))
+    shown = []
+    for verdict in judged:
+        drawn = html.figure(Picture(verdict.name, verdict.panel.title, (verdict.panel,), 1), figures)
+        data = html.download(figures / f"{verdict.name}.csv", "its data")
+        shown += [html.paragraph(verdict.sentence), html.place(verdict.name, drawn), data]
+    return html.section(title, *shown)
 
 
-def _shown(verdict: Verdict, figures: Path) -> Markup:
-    name = verdict.name
-    drawn = figure(Picture(name, verdict.panel.title, (verdict.panel,), 1), figures)
-    data = download(figures / f"{name}.csv", "its data")
-    return join([paragraph(verdict.sentence), place(name, drawn), data])
-
-
-def _closure(rows: Sequence[Outcome]) -> Verdict:
+def _closure(rows: Sequence[Outcome]) -> PaperVerdict:
     lost = [100 * known(row.energy.vibration) for row in rows]
     paper = [row.restitution.paper for row in rows]
-    kept = [known(row.energy.rigid) for row in rows]
-    gap = [100 * (known(p.E_ln) + known(p.E_lt) + k - 1) for p, k in zip(paper, kept, strict=True)]
-    identity = [100 * _spin(row) * (1 + 1 / known(row.restitution.paper.e_m)) for row in rows]
+    rigid = [known(row.energy.rigid) for row in rows]
+    gap = [100 * (known(p.E_ln) + known(p.E_lt) + k - 1) for p, k in zip(paper, rigid, strict=True)]
+    spin = [
+        0.5 * row.motion.mass * row.motion.k_squared * known(row.motion.Omega) ** 2 / row.energy.E_0
+        for row in rows
+    ]
+    identity = [100 * s * (1 + 1 / known(p.e_m)) for s, p in zip(spin, paper, strict=True)]
     sentence = (
         "Does not stand: that losses and retained energy add up to E_0 was read as a sign that they hold all "
         "losses. The sum differs from E_0 by (I Omega^2/2)(1 + 1/e_m) whatever the rod lost: over the "
@@ -94,7 +83,7 @@ def _closure(rows: Sequence[Outcome]) -> Verdict:
         Series("vibration", range(len(rows)), lost, "points"),
     )
     panel = Panel("The paper's energy terms, less E_0", "set", "% of E_0", series, names=_names(rows))
-    return Verdict("closure", sentence, panel)
+    return PaperVerdict("closure", sentence, panel)
 
 
 def _apart(a: Sequence[float], b: Sequence[float]) -> float:
@@ -102,13 +91,7 @@ def _apart(a: Sequence[float], b: Sequence[float]) -> float:
     return float(np.abs(np.subtract(a, b)).max())
 
 
-def _spin(row: Outcome) -> float:
-    """Return I Omega^2/2 after the impact, fraction of E_0."""
-    m = row.motion
-    return 0.5 * m.mass * m.k_squared * known(m.Omega) ** 2 / row.energy.E_0
-
-
-def _moment(rows: Sequence[Outcome]) -> Verdict:
+def _moment(rows: Sequence[Outcome]) -> PaperVerdict:
     angle = np.degrees([row.motion.alpha for row in rows])
     paper, edge, impulse = ([known(key.of(row)) for row in rows] for key in MOMENTS)
     named = {"the paper's arms": paper, "arms of the edge": edge, "centre of the impulse": impulse}
@@ -119,10 +102,10 @@ def _moment(rows: Sequence[Outcome]) -> Verdict:
         f"motion gives values up to {max(spread):.2g} apart with the paper's arms and those of the edge, and "
         "-1 at the centre of the impulse."
     )
-    return Verdict("moment", sentence, Panel("e_m against angle", "angle, degrees", "e_m", series))
+    return PaperVerdict("moment", sentence, Panel("e_m against angle", "angle, degrees", "e_m", series))
 
 
-def _critical(rows: Sequence[Outcome]) -> Verdict:
+def _critical(rows: Sequence[Outcome]) -> PaperVerdict:
     measured = [measured_set(row.provenance.scene_id).statistics()["mu"].mean for row in rows]
     at = range(len(rows))
     series = (
@@ -138,10 +121,10 @@ def _critical(rows: Sequence[Outcome]) -> Verdict:
         f"bound. It is exceeded by more than 2 %, measured or computed, in {', '.join(above) or 'no set'}."
     )
     panel = Panel("Impulse ratio and mu_c", "set", "mu", series, names=_names(rows))
-    return Verdict("critical", sentence, panel)
+    return PaperVerdict("critical", sentence, panel)
 
 
-def _heat(rows: Sequence[Outcome]) -> Verdict:
+def _heat(rows: Sequence[Outcome]) -> PaperVerdict:
     at = range(len(rows))
     tangential = [100 * known(row.restitution.paper.E_lt) for row in rows]
     rubbed = [100 * known(row.energy.friction) for row in rows]
@@ -157,7 +140,7 @@ def _heat(rows: Sequence[Outcome]) -> Verdict:
         "E_lt; what is left of E_lt is plastic flow and vibration."
     )
     panel = Panel("E_lt and friction work", "set", "% of E_0", series, names=_names(rows))
-    return Verdict("heat", sentence, panel)
+    return PaperVerdict("heat", sentence, panel)
 
 
 def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
@@ -166,18 +149,18 @@ def _names(rows: Sequence[Outcome]) -> tuple[str, ...]:
 
 def marker_section(rows: Sequence[Outcome]) -> Markup:
     """Return the table of velocities by momentum sums and by two camera markers on the computed flight."""
-    seen = [row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)]
     shown: list[tuple[Cell, ...]] = [
-        (row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in seen
+        (row.provenance.scene_id, *(v for name in MARKED for v in _pair(row, name))) for row in _filmed(rows)
     ]
     titles = ((f"{name}, {unit}", "by markers") for name, unit in MARKED.items())
     head = ("set", *(title for pair in titles for title in pair))
-    listed = table(Table.of(head, shown), compact=True)
-    return section("The camera's measurement, replayed", paragraph(marker_sentence(seen)), listed)
+    listed = html.table(Table.of(head, shown), compact=True)
+    return html.section("The camera's measurement, replayed", html.paragraph(marker_sentence(rows)), listed)
 
 
-def marker_sentence(seen: Sequence[Outcome]) -> str:
+def marker_sentence(rows: Sequence[Outcome]) -> str:
     """Return the largest differences of markers and momentum sums as a sentence, empty without markers."""
+    seen = _filmed(rows)
     if not seen:
         return ""
     away = {name: _apart(*zip(*(_pair(row, name) for row in seen), strict=True)) for name in MARKED}
@@ -185,6 +168,11 @@ def marker_sentence(seen: Sequence[Outcome]) -> str:
         "Two markers over 40 frames at 10 kHz, replayed on the computed flight, give the exact momentum sums "
         f"within {away['V_n']:.2g} m/s along n, {away['V_t']:.2g} m/s along t and {away['Omega']:.2g} rad/s."
     )
+
+
+def _filmed(rows: Sequence[Outcome]) -> list[Outcome]:
+    """Return the outcomes that have velocities by markers."""
+    return [row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)]
 
 
 def _pair(row: Outcome, name: str) -> tuple[float, float]:
@@ -223,17 +211,23 @@ def write_all(results: Path, out: Path) -> Path:
     write_text(out / "ledger.csv", ledger.csv())
     concluded = conclusions(studies)
     write_text(out / "summary.md", _markdown(studies, conclusion_text(concluded)))
+    folded = html.details(f"{len(concluded)} conclusions", conclusion_list(concluded))
+    parts = (
+        html.details(study.title, html.place(study.folder.name, html.join(_parts(study, figures))))
+        for study in studies
+    )
     body = [
-        section("", bullets(map(_answer, studies))),
-        section("Study by study", *(_folded(study, figures) for study in studies)),
-        section("All conclusions", details(f"{len(concluded)} conclusions", conclusion_list(concluded))),
-        section("Energy of every run", _ledger_part(ledger)),
-        sources({name for study in studies for name in study.sources}),
+        html.section("", html.bullets(map(_answer, studies))),
+        html.section("Study by study", *parts),
+        html.section("All conclusions", folded),
+        html.section("Energy of every run", _ledger_part(ledger)),
+        html.sources({name for study in studies for name in study.sources}),
     ]
     failed = sum(len(study.failures) for study in studies)
     counts = f"{len(studies)} studies, {len(ledger)} runs, {failed} of them failed."
     lead = f"{counts} First what each study asks, and its answer; the rest is folded below."
-    text = page("Where the energy of a dropped steel rod goes", "All studies", lead, _footer(studies), body)
+    title = "Where the energy of a dropped steel rod goes"
+    text = html.page(title, "All studies", lead, _footer(studies), body)
     return write_text(out / "report.html", text)
 
 
@@ -244,33 +238,28 @@ def _folders(results: Path) -> list[Path]:
     return sorted(folders, key=lambda place: (place.name != "sets", place.name))
 
 
-def _answer(study: Study) -> Markup:
+def _answer(study: StudyRecord) -> Markup:
     """Return the question of a study, its answer, which is its first finding, and the link to its part."""
     question, answer = QUESTIONS.get(study.study, study.title), "".join(study.findings[:1])
     link = f' <a href="#{escape(study.folder.name)}">more</a>'
     return Markup(f"<strong>{markup(question)}</strong> {markup(answer)}{link}")
 
 
-def _folded(study: Study, figures: Path) -> Markup:
-    """Return all parts of a study, folded; a link to it from above unfolds it."""
-    return details(study.title, place(study.folder.name, join(_parts(study, figures))))
-
-
-def _parts(study: Study, figures: Path) -> list[Markup]:
+def _parts(study: StudyRecord, figures: Path) -> list[Markup]:
     """Return the sections of a study; one with outcomes also gets the verdicts on the paper's conclusions."""
     if not study.rows:
         return [findings_section(study, study.title)]
     since = study.folder / "study.json"
     return [
         findings_section(study, study.title),
-        section("Model and measurements", comparison_part(study.comparison, study.folder, since)),
-        section("Where the energy went", partition_part(study, since)),
+        html.section("Model and measurements", comparison_part(study.comparison, study.folder, since)),
+        html.section("Where the energy went", partition_part(study, since)),
         verdict_section(verdicts(study.rows), figures),
         marker_section(study.rows),
     ]
 
 
-def _ledger(studies: Iterable[Study]) -> Table:
+def _ledger(studies: Iterable[StudyRecord]) -> Table:
     """Return one table of the runs of all studies."""
     runs = ((study.folder.name, read_csv(study.folder / "runs.csv")) for study in studies)
     rows = [(name, *cells) for name, table in runs for cells in zip(*map(table.cells, LEDGER), strict=True)]
@@ -282,9 +271,9 @@ def _ledger_part(ledger: Table) -> Markup:
     at = ledger.names.index("fidelity")
     solid = [tuple(_short(str(cell)) for cell in row) for row in ledger.rows if row[at] == "solid"]
     counts = f"{len(ledger)} runs, {len(solid)} of them with finite elements: "
-    link = data_link(ledger.csv().encode(), "ledger.csv", "ledger.csv")
-    shown = table(Table(ledger.columns, tuple(solid)), compact=True)
-    return join([Markup(f"<p>{counts}{link}</p>"), details("Finite-element runs", shown)])
+    link = html.data_link(ledger.csv().encode(), "ledger.csv", "ledger.csv")
+    shown = html.table(Table(ledger.columns, tuple(solid)), compact=True)
+    return html.join([Markup(f"<p>{counts}{link}</p>"), html.details("Finite-element runs", shown)])
 
 
 def _short(cell: str) -> str:
@@ -294,24 +283,23 @@ def _short(cell: str) -> str:
         return cell[:24]
 
 
-def _markdown(studies: Iterable[Study], concluded: str) -> str:
+def _markdown(studies: Iterable[StudyRecord], concluded: str) -> str:
+    """Return the summaries of all studies below the conclusions, figure links relative to the report."""
     parts = ["# Where the energy of a dropped steel rod goes", concluded]
-    parts += [_summary(study.folder) for study in studies]
+    for study in studies:
+        text = read_text(study.folder / "summary.md").strip()
+        text = text.replace("](figures/", f"](../{study.folder.name}/figures/")
+        parts.append(text.replace("# ", "## ", 1))  # one heading level lower
     return "\n\n".join(part for part in parts if part) + "\n"
 
 
-def _summary(folder: Path) -> str:
-    """Return a study's summary.md one heading level lower, its figure links relative to the report."""
-    text = read_text(folder / "summary.md").strip().replace("](figures/", f"](../{folder.name}/figures/")
-    return text.replace("# ", "## ", 1)
-
-
-def _footer(studies: Sequence[Study]) -> str:
+def _footer(studies: Sequence[StudyRecord]) -> str:
     row = next((row for study in studies for row in study.rows), None)
     if row is None:
         return "Versions and dates of the runs stand in the ledger."
-    versions = ", ".join(f"{name} {version}" for name, version in row.provenance.versions.items())
-    return f"Computed with {versions}; dates of the runs stand in the ledger."
+    return (
+        f"Computed with {html.versions_text(row.provenance.versions)}; dates of the runs stand in the ledger."
+    )
 
 
 class Conclusion(NamedTuple):
@@ -322,36 +310,31 @@ class Conclusion(NamedTuple):
     file: str = ""
 
 
-def conclusions(studies: Iterable[Study]) -> list[Conclusion]:
+def conclusions(studies: Iterable[StudyRecord]) -> list[Conclusion]:
     """Return the conclusions of all studies; before those of measured sets the verdicts on the paper."""
     listed = []
     for study in studies:
-        listed += _of_paper(study.rows)
-        listed += [_conclusion(study, entry["name"], entry["sentence"]) for entry in study.conclusions]
+        listed += [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(study.rows)]
+        marked = marker_sentence(study.rows)
+        listed += [Conclusion(marked)] if marked else []
+        for entry in study.conclusions:
+            name, sentence = entry["name"], entry["sentence"]
+            file = f"../{study.folder.name}/figures/{name}.png"
+            drawn = Conclusion(sentence, figure_id(study.study, name), file)
+            listed.append(drawn if name else Conclusion(sentence))
     return listed
-
-
-def _conclusion(study: Study, name: str, sentence: str) -> Conclusion:
-    if not name:
-        return Conclusion(sentence)
-    file = f"../{study.folder.name}/figures/{name}.png"
-    return Conclusion(sentence, figure_id(study.study, name), file)
-
-
-def _of_paper(rows: Sequence[Outcome]) -> list[Conclusion]:
-    judged = [Conclusion(v.sentence, v.name, f"figures/{v.name}.svg") for v in verdicts(rows)]
-    marked = marker_sentence([row for row in rows if not isinstance(row.contact.markers.V_n, Unknown)])
-    return judged + ([Conclusion(marked)] if marked else [])
 
 
 def conclusion_list(listed: Sequence[Conclusion]) -> Markup:
     """Return the conclusions, each linked to its figure."""
-    links = (f' <a href="#{escape(one.figure)}">figure</a>' if one.figure else "" for one in listed)
-    items = (Markup(markup(one.sentence) + link) for one, link in zip(listed, links, strict=True))
-    return bullets(items)
+    items = []
+    for conclusion in listed:
+        link = f' <a href="#{escape(conclusion.figure)}">figure</a>' if conclusion.figure else ""
+        items.append(Markup(markup(conclusion.sentence) + link))
+    return html.bullets(items)
 
 
 def conclusion_text(listed: Sequence[Conclusion]) -> str:
     """Return the conclusions as Markdown, empty when there is none."""
-    lines = [f"- {one.sentence}" + (f" ([figure]({one.file}))" if one.file else "") for one in listed]
+    lines = [f"- {entry.sentence}" + (f" ([figure]({entry.file}))" if entry.file else "") for entry in listed]
     return "\n".join(["## Conclusions", "", *lines]) if lines else ""

@@ -1,52 +1,97 @@
-"""The report of one run."""
+"""The report of one run, and the verdict on a scene as a page to print and sign."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import json
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from html import escape
 from pathlib import Path
+from typing import Any
 
+from fem_impact.answers.verdict.assess import Verdict
+from fem_impact.answers.verdict.chart import chart
+from fem_impact.answers.verdict.screening import screening
+from fem_impact.answers.verdict.sentences import Line, screening_lines
 from fem_impact.errors import ResultError, RunError, SceneError, UsageError
 from fem_impact.figures.runs import partition_picture
+from fem_impact.figures.still import draw
 from fem_impact.figures.style import percent
-from fem_impact.files.atomic import make_directory, read_text
+from fem_impact.files.atomic import make_directory, read_text, write_text
+from fem_impact.files.digests import signed
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
-from fem_impact.pages.page import (
-    Markup,
-    bullets,
-    details,
-    figure,
-    join,
-    page,
-    paragraph,
-    section,
-    sources,
-    table,
-)
-from fem_impact.pages.sections import (
-    all_keys,
-    beside_tests,
-    card,
-    contacts_table,
-    effects_section,
-    estimated,
-    film_section,
-    has_film,
-    history_figures,
-    key_table,
-    notices,
-    strangers,
-    unknown,
-    waves_section,
-)
-from fem_impact.pages.verdict_page import screening_box
+from fem_impact.pages import html, sections
+from fem_impact.pages.html import Markup
 from fem_impact.physics.flash import ASSUMPTIONS
 from fem_impact.run.simulate import simulate
+from fem_impact.scene.inputs import inputs
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import Scene
+from fem_impact.scene.write import to_toml
 from fem_impact.tables.table import Cell, Table, number
+from fem_impact.tables.text import markup
+
+SIGNATURES = "Assessed by, date: ______________________    Checked by, date: ______________________"
+
+
+def verdict_box(lines: Sequence[Line], answer: str = "") -> Markup:
+    """Return titled sentences as the box that heads a page; ``answer`` gives its colour."""
+    rows = "\n".join(
+        f"<p><strong>{markup(title)}</strong> {markup(sentence)}</p>" for title, sentence in lines
+    )
+    return Markup(f'<div class="verdict {escape(answer)}">\n{rows}\n</div>')
+
+
+def screening_box(scene: Scene, name: str) -> Markup:
+    """Return the box of a run that has no twin: the closed-form screening, and how to get the verdict.
+
+    ``name`` is what the command takes: the id of a shipped scene, or the path of its file.
+    """
+    return verdict_box(screening_lines(screening(scene), name))
+
+
+def write_verdict(verdict: Verdict, document: dict[str, Any], out: Path) -> Path:
+    """Write ``verdict.html``, ``verdict.json``, ``scene.toml`` and the design chart; return the page's path.
+
+    Raises
+    ------
+    MissingLibraryError
+        matplotlib or plotly is not installed.
+    """
+    make_directory(out)
+    write_text(out / "scene.toml", to_toml(verdict.scene))
+    write_text(out / "verdict.json", json.dumps(signed(document), indent=1, allow_nan=False) + "\n")
+    picture, figures = chart(verdict), make_directory(out / "figures")
+    draw(picture, figures / f"{picture.name}.png")
+    return write_text(out / "verdict.html", verdict_page(verdict, document, html.figure(picture, figures)))
+
+
+def verdict_page(verdict: Verdict, document: dict[str, Any], charted: Markup) -> str:
+    """Return the page: verdict and what it rests on, chart, inputs with sources, what it does not cover."""
+    scene, free = verdict.scene, verdict.here.free
+    basis = (
+        Markup(f"<strong>{markup(title)}</strong>: {markup(sentence)}")
+        for title, sentence in document["basis"]
+    )
+    following = [("Next step:", document["next_step"])] if document["next_step"] else []
+    body = (
+        verdict_box([*document["box"], *following], verdict.answer),
+        html.section("What the verdict rests on", html.bullets(basis)),
+        html.section("This scene among other rods", charted),
+        html.section("Inputs and their sources", html.table(inputs(scene))),
+        html.section("What the verdict does not cover", html.bullets(document["not_covered"])),
+        html.section("Statement of the scene", Markup(f"<pre>{escape(to_toml(scene))}</pre>")),
+        html.section("Signatures", html.paragraph(SIGNATURES)),
+        html.sources(free.provenance.effects),
+    )
+    versions = html.versions_text(document["versions"])
+    footer = (
+        f"Computed {free.provenance.created_utc} with {versions}. Digest of the scene "
+        f"{document['scene_digest']}."
+    )
+    lead = f"{scene.title}. Change of e that may be neglected: {verdict.tolerance:g}."
+    return html.page(f"May rigid theory be used: {scene.id}", "verdict", lead, footer, body)
 
 
 def _keys(*path: str) -> list[Key]:
@@ -82,29 +127,31 @@ def run_page(folder: Path) -> str:
     outcome = Outcome.read(folder / "outcome.json")
     scene = _stated(folder)
     rigid = rigid_theory(outcome, scene)
-    shares = figure(partition_picture(outcome), make_directory(folder / "figures"))
+    shares = html.figure(partition_picture(outcome), make_directory(folder / "figures"))
+    stop = "" if outcome.validity.finished else ": at the stop of this unfinished run"
+    costs = sections.key_table(outcome, _keys("cost"))
     body = (
         *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
         _cards(outcome, rigid),
-        film_section(folder),
-        notices([outcome], strangers(outcome, folder)),
-        beside_tests(outcome, scene, folder),
-        section(f"Where the energy went{_stop(outcome)}", shares, _folded(outcome, "shares", ENERGY, rigid)),
-        section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
-        waves_section(folder),
-        history_figures(outcome, folder),
-        section("Contacts", details("Times and impulses", contacts_table(outcome))),
-        section("Heat of the contact", _heat(outcome, rigid)),
-        section("Coefficients and losses", details("With three sets of arms", _arms(outcome))),
-        effects_section(outcome),
-        unknown([outcome]),
-        section("Range of validity", bullets(outcome.validity.outside)),
-        section("Cost", details("Time, memory and elements", key_table(outcome, _keys("cost")))),
-        sources([*outcome.provenance.effects, *(["film"] if has_film(folder) else [])]),
-        section("Record", _scene_text(folder), all_keys(outcome)),
+        sections.film_section(folder),
+        sections.notices([outcome], sections.strangers(outcome, folder)),
+        sections.beside_tests(outcome, scene, folder),
+        html.section(f"Where the energy went{stop}", shares, _folded(outcome, "shares", ENERGY, rigid)),
+        html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),
+        sections.waves_section(folder),
+        sections.history_figures(outcome, folder),
+        html.section("Contacts", html.details("Times and impulses", sections.contacts_table(outcome))),
+        html.section("Heat of the contact", _heat(outcome, rigid)),
+        html.section("Coefficients and losses", html.details("With three sets of arms", _arms(outcome))),
+        sections.effects_section(outcome),
+        sections.unknown([outcome]),
+        html.section("Range of validity", html.bullets(outcome.validity.outside)),
+        html.section("Cost", html.details("Time, memory and elements", costs)),
+        html.sources([*outcome.provenance.effects, *(["film"] if sections.has_film(folder) else [])]),
+        html.section("Record", _scene_text(folder), sections.all_keys(outcome)),
     )
     origin = outcome.provenance
-    return page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
+    return html.page(origin.scene_title, f"Run · {origin.scene_id}", _lead(outcome), _footer(outcome), body)
 
 
 def _stated(folder: Path) -> Scene | None:
@@ -120,48 +167,41 @@ def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
     if outcome.provenance.fidelity == "rigid" or scene is None:
         return None
     try:
-        stated = replace(scene, accuracy=replace(scene.accuracy, target=None))
-        return simulate(stated, "rigid")
+        return simulate(replace(scene, accuracy=replace(scene.accuracy, target=None)), "rigid")
     except (SceneError, RunError, ResultError):  # own tests that can no longer be read are told elsewhere
         return None
 
 
-def _stop(outcome: Outcome) -> str:
-    return "" if outcome.validity.finished else ": at the stop of this unfinished run"
-
-
 def _folded(outcome: Outcome, what: str, keys: Iterable[Key], rigid: Outcome | None) -> Markup:
     beside = " beside rigid theory" if rigid else ""
-    return details(f"All {what}{beside}", key_table(outcome, keys, rigid=rigid))
+    return html.details(f"All {what}{beside}", sections.key_table(outcome, keys, rigid=rigid))
 
 
 def _heat(outcome: Outcome, rigid: Outcome | None) -> Markup:
     """Return peaks, time above ignition and the bound with its assumptions; nothing where heat was off."""
     if isinstance(outcome.heat.power, Unknown):
         return Markup("")
-    bound = paragraph("The bound for a safety case holds under these assumptions:")
-    told = join([key_table(outcome, HEAT, rigid=rigid), bound, bullets(ASSUMPTIONS)])
-    return details("Work, power and temperatures, and the bound for a safety case", told)
+    bound = html.paragraph("The bound for a safety case holds under these assumptions:")
+    shown = html.join([sections.key_table(outcome, HEAT, rigid=rigid), bound, html.bullets(ASSUMPTIONS)])
+    return html.details("Work, power and temperatures, and the bound for a safety case", shown)
 
 
 def _cards(outcome: Outcome, rigid: Outcome | None) -> Markup:
-    stated = outcome.restitution.tests_state_arms
-    restitution = ("e, the tests' arms", "e_paper", "") if stated else ("e, the tip's arms", "e_edge", "")
+    """Return numbers with their bands, or why they have none, and what rigid theory predicts."""
+    tests = outcome.restitution.tests_state_arms
+    restitution = ("e, the tests' arms", "e_paper", "") if tests else ("e, the tip's arms", "e_edge", "")
     shown = [restitution, ("impulse ratio µ", "mu", ""), ("Ω", "Omega_rad_per_s", " rad/s")]
-    cards = [_card(outcome, rigid, label, KEY_TABLE[name], unit) for label, name, unit in shown]
-    residual = number(outcome.energy.residual, 2)
-    last = card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
-    inner = join([*cards, _vibration_card(outcome, rigid), last])
-    return Markup(f'<div class="cards">{inner.text}</div>')
-
-
-def _card(outcome: Outcome, rigid: Outcome | None, label: str, key: Key, unit: str) -> Markup:
-    """Return a number with its band, or why it has none, and what rigid theory predicts."""
-    bands = outcome.validity.mesh_band
+    bands, numbers = outcome.validity.mesh_band, []
     missing = bands.reason if isinstance(bands, Unknown) else ""
-    predicted = None if rigid is None else or_none(key.of(rigid))
-    theory = "" if predicted is None else f"rigid theory: {number(predicted)}{unit}"
-    return card(label, estimated(outcome, key) + unit, ". ".join(note for note in (theory, missing) if note))
+    for label, name, unit in shown:
+        key = KEY_TABLE[name]
+        predicted = None if rigid is None else or_none(key.of(rigid))
+        theory = "" if predicted is None else f"rigid theory: {number(predicted)}{unit}"
+        note = ". ".join(sentence for sentence in (theory, missing) if sentence)
+        numbers.append(sections.card(label, sections.estimated(outcome, key) + unit, note))
+    residual = number(outcome.energy.residual, 2)
+    last = sections.card("ledger residual", residual, "of E₀; a run must stay below 1e-4")
+    return sections.cards(*numbers, _vibration_card(outcome, rigid), last)
 
 
 def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
@@ -173,8 +213,8 @@ def _vibration_card(outcome: Outcome, rigid: Outcome | None) -> Markup:
     )
     note = ". ".join(notes)
     if or_none(energy.below_floor):
-        return card("vibration, of E₀", "below floor", note)
-    return card("vibration, of E₀", "–" if share is None else percent(share), note)
+        return sections.card("vibration, of E₀", "below floor", note)
+    return sections.card("vibration, of E₀", "–" if share is None else percent(share), note)
 
 
 def _arms(outcome: Outcome) -> Markup:
@@ -184,22 +224,20 @@ def _arms(outcome: Outcome) -> Markup:
         "edge": "contact on the edge radius",
         "impulse": "centre of the impulse",
     }
-    rows = [[title, *_arms_row(outcome, name)] for name, title in titles.items()]
-    return table(Table.of(head, rows))
-
-
-def _arms_row(outcome: Outcome, name: str) -> list[Cell]:
-    d_c, d_d, *others = _keys("restitution", name)
-    arms = [or_none(key.of(outcome)) for key in (d_c, d_d)]
-    lengths = [None if arm is None else 1e3 * arm for arm in arms]
-    return [*lengths, *(estimated(outcome, key) for key in others)]
+    rows: list[list[Cell]] = []
+    for name, title in titles.items():
+        d_c, d_d, *ratios = _keys("restitution", name)
+        arms = [or_none(key.of(outcome)) for key in (d_c, d_d)]
+        lengths = [None if arm is None else 1e3 * arm for arm in arms]
+        rows.append([title, *lengths, *(sections.estimated(outcome, key) for key in ratios)])
+    return html.table(Table.of(head, rows))
 
 
 def _scene_text(folder: Path) -> Markup:
     path = folder / "scene.toml"
     if not path.is_file():
         return Markup("")
-    return details("The scene", Markup(f"<pre>{escape(read_text(path))}</pre>"))
+    return html.details("The scene", Markup(f"<pre>{escape(read_text(path))}</pre>"))
 
 
 def _lead(outcome: Outcome) -> str:
@@ -211,5 +249,5 @@ def _lead(outcome: Outcome) -> str:
 
 def _footer(outcome: Outcome) -> str:
     origin = outcome.provenance
-    versions = ", ".join(f"{name} {version}" for name, version in origin.versions.items())
+    versions = html.versions_text(origin.versions)
     return f"Computed {origin.created_utc} with {versions}. Scene {origin.scene_digest}."

@@ -15,23 +15,11 @@ from fem_impact.figures.style import percent
 from fem_impact.files.atomic import make_directory
 from fem_impact.files.waves import read_waves
 from fem_impact.films.movement import FRAMES, QUICK_FRAMES, STUDY_FRAMES
-from fem_impact.outcome.groups import ContactInterval, EffectChoice
+from fem_impact.outcome.groups import EffectChoice
 from fem_impact.outcome.keys import Key, Unknown, or_none
 from fem_impact.outcome.record import KEYS, Outcome
-from fem_impact.pages.page import (
-    FILMS,
-    Markup,
-    bullets,
-    details,
-    download,
-    figure,
-    film,
-    join,
-    paragraph,
-    section,
-    table,
-    with_band,
-)
+from fem_impact.pages import html
+from fem_impact.pages.html import Markup
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.read import read_toml
 from fem_impact.scene.types import OWN, Scene
@@ -81,7 +69,7 @@ def notices(rows: list[Outcome], more: Sequence[str] = ()) -> Markup:
         for row in rows
         if not row.validity.finished
     ]
-    listed = bullets([*more, *cut, *warned]).text
+    listed = html.bullets([*more, *cut, *warned]).text
     return Markup(f'<div class="notice"><strong>To keep in mind</strong>\n{listed}</div>' if listed else "")
 
 
@@ -91,16 +79,16 @@ def history_figures(outcome: Outcome, folder: Path, again: bool = True) -> Marku
     With ``again`` False, figures newer than history.csv are not drawn again.
     """
     if outcome.provenance.fidelity == "rigid":
-        return section("Over time", paragraph("No curves over time: a rigid impact takes no time."))
+        return html.section("Over time", html.paragraph("No curves over time: a rigid impact takes no time."))
     since = None if again else folder / "history.csv"
     try:
         history = read_history(folder / "history.csv")
         figures = make_directory(folder / "figures")
-        ledger = figure(ledger_picture(history, outcome.energy.E_0), figures, since)
-        force = figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
+        ledger = html.figure(ledger_picture(history, outcome.energy.E_0), figures, since)
+        force = html.figure(force_picture(history, or_none(outcome.contact.intervals) or ()), figures, since)
     except ResultError as error:
-        return section("Over time", paragraph(f"No curves over time: {error}"))
-    return join([section("Energy over time", ledger), section("Contact force", force)])
+        return html.section("Over time", html.paragraph(f"No curves over time: {error}"))
+    return html.join([html.section("Energy over time", ledger), html.section("Contact force", force)])
 
 
 def waves_section(folder: Path) -> Markup:
@@ -109,21 +97,21 @@ def waves_section(folder: Path) -> Markup:
     if not stored.is_file():
         return Markup("")
     try:
-        drawn = figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
+        drawn = html.figure(waves_picture(read_waves(stored)), make_directory(folder / "figures"))
     except ResultError as error:
-        drawn = paragraph(f"No diagram of the waves: {error}")
-    return section("Waves along the rod", drawn)
+        drawn = html.paragraph(f"No diagram of the waves: {error}")
+    return html.section("Waves along the rod", drawn)
 
 
 def film_section(folder: Path) -> Markup:
     """Return the film of the run, nothing when there is none."""
-    shown = film(folder, "Waves in the rod; scales are written on the picture.")
-    return section("Film of the waves", *([shown, paragraph(LENGTHS)] if shown.text else []))
+    shown = html.film(folder, "Waves in the rod; scales are written on the picture.")
+    return html.section("Film of the waves", *([shown, html.paragraph(LENGTHS)] if shown.text else []))
 
 
 def has_film(folder: Path) -> bool:
     """Return whether the run was filmed in a format that a page can show."""
-    return any((folder / name).is_file() for name in FILMS)
+    return any((folder / name).is_file() for name in html.FILMS)
 
 
 def key_table(
@@ -134,21 +122,18 @@ def key_table(
     Keys that are not known are left out: `unknown` lists them. With ``rigid``, what rigid theory predicts
     stands beside each value.
     """
-    shown = [key for key in keys if not isinstance(key.of(outcome), Unknown)]
-    meanings = [key.meaning.replace(", as a fraction of E_0.", ".") for key in shown]
-    rows = [
-        (f"{meaning} `{key.name}`", estimated(outcome, key), *_predicted(rigid, key), _unit(key))
-        for key, meaning in zip(shown, meanings, strict=True)
-    ]
+    rows: list[list[Cell]] = []
+    for key in keys:
+        if isinstance(key.of(outcome), Unknown):
+            continue
+        meaning = key.meaning.replace(", as a fraction of E_0.", ".")
+        cells: list[Cell] = [f"{meaning} `{key.name}`", estimated(outcome, key)]
+        if rigid is not None:
+            value = key.of(rigid)
+            cells.append(Missing(value.reason) if isinstance(value, Unknown) else number(or_none(value)))
+        rows.append([*cells, _unit(key)])
     head = ("quantity", "value", *(["rigid theory"] if rigid else []), "unit")
-    return table(Table.of(head, rows, left=(0, len(head) - 1)), caption)
-
-
-def _predicted(rigid: Outcome | None, key: Key) -> list[Cell]:
-    if rigid is None:
-        return []
-    value = key.of(rigid)
-    return [Missing(value.reason) if isinstance(value, Unknown) else number(or_none(value))]
+    return html.table(Table.of(head, rows, left=(0, len(head) - 1)), caption)
 
 
 def card(name: str, value: str, note: str = "") -> Markup:
@@ -158,18 +143,27 @@ def card(name: str, value: str, note: str = "") -> Markup:
     return Markup(f'<div class="card">{inner}</div>')
 
 
+def cards(*shown: Markup) -> Markup:
+    """Return cards side by side."""
+    return Markup(f'<div class="cards">{html.join(shown).text}</div>')
+
+
 def estimated(outcome: Outcome, key: Key) -> str:
     """Return a number as text; of two meshes the limit with its band."""
     value, band = outcome.estimate(key)
-    return with_band(or_none(value), band)
+    return html.with_band(or_none(value), band)
 
 
 def contacts_table(outcome: Outcome) -> Markup:
     """Return the contact intervals with their impulses on the whole rod."""
     head = ("contact", "start, µs", "end, µs", "normal impulse, N s", "tangential, N s", "ratio")
     intervals = or_none(outcome.contact.intervals) or ()
-    rows = [_contact(at, contact) for at, contact in enumerate(intervals, start=1)]
-    return table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
+    rows: list[list[Cell]] = []
+    for at, contact in enumerate(intervals, start=1):
+        times = (f"{contact.start * 1e6:.1f}", f"{contact.end * 1e6:.1f}")
+        normal, tangential = contact.impulse_n, contact.impulse_t
+        rows.append([at, *times, normal, tangential, tangential / normal if normal else None])
+    return html.table(Table.of(head, rows), "Contact intervals, impulses on the whole rod.")
 
 
 def unknown(rows: Sequence[Outcome]) -> Markup:
@@ -178,25 +172,25 @@ def unknown(rows: Sequence[Outcome]) -> Markup:
     for row in rows:
         for name, reason in row.reasons.items():
             reasons.setdefault(reason, {}).setdefault(name, []).append(row.provenance.scene_id)
-    lines = [
-        (", ".join(f"`{name}`" for name in names), reason, _where(names, len(rows)))
-        for reason, names in reasons.items()
-    ]
-    shown = lines if len(rows) > 1 else [line[:2] for line in lines]
-    head = ("key", "why it is not known", "runs")[: len(shown[0]) if shown else 2]
-    listed = table(Table.of(head, shown, left=range(len(head))))
-    return section("What is not known", details("Keys and reasons", listed) if shown else Markup(""))
+    columns, lines = 3 if len(rows) > 1 else 2, []
+    for reason, names in reasons.items():
+        runs = dict.fromkeys(run for ids in names.values() for run in ids)
+        line = (", ".join(f"`{name}`" for name in names), reason, _runs(list(runs), len(rows)))
+        lines.append(line[:columns])
+    head = ("key", "why it is not known", "runs")[:columns]
+    listed = html.details("Keys and reasons", html.table(Table.of(head, lines, left=range(columns))))
+    return html.section("What is not known", listed if lines else Markup(""))
 
 
 def sentences(rows: Sequence[Outcome], of: Callable[[Outcome], Iterable[str]]) -> list[str]:
     """Return the distinct sentences of outcomes, such as warnings, each with the ids of its runs."""
-    said: dict[str, list[str]] = {}
+    ids: dict[str, list[str]] = {}
     for row in rows:
         for sentence in of(row):
-            said.setdefault(sentence, []).append(row.provenance.scene_id)
+            ids.setdefault(sentence, []).append(row.provenance.scene_id)
     if len(rows) == 1:
-        return list(said)
-    return [f"{sentence} ({_runs(runs, len(rows))})" for sentence, runs in said.items()]
+        return list(ids)
+    return [f"{sentence} ({_runs(runs, len(rows))})" for sentence, runs in ids.items()]
 
 
 def all_keys(outcome: Outcome) -> Markup:
@@ -204,7 +198,7 @@ def all_keys(outcome: Outcome) -> Markup:
     plain = [key for key in KEYS if key.kind in ("number", "count", "flag", "text")]
     rows = [(f"`{key.name}`", known_cell(key.of(outcome)), key.unit, key.meaning) for key in plain]
     shown = Table.of(("key", "value", "unit", "meaning"), rows, left=range(4))
-    return details("Every key of the record", table(shown))
+    return html.details("Every key of the record", html.table(shown))
 
 
 def known_cell(value: Cell | Unknown) -> Cell:
@@ -216,17 +210,6 @@ def _unit(key: Key) -> str:
     if key.name.endswith("_over_E_0"):
         return "of\u00a0E₀"
     return "" if key.unit == "-" else key.unit.replace("m2", "m²")
-
-
-def _contact(at: int, contact: ContactInterval) -> tuple[Cell, ...]:
-    normal, tangential = contact.impulse_n, contact.impulse_t
-    times = (f"{contact.start * 1e6:.1f}", f"{contact.end * 1e6:.1f}")
-    return (at, *times, normal, tangential, tangential / normal if normal else None)
-
-
-def _where(names: Mapping[str, Sequence[str]], count: int) -> str:
-    runs = list(dict.fromkeys(run for where in names.values() for run in where))
-    return _runs(runs, count)
 
 
 def _runs(runs: Sequence[str], count: int) -> str:
@@ -246,8 +229,9 @@ def effects_section(outcome: Outcome) -> Markup:
         "An effect is needed when its number is above its threshold. The changes are about what leaving it "
         "out does. The run time is the share of its own parts; that of friction and rates is estimated."
     )
-    folded = details("What the model has, and why", table(Table.of(EFFECTS, rows, left=range(3)), caption))
-    return section("Effects", folded if rows else Markup(""))
+    shown = html.table(Table.of(EFFECTS, rows, left=range(3)), caption)
+    folded = html.details("What the model has, and why", shown)
+    return html.section("Effects", folded if rows else Markup(""))
 
 
 def _row(choice: EffectChoice) -> list[Cell]:
@@ -283,18 +267,18 @@ def beside_tests(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
     try:
         tests = tests_of(scene)
     except (ResultError, OSError) as error:
-        return section(title, paragraph(f"The tests can no longer be read: {error}"))
+        return html.section(title, html.paragraph(f"The tests can no longer be read: {error}"))
     rows = [row for row in compare(outcome, tests) if row["measured_mean"] is not None]
     known = [row for row in rows if row["model"] is not None]
     inside = sum(is_inside(row["verdict"]) for row in known)
-    own = scene.measured.endswith(OWN)
-    name = Path(scene.measured).name if own else f"the published set {scene.measured}"
-    told = paragraph(
+    is_file = scene.measured.endswith(OWN)
+    name = Path(scene.measured).name if is_file else f"the published set {scene.measured}"
+    summary = html.paragraph(
         f"{inside} of {len(known)} computed quantities lie inside the 95 % interval of the measured mean "
         f"({max(row['n'] for row in rows)} tests, {name})."
     )
     shown = Table.of(("quantity", *COMPARED), [[_titled(row), *_cells(row)] for row in rows], left=(0, 5))
-    return section(title, told, table(shown, compact=True), comparison_part(rows, folder))
+    return html.section(title, summary, html.table(shown, compact=True), comparison_part(rows, folder))
 
 
 def _titled(row: Mapping[str, Any]) -> str:
@@ -307,22 +291,22 @@ def comparison_part(rows: Sequence[Mapping[str, Any]], folder: Path, since: Path
     if all(row["measured_mean"] is None for row in rows):
         return Markup("")
     figures = make_directory(folder / "figures")
-    drawn = figure(comparison_picture(rows), figures, since)
-    return join([drawn, download(figures / "comparison.csv", "its data")])
+    drawn = html.figure(comparison_picture(rows), figures, since)
+    return html.join([drawn, html.download(figures / "comparison.csv", "its data")])
 
 
 def comparison_tables(rows: Sequence[Mapping[str, Any]]) -> Markup:
     """Return a table a quantity that was measured: model, measurement, interval and verdict of each set."""
     quantities = dict.fromkeys(row["quantity"] for row in rows if row["measured_mean"] is not None)
-    return join(_quantity([row for row in rows if row["quantity"] == name]) for name in quantities)
-
-
-def _quantity(rows: Sequence[Mapping[str, Any]]) -> Markup:
-    measured = [row for row in rows if row["measured_mean"] is not None]
-    inside = sum(is_inside(row["verdict"]) for row in measured)
-    shown = Table.of(("set", *COMPARED), [[str(row["set"]), *_cells(row)] for row in rows], left=(0, 5))
-    title = f"{_titled(rows[0])}: {inside} of {len(measured)} inside"
-    return details(title, table(shown, compact=True))
+    tables = []
+    for name in quantities:
+        of_sets = [row for row in rows if row["quantity"] == name]
+        measured = [row for row in of_sets if row["measured_mean"] is not None]
+        inside = sum(is_inside(row["verdict"]) for row in measured)
+        lines = [[str(row["set"]), *_cells(row)] for row in of_sets]
+        shown = html.table(Table.of(("set", *COMPARED), lines, left=(0, 5)), compact=True)
+        tables.append(html.details(f"{_titled(of_sets[0])}: {inside} of {len(measured)} inside", shown))
+    return html.join(tables)
 
 
 def _cells(row: Mapping[str, Any]) -> list[Cell]:

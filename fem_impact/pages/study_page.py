@@ -17,37 +17,10 @@ from fem_impact.errors import ResultError
 from fem_impact.figures.runs import study_partition_picture
 from fem_impact.files.atomic import make_directory, read_text
 from fem_impact.files.digests import read_signed
-from fem_impact.outcome.groups import RunCost
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
-from fem_impact.pages.page import (
-    Markup,
-    bullets,
-    details,
-    download,
-    figure,
-    join,
-    page,
-    paragraph,
-    place,
-    section,
-    sources,
-    stored_figure,
-    table,
-)
-from fem_impact.pages.sections import (
-    card,
-    comparison_part,
-    comparison_tables,
-    estimated,
-    has_film,
-    history_figures,
-    is_inside,
-    known_cell,
-    notices,
-    sentences,
-    unknown,
-)
+from fem_impact.pages import html, sections
+from fem_impact.pages.html import Markup
 from fem_impact.tables.table import COMPARISON, Cell, Column, Table
 from fem_impact.tables.text import readable
 
@@ -94,7 +67,7 @@ STUDY_SCHEMA = _record(
 
 
 @dataclass(frozen=True, slots=True)
-class Study:
+class StudyRecord:
     """What a study published (`fem_impact.answers.report.StudyReport`), as its page needs it.
 
     Parameters
@@ -130,7 +103,7 @@ class Study:
     comparison: tuple[Record, ...]
 
 
-def read_study(folder: Path) -> Study:
+def read_study(folder: Path) -> StudyRecord:
     """Read ``folder/study.json``.
 
     Raises
@@ -141,19 +114,8 @@ def read_study(folder: Path) -> Study:
     path = folder / "study.json"
     document = read_signed(read_text(path), str(path))
     if document.get("schema") != SCHEMA:
-        stated = json.dumps(document.get("schema"))[:40]
-        raise ResultError(f'{path}: key "schema" = {stated} is not "{SCHEMA}"; run the study again.')
-    _check_shape(document, path)
-    rows = tuple(
-        Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in enumerate(document["rows"])
-    )
-    parts: dict[str, Any] = {name: tuple(document[name]) for name in (*SENTENCES, *RECORDS)}
-    texts = {name: document[name] for name in TEXTS}
-    return Study(folder, **texts, **parts, rows=rows, runs=document["runs"])
-
-
-def _check_shape(document: Record, path: Path) -> None:
-    """Refuse a document that breaks `STUDY_SCHEMA`, or a table whose rows do not fit its columns."""
+        schema = json.dumps(document.get("schema"))[:40]
+        raise ResultError(f'{path}: key "schema" = {schema} is not "{SCHEMA}"; run the study again.')
     try:
         _validator()(document)
     except fastjsonschema.JsonSchemaValueException as error:
@@ -161,6 +123,12 @@ def _check_shape(document: Record, path: Path) -> None:
     for sheet in document["sheets"]:
         if any(len(row) != len(sheet["columns"]) for row in sheet["rows"]):
             raise ResultError(f'{path}: a row of the table "{sheet["name"]}" does not fit its columns.')
+    rows = tuple(
+        Outcome.from_dict(row, source=f"{path}: rows[{at}]") for at, row in enumerate(document["rows"])
+    )
+    parts: dict[str, Any] = {name: tuple(document[name]) for name in (*SENTENCES, *RECORDS)}
+    texts = {name: document[name] for name in TEXTS}
+    return StudyRecord(folder, **texts, **parts, rows=rows, runs=document["runs"])
 
 
 @cache
@@ -169,33 +137,41 @@ def _validator() -> Callable[[Any], Any]:
     return validate
 
 
-def findings_section(study: Study, title: str = "", lead: Markup | None = None) -> Markup:
+def findings_section(study: StudyRecord, title: str = "", lead: Markup | None = None) -> Markup:
     """Return the answer, which is the first finding, and the first figure; all else folded, with its data.
 
     ``lead`` is the first figure where it is not one of the study's own.
     """
     runs = f"{study.runs} runs, {len(study.failures)} failed."
     failed = [(failure["scene_id"], failure["error"]) for failure in study.failures]
-    drawn = (lead or Markup(""), *(_figure(entry, study) for entry in study.figures))
-    figures = [one for one in drawn if one.text]
-    return section(
+    figures = [lead] if lead and lead.text else []
+    for entry in study.figures:
+        stem = study.folder / "figures" / entry["name"]
+        shown = html.place(figure_id(study.study, entry["name"]), html.stored_figure(stem))
+        figures.append(html.join([shown, html.download(stem.with_suffix(".csv"), "its data")]))
+    files = [
+        html.download(study.folder / f"{sheet['name']}.csv", f"{sheet['caption']} ({sheet['name']}.csv)")
+        for sheet in study.sheets
+        if not sheet["rows"]
+    ]
+    return html.section(
         title,
-        paragraph("".join(study.findings[:1]), "answer"),
+        html.paragraph("".join(study.findings[:1]), "answer"),
         *figures[:1],
-        _folded("What else was found", bullets(study.findings[1:])),
+        _folded("What else was found", html.bullets(study.findings[1:])),
         _folded("More figures", *figures[1:]),
         *(_sheet(sheet, study) for sheet in study.sheets if sheet["rows"]),
-        _folded("More tables", *(_file(sheet, study) for sheet in study.sheets if not sheet["rows"])),
-        _folded("What it rests on", bullets(study.assumptions)),
+        _folded("More tables", *files),
+        _folded("What it rests on", html.bullets(study.assumptions)),
         Markup(f"<p>{escape(runs)} <code>{escape(study.command)}</code></p>"),
-        table(Table.of(("run", "why"), failed, left=(0, 1))),
+        html.table(Table.of(("run", "why"), failed, left=(0, 1))),
     )
 
 
 def _folded(title: str, *content: Markup) -> Markup:
     """Return a folded block, nothing when it would be empty."""
-    inner = join(content)
-    return details(title, inner) if inner.text else inner
+    inner = html.join(content)
+    return html.details(title, inner) if inner.text else inner
 
 
 def figure_id(study: str, name: str) -> str:
@@ -203,21 +179,15 @@ def figure_id(study: str, name: str) -> str:
     return f"{study}-{name}"
 
 
-def _figure(entry: Mapping[str, Any], study: Study) -> Markup:
-    stem = study.folder / "figures" / entry["name"]
-    shown = place(figure_id(study.study, entry["name"]), stored_figure(stem))
-    return join([shown, download(stem.with_suffix(".csv"), "its data")])
-
-
-def _sheet(sheet: Mapping[str, Any], study: Study) -> Markup:
+def _sheet(sheet: Mapping[str, Any], study: StudyRecord) -> Markup:
     columns, rows = sheet["columns"], sheet["rows"]
     texts = {at for at in range(len(columns)) if _holds_words([row[at] for row in rows])}
     named = Table(
         tuple(Column(name, readable(name), left=at in texts) for at, name in enumerate(columns)),
         tuple(map(tuple, rows)),
     )
-    data = download(study.folder / f"{sheet['name']}.csv", f"its data ({sheet['name']}.csv)")
-    return details(sheet["caption"], table(named, compact=True), data)
+    data = html.download(study.folder / f"{sheet['name']}.csv", f"its data ({sheet['name']}.csv)")
+    return html.details(sheet["caption"], html.table(named, compact=True), data)
 
 
 def _holds_words(cells: Sequence[Any]) -> bool:
@@ -226,15 +196,10 @@ def _holds_words(cells: Sequence[Any]) -> bool:
     return 2 * sum(text[0].isalpha() for text in texts) > len(texts)
 
 
-def _file(sheet: Mapping[str, Any], study: Study) -> Markup:
-    name = f"{sheet['name']}.csv"
-    return download(study.folder / name, f"{sheet['caption']} ({name})")
-
-
 def draw_study(folder: Path) -> None:
     """Draw comparison and partition of the study into ``folder/figures``; `study_page` can reuse them."""
     study = read_study(folder)
-    comparison_part(study.comparison, study.folder)
+    sections.comparison_part(study.comparison, study.folder)
     partition_part(study)
 
 
@@ -250,79 +215,76 @@ def study_page(folder: Path, again: bool = True) -> str:
     """
     study, since = read_study(folder), None if again else folder / "study.json"
     rows = list(study.rows)
-    filmed = any(has_film(folder / row.provenance.scene_id) for row in rows)
+    outside = sections.sentences(rows, lambda row: row.validity.outside)
+    filmed = any(sections.has_film(folder / row.provenance.scene_id) for row in rows)
     body = (
-        findings_section(study, lead=comparison_part(study.comparison, study.folder, since)),
+        findings_section(study, lead=sections.comparison_part(study.comparison, study.folder, since)),
         _cards(study),
-        notices(rows),
-        section("Model beside measurement", comparison_tables(study.comparison)),
-        section("Where the energy went", partition_part(study, since)),
-        section("Over time, run by run", *(_run(row, folder) for row in rows)),
-        unknown(rows),
-        section("Range of validity", bullets(sentences(rows, lambda row: row.validity.outside))),
-        section("Cost", details("Time, memory and elements", _costs(rows)) if rows else Markup("")),
-        sources([*study.sources, *(["film"] if filmed else [])]),
+        sections.notices(rows),
+        html.section("Model beside measurement", sections.comparison_tables(study.comparison)),
+        html.section("Where the energy went", partition_part(study, since)),
+        html.section("Over time, run by run", *(_run(row, folder) for row in rows)),
+        sections.unknown(rows),
+        html.section("Range of validity", html.bullets(outside)),
+        html.section("Cost", html.details("Time, memory and elements", _costs(rows)) if rows else Markup("")),
+        html.sources([*study.sources, *(["film"] if filmed else [])]),
     )
-    return page(study.title, "Study", "", _footer(study), body)
+    return html.page(study.title, "Study", "", _footer(study), body)
 
 
-def _cards(study: Study) -> Markup:
+def _cards(study: StudyRecord) -> Markup:
     if not study.rows:
         return Markup("")
     measured = [row for row in study.comparison if row["measured_mean"] is not None]
-    inside = sum(is_inside(row["verdict"]) for row in measured)
+    inside = sum(sections.is_inside(row["verdict"]) for row in measured)
     residuals = [abs(row.energy.residual) for row in study.rows]
     seconds = sum(row.cost.wall for row in study.rows)
-    cards = [
-        card("runs", str(len(study.rows)), f"{len(study.failures)} failed"),
-        card("inside 95 % intervals", f"{inside} of {len(measured)}", "measured quantities"),
-        card("largest residual", f"{max(residuals):.1e}", "of E₀"),
-        card("computing time", f"{seconds:.0f} s", "wall time of the runs, added"),
-    ]
-    return Markup(f'<div class="cards">{join(cards).text}</div>')
+    return sections.cards(
+        sections.card("runs", str(len(study.rows)), f"{len(study.failures)} failed"),
+        sections.card("inside 95 % intervals", f"{inside} of {len(measured)}", "measured quantities"),
+        sections.card("largest residual", f"{max(residuals):.1e}", "of E₀"),
+        sections.card("computing time", f"{seconds:.0f} s", "wall time of the runs, added"),
+    )
 
 
-def partition_part(study: Study, since: Path | None = None) -> Markup:
+def partition_part(study: StudyRecord, since: Path | None = None) -> Markup:
     """Return the figure of the shares of E_0; one newer than the file ``since`` is not drawn again."""
     if not study.rows:
         return Markup("")
     figures = make_directory(study.folder / "figures")
-    drawn = figure(study_partition_picture(study.rows), figures, since)
-    return join([drawn, download(figures / "partition.csv", "its data")])
+    drawn = html.figure(study_partition_picture(study.rows), figures, since)
+    return html.join([drawn, html.download(figures / "partition.csv", "its data")])
 
 
 def _run(row: Outcome, folder: Path) -> Markup:
     place = folder / row.provenance.scene_id
     if not (place / "history.csv").is_file():
         return Markup("")
-    e, mu = (estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
+    e, mu = (sections.estimated(row, KEY_TABLE[name]) for name in ("e_paper", "mu"))
     title = f"{row.provenance.scene_id}: {row.provenance.scene_title} (e = {e}, µ = {mu})"
-    return details(title, history_figures(row, place, again=False), _own_page(place))
-
-
-def _own_page(place: Path) -> Markup:
-    """Return the link to the run's page with its film; films of all runs would make this page too large."""
-    if not (has_film(place) and (place / "report.html").is_file()):
-        return Markup("")
-    return Markup(f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>')
+    link = ""  # to the film: those of all runs would make this page too large
+    if sections.has_film(place) and (place / "report.html").is_file():
+        link = f'<p><a href="{escape(place.name)}/report.html">The film of its waves</a></p>'
+    return html.details(title, sections.history_figures(row, place, again=False), Markup(link))
 
 
 def _costs(rows: Sequence[Outcome]) -> Markup:
     head = ("run", "tip, mm", "steps", "element-steps", "rod", "barrier", "wall, s", "memory, MB")
-    shown = Table.of(head, [[row.provenance.scene_id, *_cost(row.cost)] for row in rows])
-    return table(shown, compact=True)
+    lines: list[list[Cell]] = []
+    for row in rows:
+        cost, size = row.cost, or_none(row.cost.tip_size)
+        counts = (cost.steps, cost.element_steps, cost.elements_rod, cost.elements_barrier)
+        tip = None if size is None else 1e3 * size
+        cells = (*map(sections.known_cell, counts), cost.wall, sections.known_cell(cost.peak_memory))
+        lines.append([row.provenance.scene_id, tip, *cells])
+    return html.table(Table.of(head, lines), compact=True)
 
 
-def _cost(cost: RunCost) -> list[Cell]:
-    size = or_none(cost.tip_size)
-    counts = (cost.steps, cost.element_steps, cost.elements_rod, cost.elements_barrier)
-    lengths = [None if size is None else 1e3 * size]
-    return [*lengths, *map(known_cell, counts), cost.wall, known_cell(cost.peak_memory)]
-
-
-def _footer(study: Study) -> str:
-    made = f"Made by {study.command}."
+def _footer(study: StudyRecord) -> str:
+    command = f"Made by {study.command}."
     if not study.rows:
-        return made
-    versions = ", ".join(f"{name} {version}" for name, version in study.rows[0].provenance.versions.items())
-    return f"{made} Computed up to {max(row.provenance.created_utc for row in study.rows)} with {versions}."
+        return command
+    versions = html.versions_text(study.rows[0].provenance.versions)
+    return (
+        f"{command} Computed up to {max(row.provenance.created_utc for row in study.rows)} with {versions}."
+    )

@@ -15,7 +15,7 @@ from fem_impact.films.film import RenderResult, context
 from fem_impact.films.motion import FIELDS, FilmData, prepare, to_points
 from fem_impact.films.movement import Span, film_times, read_movement
 from fem_impact.films.views import outer_surface
-from fem_impact.pages.page import live_figure, page, sources
+from fem_impact.pages.html import live_figure, page, sources
 
 FRAMES = 24
 """Moments without a number of frames."""
@@ -59,20 +59,15 @@ def write_view(folder: Path, out: Path, span: Span, field: str) -> RenderResult:
             "are too many moments for a page.", key="--frames", value=len(times), remedy=f"Up to {MOST}."
         )
     motion = prepare(movement, field, times)
-    title, _, _ = context(folder)
+    (title, _, _), style = context(folder), FIELDS[field]
     lead = (
         f"The whole rod, its deformation magnified {motion.peak:g} times, fading to true size at the "
-        f"contact; colours: {_label(field)}. Drag to turn, turn the wheel or pinch to come nearer, drag the "
-        "slider to move in time."
+        f"contact; colours: {style.name}, {style.unit}. Drag to turn, turn the wheel or pinch to come "
+        "nearer, drag the slider to move in time."
     )
     body = (live_figure(_shown(motion, times)), sources(["film"]))
     text = page(title, "Run in three dimensions", lead, f"Fields of {folder.name}.", body)
     return RenderResult(write_text(out, text), tuple(notes), len(times))
-
-
-def _label(field: str) -> str:
-    style = FIELDS[field]
-    return f"{style.name}, {style.unit}"
 
 
 def _shown(motion: FilmData, times: np.ndarray) -> dict[str, Any]:

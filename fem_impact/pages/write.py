@@ -104,7 +104,7 @@ def _notes(run: Path, drawn: Future[list[str]]) -> list[str]:
 def _attempt(folder: Path, make: Callable[[Path], object]) -> list[str]:
     """Return the notes of making something, or why it could not be made."""
     try:
-        made = make(folder)
+        result = make(folder)
     except FemImpactError as error:
         return [f"{folder.name}: {error}"]
-    return list(made) if isinstance(made, tuple) else []
+    return list(result) if isinstance(result, tuple) else []

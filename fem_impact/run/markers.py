@@ -40,7 +40,8 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
         np.array([np.cos(alpha), 0.0, -np.sin(alpha)]),
     )
     arm = -lever_of(result.plan.scene.projectile.length) * axis
-    centre = _start_centre(result)
+    points = result.model.geometry.rod_points[~result.model.geometry.rod.mesh.is_hanging]
+    centre = result.view.mass @ points / result.view.mass.sum() * [1.0, 0.0, 1.0]
     rows = np.stack([_nearest(centre, result), _nearest(centre + arm, result)])
     u = result.flight.displacement(rows.ravel(), np.array([0.0, WINDOW]))
     by_vibration = (u[:, 1] - u[:, 0]).reshape(-1, 3) / WINDOW  # (markers, 3) m/s
@@ -62,12 +63,6 @@ def _turned(arm: Array, angle: float) -> Array:
     """Return a vector turned from n towards t."""
     c, s = np.cos(angle), np.sin(angle)
     return np.array([c * arm[0] + s * arm[2], 0.0, c * arm[2] - s * arm[0]])
-
-
-def _start_centre(result: SolidResult) -> Array:
-    points = result.model.geometry.rod_points[~result.model.geometry.rod.mesh.is_hanging]
-    centre = result.view.mass @ points / result.view.mass.sum()
-    return np.array([centre[0], 0.0, centre[2]])
 
 
 def _nearest(place: Array, result: SolidResult) -> Ints:

@@ -25,7 +25,8 @@ from fem_impact.modal.motion import (
     V_T_ROW,
 )
 from fem_impact.run.common import rod_flows
-from fem_impact.tables.table import HISTORY, Table
+from fem_impact.tables.history import HISTORY
+from fem_impact.tables.table import Table
 
 CONTACT = "E_contact_J"
 """What Hertz' contact and its tangential springs hold: of both bodies, so an account of its own."""

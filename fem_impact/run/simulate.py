@@ -121,7 +121,8 @@ def _write(outcome: Outcome, out: Path) -> None:
     from fem_impact.files.atomic import write_text
     from fem_impact.files.digests import write_digests
     from fem_impact.files.run_directory import BESIDE
-    from fem_impact.tables.table import CONTACTS, Table
+    from fem_impact.tables.history import CONTACTS
+    from fem_impact.tables.table import Table
 
     contacts = outcome.to_dict()["contacts"]
     if contacts is not None:

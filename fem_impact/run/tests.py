@@ -11,19 +11,19 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from fem_impact.arrays import Ints
+from fem_impact.arrays import Array, Ints
 from fem_impact.physics.contact import arms, projectile
 from fem_impact.scene.camera import Camera, read_camera
 from fem_impact.scene.means import Mean, holds_means, read_means
 from fem_impact.scene.types import OWN
 from rigid import Arms, kinetic_energy
-from rigid.experiments import MeasuredSet, Statistic, measured_set, of_mean
+from rigid.experiments import Statistic, derived_columns, measured_set, of_mean, statistic
 
 if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
-class Tests(Protocol):
+class MeasuredTests(Protocol):
     """Measured tests: the arms d_c, d_d, m, of their e, and mean, scatter and interval of each quantity."""
 
     @property
@@ -43,10 +43,25 @@ class MeanTests:
 
     def statistics(self) -> dict[str, Statistic]:
         """Return mean, standard deviation and 95 % interval of the mean for each stated quantity."""
-        return {name: of_mean(stated.mean, stated.sd, stated.n) for name, stated in self.means.items()}
+        return {name: of_mean(mean.mean, mean.sd, mean.n) for name, mean in self.means.items()}
 
 
-def tests_of(scene: Scene) -> Tests | None:
+@dataclass(frozen=True, slots=True)
+class SingleTests:
+    """Tests known one by one: velocities by name, ``(n,)``, and k2, m2, and mass, kg, of their rod."""
+
+    arms: Arms
+    motion: Mapping[str, Array]
+    k2: float
+    mass: float
+
+    def statistics(self) -> dict[str, Statistic]:
+        """Return mean, standard deviation and 95 % interval of the mean, of what follows from them too."""
+        derived = derived_columns(self.motion, **self.arms._asdict(), k2=self.k2, mass=self.mass)
+        return {name: statistic(values) for name, values in {**self.motion, **derived}.items()}
+
+
+def tests_of(scene: Scene) -> MeasuredTests | None:
     """Return the tests that a scene repeats, None where it repeats none.
 
     A file holds single tests, or means with their scatter. Its arms are taken, or else those of the tip;
@@ -64,7 +79,7 @@ def tests_of(scene: Scene) -> Tests | None:
     return _own(scene, Path(scene.measured).stat().st_mtime_ns)
 
 
-def count(tests: Tests) -> int:
+def count(tests: MeasuredTests) -> int:
     """Return the number of tests, the largest of all quantities."""
     return max(statistic.n for statistic in tests.statistics().values())
 
@@ -82,20 +97,22 @@ def doubtful_tests(scene: Scene) -> list[str]:
     if not file.endswith(OWN) or holds_means(file):
         return []
     camera, body, fall = read_camera(file), projectile(scene), scene.relative
-    motion, speed, told = camera.motion, hypot(fall.v_n, fall.v_t), []
-    for name, wanted in (("v_n", fall.v_n), ("v_t", fall.v_t)):
-        far = np.flatnonzero(abs(motion[name] - wanted) > FAR * speed)
+    motion, speed, warnings = camera.motion, hypot(fall.v_n, fall.v_t), []
+    for name, component in (("v_n", fall.v_n), ("v_t", fall.v_t)):
+        far = np.flatnonzero(abs(motion[name] - component) > FAR * speed)
         if far.size:
-            own = f"has {name} = {motion[name][far[0]]:.4g} m/s, the scene {wanted:.4g} m/s"
-            told.append(f"{_named(camera, far)} {own}: it is not the scene's impact.")
+            values = f"has {name} = {motion[name][far[0]]:.4g} m/s, the scene {component:.4g} m/s"
+            warnings.append(f"{_named(camera, far)} {values}: it is not the scene's impact.")
     means = {"mass": body.mass, "k2": body.k2}
     before = kinetic_energy(motion["v_n"], motion["v_t"], scene.impact.omega, **means)
     after = kinetic_energy(motion["V_n"], motion["V_t"], motion["Omega"], **means)
     gained = np.flatnonzero(after > before)
     if gained.size and not (scene.barrier.v_n or scene.barrier.v_t):
         both = " after ".join(f"{name} = {motion[name][gained[0]]:.4g} m/s" for name in ("V_n", "v_n"))
-        told.append(f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}.")
-    return told
+        warnings.append(
+            f"{_named(camera, gained)} has more kinetic energy after than before the impact: {both}."
+        )
+    return warnings
 
 
 def _named(camera: Camera, rows: Ints) -> str:
@@ -105,31 +122,14 @@ def _named(camera: Camera, rows: Ints) -> str:
 
 
 @lru_cache(maxsize=32)
-def _own(scene: Scene, changed: int) -> Tests:
+def _own(scene: Scene, changed: int) -> MeasuredTests:
     """Return the tests of a file; ``changed`` is when, so that one that is changed is read again."""
     file = scene.measured or ""
     if holds_means(file):
-        stated = read_means(file)
-        return MeanTests(_arms(scene, stated.arms), stated.means)
-    camera, rod, impact = read_camera(file), scene.projectile, scene.impact
-    body = projectile(scene)
-    return MeasuredSet(
-        id=scene.id,
-        table=0,
-        surface=scene.surface.state,
-        alpha=impact.angle,
-        length=rod.length,
-        diameter=rod.diameter,
-        tip=rod.tip,
-        tip_radius=rod.tip_radius,
-        arms=_arms(scene, camera.arms),
-        mass=body.mass,
-        k2=body.k2,
-        select={},
-        printed={},
-        motion=camera.motion,
-        reconstructed=False,
-    )
+        means = read_means(file)
+        return MeanTests(_arms(scene, means.arms), means.means)
+    camera, body = read_camera(file), projectile(scene)
+    return SingleTests(_arms(scene, camera.arms), camera.motion, body.k2, body.mass)
 
 
 def _arms(scene: Scene, stated: tuple[float, float] | None) -> Arms:

@@ -25,8 +25,7 @@ from fem_impact.solid.separation import Separation
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import StepGuard
 from fem_impact.solid.strain import StrainWatch
-from fem_impact.tables.history import HistoryWriter
-from fem_impact.tables.table import HISTORY
+from fem_impact.tables.history import HISTORY, HistoryWriter
 
 if TYPE_CHECKING:
     from fem_impact.case.plan import Plan

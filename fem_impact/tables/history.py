@@ -13,7 +13,33 @@ import numpy as np
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import write_text
 from fem_impact.files.digests import check_digest
-from fem_impact.tables.table import HISTORY, Plain, Table, csv_line, read_csv, row_of
+from fem_impact.tables.table import Plain, Table, csv_line, read_csv, row_of
+
+HISTORY = (
+    "time_s",
+    "force_n_N",
+    "force_t_N",
+    "contact_nodes",
+    "E_kinetic_rod_J",
+    "E_strain_rod_J",
+    "E_plastic_rod_J",
+    "E_kinetic_barrier_J",
+    "E_strain_barrier_J",
+    "E_plastic_barrier_J",
+    "W_friction_J",
+    "W_closing_J",
+    "W_radiated_J",
+    "W_damping_J",
+    "E_gravity_J",
+    "residual_J",
+    "V_n_m_per_s",
+    "V_t_m_per_s",
+    "Omega_rad_per_s",
+)
+"""One row every few steps: whole rod, dissipations positive."""
+
+CONTACTS = ("start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns")
+"""One row a contact interval: impulses on the whole rod."""
 
 
 class HistoryWriter:
@@ -74,13 +100,13 @@ class HistoryWriter:
         return self.path.stat().st_size
 
     @size.setter
-    def size(self, wanted: int) -> None:
+    def size(self, written: int) -> None:
         """Drop what was written after a checkpoint. Raises ValueError when the file is shorter."""
         self._waiting = []
         size = self.path.stat().st_size if self.path.is_file() else 0
-        if size < wanted:
-            raise ValueError(f"{self.path.name} holds {size} bytes of the {int(wanted)} written before.")
-        _cut_back(self.path, int(wanted))
+        if size < written:
+            raise ValueError(f"{self.path.name} holds {size} bytes of the {int(written)} written before.")
+        _cut_back(self.path, int(written))
 
     def __enter__(self) -> Self:
         return self

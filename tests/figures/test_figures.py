@@ -24,7 +24,8 @@ from fem_impact.figures.style import percent
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ACCOUNTS, shares
-from fem_impact.tables.table import HISTORY, read_csv
+from fem_impact.tables.history import HISTORY
+from fem_impact.tables.table import read_csv
 
 
 @pytest.fixture(scope="module")

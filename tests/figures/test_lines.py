@@ -6,7 +6,7 @@ import pytest
 
 from fem_impact.figures import style
 from fem_impact.figures.live import live
-from fem_impact.figures.panels import Interval, Mark, Panel, Picture, Series, ShadedMap
+from fem_impact.figures.panels import Mark, Panel, Picture, Series, ShadedInterval, ShadedMap
 from fem_impact.figures.still import draw
 from fem_impact.tables.table import read_csv
 
@@ -108,7 +108,7 @@ def test_a_gap_is_no_value(drawn):
 def test_a_live_panel_holds_bands_names_marks_and_intervals():
     values = Series("e of E_0", [0.0, 1.0], [5.0, float("nan")], "points", 0, [0.5, float("nan")])
     shown = Panel("T1/tau", "set", "e_m", (values,), MARKS, (Mark(1.0, "one"),), ("t2", "t4"))
-    told = live(picture([replace(shown, intervals=(Interval(0.0, 0.5, "contact"),))]))["panels"][0]
+    told = live(picture([replace(shown, intervals=(ShadedInterval(0.0, 0.5, "contact"),))]))["panels"][0]
     (trace,) = told["data"]
     assert trace["y"] == [5.0, None] and trace["error_y"]["array"] == [0.5, None]
     assert told["title"] == "<i>T</i><sub>1</sub>/τ"

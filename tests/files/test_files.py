@@ -11,8 +11,8 @@ from hypothesis import strategies as st
 
 from fem_impact.errors import OutputPathError, ResultError
 from fem_impact.files.atomic import atomic_path, make_directory, write_text
-from fem_impact.tables.history import HistoryWriter
-from fem_impact.tables.table import HISTORY, Table, read_csv
+from fem_impact.tables.history import HISTORY, HistoryWriter
+from fem_impact.tables.table import Table, read_csv
 
 
 def test_failing_block_leaves_the_old_file_and_nothing_else(tmp_path):

@@ -13,7 +13,7 @@ import result_maker
 from fem_impact.errors import ResultError
 from fem_impact.files.atomic import write_bytes
 from fem_impact.files.digests import read_signed, signed
-from fem_impact.pages.page import bullets, paragraph, section, table, with_band
+from fem_impact.pages.html import bullets, paragraph, section, table, with_band
 from fem_impact.pages.sections import effects_section
 from fem_impact.pages.study_page import draw_study, read_study
 from fem_impact.pages.write import write_report

@@ -14,7 +14,8 @@ from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 from fem_impact.solid.rodview import centre_gradients, mises
-from fem_impact.tables.table import HISTORY, read_csv
+from fem_impact.tables.history import HISTORY
+from fem_impact.tables.table import read_csv
 
 ACCOUNTS = [name for name in HISTORY if name.startswith(("E_", "W_", "residual"))]
 

@@ -6,7 +6,7 @@ from fem_impact.evidence.studies.convergence import QUANTITIES
 from fem_impact.figures.style import PALETTE
 from fem_impact.outcome.record import KEYS
 from fem_impact.outcome.shares import ACCOUNTS, SHARES, shares
-from fem_impact.tables.table import HISTORY
+from fem_impact.tables.history import HISTORY
 
 
 def test_every_share_is_a_key_with_a_colour_and_is_shown():

@@ -7,7 +7,7 @@ import gzip
 import hashlib
 import json
 import tomllib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from html import escape
@@ -76,6 +76,11 @@ def with_band(value: float | None, width: float | None) -> str:
     return number(value) if width is None or value is None else f"{number(value)} ± {width:.2g}"
 
 
+def versions_text(versions: Mapping[str, str]) -> str:
+    """Return the names and versions of the program and its libraries, one after the other."""
+    return ", ".join(f"{name} {version}" for name, version in versions.items())
+
+
 def _safe(content: str | Markup) -> str:
     return content.text if isinstance(content, Markup) else markup(str(content))
 
@@ -129,16 +134,16 @@ def _scripts() -> tuple[str, str]:
         from plotly.offline import get_plotlyjs
     except ImportError as error:
         raise MissingLibraryError("Pages with figures need plotly: pip install plotly.") from error
-    library, own = get_plotlyjs(), _data("figures.js")
+    library, script = get_plotlyjs(), _data("figures.js")
     digests = " ".join(
         f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
-        for text in (library, own)
+        for text in (library, script)
     )
     packed = base64.b64encode(gzip.compress(library.encode(), mtime=0)).decode()
     elements = (
         '<noscript><p class="notice">The figures of this page need JavaScript; without it they are pictures '
         "in the folder figures beside it.</p></noscript>\n"
-        f'<script id="library" type="application/gzip">{packed}</script>\n<script>{own}</script>'
+        f'<script id="library" type="application/gzip">{packed}</script>\n<script>{script}</script>'
     )
     return f"; script-src {digests}", elements
 
@@ -151,9 +156,9 @@ def sources(named: Iterable[str]) -> Markup:
     named : iterable of str
         Names of effects, and "film" where there is one.
     """
-    wanted = {"always", *named}
+    used = {"always", *named}
     listed = tomllib.loads(_data("sources.toml"))["source"]
-    papers = bullets(entry["text"] for entry in listed if wanted & set(entry["for"]))
+    papers = bullets(entry["text"] for entry in listed if used & set(entry["for"]))
     return section("Sources", details("Papers behind what was used", papers))
 
 
@@ -222,7 +227,7 @@ def film(folder: Path, caption: str) -> Markup:
     path = next((folder / name for name in FILMS if (folder / name).is_file()), None)
     if path is None:
         return Markup("")
-    data = _data_url(path)
+    data = f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
     shown = f'<img src="{data}" alt="{escape(caption)}">'
     if path.suffix == ".mp4":
         shown = f'<video src="{data}" controls loop muted playsinline aria-label="{escape(caption)}"></video>'
@@ -234,7 +239,3 @@ def _bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise ResultError(f"{path}: cannot be read ({error.strerror}).") from error
-
-
-def _data_url(path: Path) -> str:
-    return f"data:{TYPES[path.suffix]};base64,{base64.b64encode(_bytes(path)).decode('ascii')}"
