@@ -5,10 +5,12 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from math import inf
 from pathlib import Path
 from typing import Any
+
+import tomli_w
 
 from fem_impact.scene import fields
 from fem_impact.scene.barrier import Barrier
@@ -50,7 +52,7 @@ def to_toml(scene: Scene, folder: Path | None = None) -> str:
         for place, key, ending in ((tables, "measured", OWN), (tables["projectile"], "mesh", "")):
             if key in place and place[key].endswith(ending):
                 place[key] = os.path.relpath(place[key], folder.resolve())
-    return "\n".join(_lines(tables, "")) + "\n"
+    return tomli_w.dumps(tables)
 
 
 def digest(scene: Scene) -> str:
@@ -124,25 +126,3 @@ def _material(material: Material) -> dict[str, Any]:
 def _written(part: object, wanted: tuple[Parameter, ...]) -> dict[str, Any]:
     values = {parameter: getattr(part, parameter.key) for parameter in wanted}
     return {p.key: p.write(value) for p, value in values.items() if value not in (None, inf)}
-
-
-def _lines(table: Mapping[str, Any], path: str) -> list[str]:
-    """Return a table's own values, then its sub-tables under their headings."""
-    own = [f"{key} = {_value(value)}" for key, value in table.items() if not isinstance(value, Mapping)]
-    heading = ["", f"[{path}]"] if path and own else []
-    below = [
-        line
-        for key, value in table.items()
-        if isinstance(value, Mapping)
-        for line in _lines(value, f"{path}.{key}" if path else key)
-    ]
-    return [*heading, *own, *below]
-
-
-def _value(value: Any) -> str:
-    """Write one TOML value; a JSON string is also a TOML string, since scenes hold printable text only."""
-    if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{key} = {_value(item)}' for key, item in value.items())}}}"
-    if isinstance(value, list):
-        return f"[{', '.join(_value(item) for item in value)}]"
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)

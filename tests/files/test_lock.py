@@ -137,7 +137,7 @@ def test_a_file_system_without_locks_is_used_without(tmp_path, monkeypatch):
     def flock(*_):
         raise OSError(38, "Function not implemented")
 
-    monkeypatch.setattr("fem_impact.files.lock.fcntl.flock", flock)
+    monkeypatch.setattr("fcntl.flock", flock)
     with directory_lock(tmp_path):
         assert (tmp_path / LOCK).exists()
 

@@ -91,7 +91,8 @@ def test_a_profile_is_read_from_a_table_beside_the_scene(tmp_path):
     (tmp_path / "mine.csv").write_text("z [mm],r [mm]\n0,0\n1,4\n5,7\n60,9\n80,6\n")
     text = to_toml(read_dict(scene({"profile": POINTS})))
     head, tail = text.split("profile = ")
-    (tmp_path / "own.toml").write_text(f'{head}profile = "mine.csv"\n{tail.split(chr(10), 1)[1]}')
+    tail = tail.split("\n]\n", 1)[1]
+    (tmp_path / "own.toml").write_text(f'{head}profile = "mine.csv"\n{tail}')
     assert read_toml(tmp_path / "own.toml") == read_dict(scene({"profile": POINTS}))
     (tmp_path / "mine.csv").write_text("z_m,r_m\n# tip\n0,0\n\n0.02,x\n")
     told = r"own\.toml: projectile\.profile: .*mine\.csv: line 5, column r_m: 'x' is not a finite number"
