@@ -10,8 +10,8 @@ from typing import get_args
 from sphinx.util.docutils import SphinxDirective
 
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.cli.about_studies import REPORT, STUDIES
 from fem_impact.cli.parser import build_parser, every_command
+from fem_impact.cli.study import REPORT, STUDIES
 from fem_impact.errors import EXIT_CODES
 from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
 from fem_impact.outcome.keys import markdown_table

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import shlex
 import sys
-from collections.abc import Callable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.common import checked_out, print_json, stated_budget
-from fem_impact.cli.options import Options
-from fem_impact.cli.rigid import SHAPE, angle_of, named_scene, rod_of
+from fem_impact.cli.options import Options, add_text, add_workers, stated_budget
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import checked_out
+from fem_impact.cli.scene_options import ROD, SHAPE, add_rod, add_scene, angle_of, named_scene, rod_of
+from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
 
@@ -20,14 +22,43 @@ SHORT = ("length", "diameter", "height", "angle", "surface")
 """Options of a dropped steel rod that must be given where no scene is."""
 
 
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    dropped = f'fem-impact assess --height "0.82 m" --surface machined {ROD}'
+    parser.state(assess, "fem-impact assess t5b", dropped)
+    add_scene(parser, optional=True)
+    parser.add_argument(
+        "--fidelity",
+        choices=["auto", "modal", "solid"],
+        default="auto",
+        help="auto (default): modal, and solid where the known error of modal leaves the answer open",
+    )
+    add_text(parser, "--tolerance", "TOLERANCE", "change of e that may be neglected (default: 0.05)")
+    budget = "wall time of the finite elements on the cores used, one or two (default: 60 s)"
+    add_text(parser, "--budget", "TIME", budget)
+    add_workers(parser, "runs at a time, 1 or 2 (default: one a core)")
+    carried = "also carry the measured tests over: losses, worst case, bound of the friction heat"
+    parser.add_argument("--heat", action="store_true", help=carried)
+    page = "write a page to print and sign, and verdict.json"
+    parser.add_argument("--out", type=Path, metavar="DIR", help=page)
+    rod = parser.add_argument_group("a dropped steel rod, instead of SCENE")
+    add_rod(rod)
+    add_text(rod, "--height", "HEIGHT", 'drop height, such as "0.82 m"')
+    add_text(rod, "--angle", "ANGLE", 'rod axis to barrier normal, such as "45 deg"')
+    surfaces = ("machined", "contaminated", "cleaned")
+    rod.add_argument("--surface", choices=surfaces, default="", help="state of tip and plate")
+
+
 def assess(options: Options) -> int:
     """Assess one scene and print the verdict, before anything else its three lines."""
+    from fem_impact.answers.verdict.assess import BUDGET
     from fem_impact.answers.verdict.assess import assess as assessed
     from fem_impact.answers.verdict.dropped import dropped
     from fem_impact.answers.verdict.sentences import document
     from fem_impact.jobs.executors import cores
 
-    means = _budget(options), min(options.workers or cores(), 2)
+    budget = stated_budget(options)
+    means = BUDGET if budget is None else budget, min(options.workers or cores(), 2)
     scene = named_scene(options, SHORT) or _short(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
@@ -36,24 +67,27 @@ def assess(options: Options) -> int:
         from fem_impact.scene.write import to_toml
 
         refuse_other_scene(out / "scene.toml", to_toml(scene))
+
+    def tell(sentence: str) -> None:
+        """Print a sentence to a terminal that waits."""
+        if not options.quiet and sys.stderr.isatty():
+            sys.stderr.write(f"{sentence}\n")
+
     try:
-        verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=_teller(options))
+        verdict = assessed(scene, options.fidelity, _tolerance(options), *means, tell=tell)
     except KeyboardInterrupt:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
-    found = document(verdict, _command(options))
+    answer = document(verdict, _command(options))
     if case is not None:
         from fem_impact.answers.verdict.transfer import transfer
 
-        found["transfer"] = transfer(case)
+        answer["transfer"] = transfer(case)
     if out is not None:
         from fem_impact.pages.run_page import write_verdict
 
-        found["page"] = str(write_verdict(verdict, found, out))
-    if options.json:
-        print_json(found)
-    else:
-        sys.stdout.write(_text(found))
+        answer["page"] = str(write_verdict(verdict, answer, out))
+    print_answer(options, answer, _text(answer))
     return 0
 
 
@@ -62,7 +96,7 @@ def _command(options: Options) -> str:
     if options.scene:
         given = [options.scene, *(word for change in options.changes for word in ("--set", change))]
     else:
-        names = [name for name in (*SHORT, *SHAPE) if getattr(options, name, None)]
+        names = [name for name in (*SHORT, *SHAPE) if getattr(options, name)]
         given = [word for name in names for word in (f"--{name.replace('_', '-')}", getattr(options, name))]
     tolerance = ["--tolerance", options.tolerance] if options.tolerance else []
     return shlex.join(["fem-impact", "assess", *given, *tolerance])
@@ -74,8 +108,8 @@ def _short(options: Options) -> Scene:
     from fem_impact.answers.verdict.dropped import scene_of
     from fem_impact.scene.units import option_quantity
 
-    height = option_quantity(options.height or "", "length", "--height")
-    return scene_of(DroppedRod(rod_of(options), height, angle_of(options), options.surface or ""))
+    height = option_quantity(options.height, "length", "--height")
+    return scene_of(DroppedRod(rod_of(options), height, angle_of(options), options.surface))
 
 
 def _tolerance(options: Options) -> float:
@@ -87,40 +121,21 @@ def _tolerance(options: Options) -> float:
         return float(options.tolerance)
     except ValueError:
         remedy = "It is the change of e that may be neglected: give one such as 0.05."
-        raise UsageError(
-            "is not a number.", key="--tolerance", value=options.tolerance, remedy=remedy
-        ) from None
+        value = options.tolerance
+        raise UsageError("is not a number.", key="--tolerance", value=value, remedy=remedy) from None
 
 
-def _budget(options: Options) -> float:
-    from fem_impact.answers.verdict.assess import BUDGET
-
-    stated = stated_budget(options)
-    return BUDGET if stated is None else stated
-
-
-def _teller(options: Options) -> Callable[[str], object]:
-    """Return a function that prints a sentence to a terminal that waits; silent where nobody looks on."""
-    if options.quiet or not sys.stderr.isatty():
-        return lambda sentence: None
-    return lambda sentence: sys.stderr.write(f"{sentence}\n")
-
-
-def _text(found: dict[str, Any]) -> str:
+def _text(answer: dict[str, Any]) -> str:
     from fem_impact.answers.verdict.sentences import lines_of
 
-    lines = [line for title, sentence in found["box"] for line in wrapped(f"{title} {sentence}")]
-    lines += [f"Next step: {found['next_step']}"] if found["next_step"] else []
-    lines += ["", "What this rests on", *lines_of(found["basis"], indent="  ")]
+    lines = [line for title, sentence in answer["box"] for line in wrapped(f"{title} {sentence}")]
+    lines += [f"Next step: {answer['next_step']}"] if answer["next_step"] else []
+    lines += ["", "What this rests on", *lines_of(answer["basis"], indent="  ")]
     lines += ["", "What it does not cover"]
-    lines += [line for sentence in found["not_covered"] for line in wrapped(f"- {sentence}", "  ")]
-    if "transfer" in found:
+    lines += [line for sentence in answer["not_covered"] for line in wrapped(f"- {sentence}", "  ")]
+    if "transfer" in answer:
         from fem_impact.answers.verdict.text import transfer_text
 
-        lines += [
-            "",
-            "Measured tests carried over to this drop",
-            "",
-            transfer_text(found["transfer"]).rstrip(),
-        ]
-    return "\n".join([*lines, *([f"page: {found['page']}"] if "page" in found else [])]) + "\n"
+        carried = transfer_text(answer["transfer"]).rstrip()
+        lines += ["", "Measured tests carried over to this drop", "", carried]
+    return "\n".join([*lines, *([f"page: {answer['page']}"] if "page" in answer else [])]) + "\n"

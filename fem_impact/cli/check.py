@@ -7,8 +7,11 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.cli.common import changed_scene, headed, print_json, say_kept, shown_path, size_text
 from fem_impact.cli.options import Options
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import shown_path
+from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
+from fem_impact.cli.terminal import headed, print_json, size_text
 from fem_impact.errors import UsageError
 from fem_impact.progress import clock_text
 from fem_impact.scene.fields import DEFAULTS
@@ -27,6 +30,21 @@ if TYPE_CHECKING:
 
 DRAWINGS = (".png", ".svg")
 LONG = "--long prints every value with its source, flow stresses, and what leaving out each effect changes."
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    examples = (
+        "fem-impact check t5b --long",
+        "fem-impact check t5b --set accuracy.tip_size='0.5 mm'",
+        "fem-impact check tube --drawing tube.svg",
+    )
+    parser.state(check, *examples)
+    add_scene(parser)
+    details = "print every value with its source, flow stresses, and what each effect adds"
+    parser.add_argument("--long", action="store_true", help=details)
+    drawing = "draw the projectile with its materials, first contact and mass centre into a .png or .svg file"
+    parser.add_argument("--drawing", type=Path, default=None, metavar="FILE", help=drawing)
 
 
 def check(options: Options) -> int:

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
-import sys
-
-from fem_impact.cli.common import print_json
 from fem_impact.cli.options import Options
-from fem_impact.cli.parser import build_parser
+from fem_impact.cli.parser import CommandParser, build_parser
+from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError
+
+ABOUT = (
+    "Print a script by which the shell completes commands and options when you press Tab. It needs the "
+    "package shtab: pip install 'fem-impact[completion]'."
+)
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    parser.state(completion, 'eval "$(fem-impact completion bash)"', about=ABOUT)
+    parser.add_argument("shell", choices=("bash", "zsh", "tcsh"), help="your shell")
 
 
 def completion(options: Options) -> int:
@@ -24,8 +33,5 @@ def completion(options: Options) -> int:
         remedy = "Install it: pip install 'fem-impact[completion]'."
         raise MissingLibraryError(f"completion needs the package shtab. {remedy}") from None
     script = shtab.complete(build_parser(), options.shell)
-    if options.json:
-        print_json({"shell": options.shell, "script": script})
-    else:
-        sys.stdout.write(script)
+    print_answer(options, {"shell": options.shell, "script": script}, script)
     return 0

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import json
 import shlex
-import sys
 from contextlib import closing
 from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.common import changed_scene, checked_out, print_json, stated_budget
-from fem_impact.cli.options import Options
-from fem_impact.cli.terminal import chosen_meter
+from fem_impact.cli.options import Options, add_out, add_page, add_text, stated_budget
+from fem_impact.cli.page import asked_page, write_study_page
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import checked_out
+from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.tables.text import wrapped
 
@@ -24,6 +26,27 @@ if TYPE_CHECKING:
 
 
 PAPER, PAGE = "paper", "report.html"
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    parser.state(cost, 'fem-impact cost t5b --target "5 %" --budget "30 s" --of e,mu')
+    add_scene(parser)
+    for option, metavar, text in (
+        ("--target", "SHARE", "name the cheapest setting within an error, such as '2 %%'"),
+        (
+            "--budget",
+            "TIME",
+            "run no more than fits into so much wall time, such as '30 s', and name the best setting within "
+            "it; here one run at a time on one core, where `run` uses two",
+        ),
+        ("--of", "NAMES", "quantities that count, as --of e,mu (default: e,E_vib)"),
+        ("--finest", "SIZE", "smallest element at the tip, such as '0.25 mm' (default: three meshes)"),
+    ):
+        add_text(parser, option, metavar, text)
+    parser.add_argument("--stored", action="store_true", help="judge what has run so far, and run nothing")
+    add_out(parser, "results/cost/SCENE")
+    add_page(parser, "with SCENE = paper, also")
 
 
 def cost(options: Options) -> int:
@@ -53,16 +76,13 @@ def cost(options: Options) -> int:
     with directory_lock(out):
         study = _measured(scene, out, options, meshes, budget or inf)
         notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
-    told = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
+    advice = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
     if target is not None:
-        told.append(group_sentence(study.settings, study.quantities, names, target))
-    if options.json:
-        print_json({**study.to_dict(), "advice": told, "notes": notes})
-    else:
-        sys.stderr.writelines(f"note: {note}\n" for note in notes)
-        lines = [line for answer in told for line in wrapped(answer)]
-        paths = [f"all quantities: {out / 'cost.txt'}", f"page: {out / PAGE}", f"results: {out}"]
-        sys.stdout.write("\n".join([*lines, "", text_table(study, names), "", *paths]) + "\n")
+        advice.append(group_sentence(study.settings, study.quantities, names, target))
+    lines = [line for sentence in advice for line in wrapped(sentence)]
+    paths = [f"all quantities: {out / 'cost.txt'}", f"page: {out / PAGE}", f"results: {out}"]
+    text = "\n".join([*lines, "", text_table(study, names), "", *paths]) + "\n"
+    print_answer(options, {**study.to_dict(), "advice": advice, "notes": notes}, text, notes)
     return RunError.exit_code if study.failures else 0
 
 
@@ -139,7 +159,6 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
     from fem_impact.answers.report import Request, publish
     from fem_impact.answers.wanted_error import summarise
-    from fem_impact.cli.page import asked_page, write_study_page
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
     from fem_impact.files.atomic import write_text
     from fem_impact.files.lock import directory_lock
@@ -162,11 +181,7 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
         notes = page(out)
     if stated_page:
         write_study_page(stated_page, _line(options), made.text, out)
-    if options.json:
-        print_json({**document, "notes": notes})
-    else:
-        sys.stderr.writelines(f"note: {note}\n" for note in notes)
-        answer = [line for finding in made.document["findings"] for line in wrapped(finding)]
-        paths = [f"page: {out / PAGE}", f"results: {out}", f"summary: {out / 'summary.json'}"]
-        sys.stdout.write("\n".join([*answer, "", *paths]) + "\n")
+    lines = [line for finding in made.document["findings"] for line in wrapped(finding)]
+    paths = [f"page: {out / PAGE}", f"results: {out}", f"summary: {out / 'summary.json'}"]
+    print_answer(options, {**document, "notes": notes}, "\n".join([*lines, "", *paths]) + "\n", notes)
     return RunError.exit_code if any(cost.failures for cost in costs.values()) else 0

@@ -1,6 +1,6 @@
 """The ``fem-impact`` command: reads the command line, calls one handler, turns errors into exit codes.
 
-Handlers are imported when they are called, so that ``--help`` loads no numerical library.
+A command's module is imported when the line names it, so that ``--help`` loads no numerical library.
 """
 
 from __future__ import annotations
@@ -11,11 +11,10 @@ import signal
 import sys
 import threading
 from collections.abc import Callable, Sequence
-from importlib import import_module
 
 from fem_impact.cli.options import Options
 from fem_impact.cli.parser import build_parser, read_line
-from fem_impact.cli.terminal import printable_streams
+from fem_impact.cli.terminal import print_json, printable_streams
 from fem_impact.errors import EXIT_CODES, FemImpactError, OutputPathError, RunError, UsageError
 from fem_impact.version import __version__
 
@@ -38,20 +37,14 @@ def _called(argv: Sequence[str] | None) -> int:
         asked = sys.argv[1:] if argv is None else argv
         return _complain(str(error), error.exit_code, Options(json="--json" in asked))
     if options.version:
-        return _version()
+        sys.stdout.write(f"fem-impact {__version__}\n")
+        return 0
     if not options.handler:
-        build_parser().print_help(sys.stderr)
+        build_parser(()).print_help(sys.stderr)
         return 2
     if threading.current_thread() is threading.main_thread():  # signals are set there only
         signal.signal(signal.SIGTERM, signal.default_int_handler)  # cleans up like Ctrl-C
-    return _guarded(_handler(options.handler), options)
-
-
-def _handler(path: str) -> Callable[[Options], int]:
-    """Import and return ``module:function``."""
-    module, _, name = path.partition(":")
-    function: Callable[[Options], int] = getattr(import_module(module), name)
-    return function
+    return _guarded(options.handler, options)
 
 
 def _guarded(handler: Callable[[Options], int], options: Options) -> int:
@@ -80,8 +73,6 @@ def _complain(message: str, code: int, options: Options) -> int:
     kind = "interrupted" if code == 130 else "error"
     sys.stderr.write(f"fem-impact: {kind}: {message}\n")
     if options.json:
-        from fem_impact.cli.common import print_json
-
         print_json({"error": {"kind": EXIT_CODES[code], "exit_code": code, "message": message}})
     return code
 
@@ -92,8 +83,3 @@ def _disk_message(error: OSError) -> str:
     if error.errno in (errno.ENOSPC, errno.EDQUOT):
         return f"{fault} The disk is full: free some space or choose another --out, then run again."
     return f"{fault} Check that the place exists and can be written, or choose another --out."
-
-
-def _version() -> int:
-    sys.stdout.write(f"fem-impact {__version__}\n")
-    return 0

@@ -1,18 +1,19 @@
-"""Options of the command line, and how their values are read."""
+"""Options of the command line: their types, and those that several commands share."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from fem_impact.errors import UsageError
 from fem_impact.options import CHECKPOINT_INTERVAL
 
 
 class Options(argparse.Namespace):
     """Options of the command line; those of other commands than the given one have their defaults."""
 
-    handler: str = ""
+    handler: Callable[[Options], int] | None = None
     version: bool = False
     json: bool = False
     quiet: bool = False
@@ -26,7 +27,7 @@ class Options(argparse.Namespace):
     out: Path | None = None
     drawing: Path | None = None
     long: bool = False
-    problem: str | None = None
+    problem: str = ""
     only: str = ""
     parameters: bool = False
     materials: bool = False
@@ -54,36 +55,45 @@ class Options(argparse.Namespace):
     file: Path
     number: int
     shell: str = ""
-    length: str | None = None
-    diameter: str | None = None
+    length: str = ""
+    diameter: str = ""
     tip: str = ""
-    tip_radius: str | None = None
-    d_c: str | None = None
-    d_d: str | None = None
-    angle: str | None = None
-    height: str | None = None
-    surface: str | None = None
+    tip_radius: str = ""
+    d_c: str = ""
+    d_d: str = ""
+    angle: str = ""
+    height: str = ""
+    surface: str = ""
     tolerance: str = ""
     heat: bool = False
 
 
-def seconds(text: str) -> float:
-    """Read a time in s."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = -1.0
-    if not 0 <= value < 1e6:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
-    return value
+def add_text(parser: argparse._ActionsContainer, option: str, metavar: str, meaning: str) -> None:
+    """Add an option that takes a text, empty where it is left out."""
+    parser.add_argument(option, default="", metavar=metavar, help=meaning)
 
 
-def size(text: str) -> tuple[int, int]:
-    """Read width and height in pixels."""
-    width, by, height = text.partition("x")
-    if not (by and width.isdecimal() and height.isdecimal()):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1280x720")
-    return int(width), int(height)
+def add_out(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add the directory to write to."""
+    parser.add_argument("--out", type=Path, metavar="DIR", help=f"where to write (default: {default})")
+
+
+def add_workers(
+    parser: argparse.ArgumentParser, meaning: str = "runs at a time (default: one a core)"
+) -> None:
+    """Add the number of processes."""
+    parser.add_argument("--workers", type=at_least_one, metavar="N", help=meaning)
+
+
+def add_cluster(parser: argparse.ArgumentParser) -> None:
+    """Add the address of a cluster."""
+    add_text(parser, "--scheduler", "ADDRESS", "run on this dask.distributed cluster instead")
+
+
+def add_page(parser: argparse.ArgumentParser, words: str) -> None:
+    """Add the page of evidence to write."""
+    text = f"{words} write the result as a page with date, machine and commit, such as docs/evidence/NAME.md"
+    add_text(parser, "--page", "FILE.md", text)
 
 
 def at_least_one(text: str) -> int:
@@ -91,3 +101,18 @@ def at_least_one(text: str) -> int:
     if not text.isdecimal() or not 1 <= int(text) <= 1024:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes (1 to 1024)")
     return int(text)
+
+
+def stated_budget(options: Options) -> float | None:
+    """Return the time, s, of ``--budget``, None where it is not given."""
+    from fem_impact.scene.units import option_quantity
+
+    if not options.budget:
+        return None
+    budget = option_quantity(options.budget, "time", "--budget")
+    if budget <= 0:
+        raise UsageError("must lie above 0.", key="--budget", value=options.budget)
+    if options.fidelity in ("rigid", "modal"):
+        problem = f"is for finite elements, and --fidelity {options.fidelity} runs none."
+        raise UsageError(problem, key="--budget", value=options.budget, remedy="Leave out one of the two.")
+    return budget

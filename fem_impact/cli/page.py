@@ -7,14 +7,14 @@ import platform
 import re
 import shutil
 import subprocess
+from datetime import UTC, datetime
 from pathlib import Path
 
 import fem_impact
-from fem_impact.cli.common import checked_file
 from fem_impact.cli.options import Options
+from fem_impact.cli.paths import checked_file
 from fem_impact.errors import OutputPathError, UsageError
 from fem_impact.files.atomic import read_text, write_text
-from fem_impact.outcome.record import utc_now
 
 MADE = "Made by `"
 
@@ -36,9 +36,8 @@ def checked_page(option: str) -> Path:
     """
     path = Path(option)
     if path.suffix != ".md":
-        raise UsageError(
-            "is no Markdown file.", key="--page", value=option, remedy="Write a name that ends in .md."
-        )
+        remedy = "Write a name that ends in .md."
+        raise UsageError("is no Markdown file.", key="--page", value=option, remedy=remedy)
     if not path.parent.is_dir():
         raise OutputPathError(f"{path.parent}: there is no such directory. Make it before, or change --page.")
     if path.exists() and f"\n{MADE}" not in read_text(path):
@@ -49,7 +48,7 @@ def checked_page(option: str) -> Path:
 
 def write_page(path: Path, title: str, about: str, command: str, body: str) -> None:
     """Write a page: title, what it shows, the command with day, machine and commit, and the result."""
-    made = f"{MADE}{command}` on {utc_now()[:10]}, {machine()}, {version()}."
+    made = f"{MADE}{command}` on {datetime.now(UTC):%Y-%m-%d}, {machine()}, {version()}."
     parts = (f"# {title}", about, made, body.strip())
     write_text(path, "\n\n".join(part for part in parts if part) + "\n")
 
@@ -78,15 +77,8 @@ def machine() -> str:
 
 def version() -> str:
     """Return the commit of the sources, or the version of the package where they are no repository."""
-    line = [
-        "git",
-        "-C",
-        str(Path(fem_impact.__file__).parents[1]),
-        "describe",
-        "--always",
-        "--dirty",
-        "--exclude=*",
-    ]
+    root = str(Path(fem_impact.__file__).parents[1])
+    line = "git", "-C", root, "describe", "--always", "--dirty", "--exclude=*"
     try:
         done = subprocess.run(line, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):

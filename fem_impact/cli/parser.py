@@ -1,34 +1,121 @@
-"""The command line: all commands with their options, and how a line is read."""
+"""The command line: its parser, the list of all commands, and how a line is read."""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Iterator, Sequence
+import sys
+from collections.abc import Callable, Collection, Iterator, Sequence
+from importlib import import_module
+from textwrap import fill
+from typing import Any, NoReturn
 
-from fem_impact.cli.about_evidence import add_audit, add_figure, add_stress, add_verify
-from fem_impact.cli.about_results import (
-    add_coefficients,
-    add_completion,
-    add_render,
-    add_report,
-    add_schema,
-)
-from fem_impact.cli.about_scenes import add_assess, add_check, add_cost, add_run, add_scenes, add_sweep
-from fem_impact.cli.about_studies import add_study
-from fem_impact.cli.command import CommandParser
 from fem_impact.cli.options import Options
-from fem_impact.errors import EXIT_CODES
+from fem_impact.errors import EXIT_CODES, UsageError, did_you_mean
 
-COMMANDS = (
-    *(add_run, add_check, add_assess, add_sweep, add_cost, add_scenes),
-    *(add_report, add_render, add_study, add_verify, add_stress),
-    *(add_audit, add_coefficients, add_figure, add_schema, add_completion),
-)
-"""What adds each command, in the order of the help."""
+COMMANDS = {
+    "run": "compute one scene and write its results",
+    "check": "check a scene and say what it comes to, without computing",
+    "assess": "say whether rigid theory may be used for a scene, and what vibration costs",
+    "sweep": "compute a scene with values varied in all combinations",
+    "cost": "show what accuracy costs: error and computing time of every setting",
+    "scenes": "list the shipped scenes, or the materials",
+    "report": "write the report as one HTML file",
+    "render": "make a film of the stress waves",
+    "study": "compute many runs and draw conclusions from them",
+    "verify": "run problems with known answers through the solver and judge it",
+    "stress": "run extreme scenes; each must close its energy balance, or be refused or stopped with a "
+    "reason",
+    "audit": "recompute every printed column of the paper's tables",
+    "coefficients": "work out e, mu and e_m of your own camera data, with intervals",
+    "figure": "draw a figure of the paper, with intervals and its data",
+    "schema": "print the JSON Schema of outcome.json",
+    "completion": "print a script that lets the shell complete commands and options",
+}
+"""What each command does, in the order of the help. Its module of the same name here states the rest."""
+
+WIDTH = 79  # letters of a line of help
 
 
-def build_parser() -> CommandParser:
-    """Return the parser of all commands."""
+class HelpLines(argparse.RawDescriptionHelpFormatter):
+    """Help with its paragraphs as they are; argparse leaves no room for the indent of listed commands."""
+
+    def add_argument(self, action: argparse.Action) -> None:
+        """Add an argument and, of listed commands, their indent."""
+        super().add_argument(action)
+        if isinstance(action, argparse._SubParsersAction):
+            self._action_max_length += 2
+
+
+class CommandParser(argparse.ArgumentParser):
+    """A parser that raises `UsageError` instead of ending the program, and answers with the nearest name."""
+
+    def __init__(self, **settings: Any) -> None:
+        super().__init__(formatter_class=HelpLines, **settings)
+
+    def state(self, handler: Callable[[Options], int], *examples: str, about: str = "") -> None:
+        """State what a command does, and add the options that all commands have.
+
+        Parameters
+        ----------
+        handler : function that carries it out and returns the exit code
+        examples : whole command lines that the help shows
+        about : what it does, where its line in `COMMANDS` is not enough; empty lines part paragraphs
+        """
+        about = about or f"{self.description}"
+        paragraphs = (fill(" ".join(part.split()), WIDTH) for part in about.split("\n\n"))
+        self.description = "\n\n".join(paragraphs)
+        self.epilog = "\n  ".join(["example:" if len(examples) == 1 else "examples:", *examples])
+        self.add_argument("--json", action="store_true", help="print one JSON document on standard output")
+        self.add_argument("--quiet", action="store_true", help="show no progress")
+        self.set_defaults(handler=handler)
+
+    def error(self, message: str) -> NoReturn:
+        """Raise a `UsageError` that names the command and its help."""
+        place = self.prog.removeprefix("fem-impact").strip()
+        sentence = message if message.endswith((".", "?")) else f"{message}."
+        raise UsageError(sentence, source=place, remedy=f"`{self.prog} --help` lists what there is.")
+
+    def parse_known_args(  # type: ignore[override]
+        self, args: Sequence[str] | None = None, namespace: Any = None
+    ) -> tuple[argparse.Namespace, list[str]]:
+        """Read a command line; all of it must be understood.
+
+        argparse gives a positional that may be left out nothing once an option stands before it, as in
+        ``study sets --quick t4``: what is left over goes to that positional here.
+        """
+        options, rest = super().parse_known_args(args, namespace)
+        unknown = next((word for word in rest if word.startswith("-")), None)
+        if unknown:
+            known = did_you_mean(unknown.partition("=")[0], self._option_string_actions, "")
+            self.error(f"there is no option {unknown}. {known}".rstrip())
+        if rest and not self._take(options, rest):
+            self.error(f"{' '.join(rest)!r} is not expected here")
+        return options, []
+
+    def _take(self, options: argparse.Namespace, rest: list[str]) -> bool:
+        """Give the rest to the positional that may be left out; return whether there is one that takes it."""
+        for action in self._get_positional_actions():
+            if action.nargs == argparse.ZERO_OR_MORE:
+                setattr(options, action.dest, [*getattr(options, action.dest), *rest])
+                return True
+            if action.nargs == argparse.OPTIONAL and len(rest) == 1 and not getattr(options, action.dest):
+                setattr(options, action.dest, rest[0])
+                return True
+        return False
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a value that is none of the choices, with the nearest one."""
+        if action.choices is not None and value not in action.choices:
+            known = [str(choice) for choice in action.choices]
+            hint = did_you_mean(str(value), known, f"Known: {', '.join(known)}.")
+            raise argparse.ArgumentError(action, f"there is no {str(value)!r}. {hint}")
+
+
+def build_parser(words: Collection[str] = COMMANDS) -> CommandParser:
+    """Return the parser of all commands; the modules of those named in ``words`` add their options.
+
+    No other module is imported, so that the list of commands and the help of one come at once.
+    """
     codes = "\n".join(f"  {code:>3}  {meaning}" for code, meaning in EXIT_CODES.items())
     parser = CommandParser(
         prog="fem-impact",
@@ -38,8 +125,10 @@ def build_parser() -> CommandParser:
     )
     parser.add_argument("--version", action="store_true", help="print the version")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
-    for add in COMMANDS:
-        add(commands)
+    for name, summary in COMMANDS.items():
+        command = commands.add_parser(name, help=summary, description=f"{summary[0].upper()}{summary[1:]}.")
+        if name in words:
+            import_module(f"fem_impact.cli.{name}").add_options(command)
     return parser
 
 
@@ -53,7 +142,7 @@ def every_command(parser: argparse.ArgumentParser, name: str = "") -> Iterator[t
 
 
 def read_line(argv: Sequence[str] | None) -> Options:
-    """Read the command line.
+    """Read the command line, that of the program where it is None.
 
     Raises
     ------
@@ -62,4 +151,5 @@ def read_line(argv: Sequence[str] | None) -> Options:
     SystemExit
         It asks for help, which is printed.
     """
-    return build_parser().parse_args(argv, namespace=Options())
+    words = sys.argv[1:] if argv is None else argv
+    return build_parser(words).parse_args(words, namespace=Options())

@@ -1,33 +1,28 @@
-"""The commands ``run``, which computes a scene, and ``scenes``, which lists those shipped."""
+"""The command ``run``: computes one scene and prints its outcome."""
 
 from __future__ import annotations
 
-import math
+import argparse
 import shlex
 import sys
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from fem_impact.cli.common import (
-    changed_scene,
-    checked_out,
-    print_json,
-    say_kept,
-    shown_path,
-    size_text,
-    stated_budget,
-    told_kept,
-)
-from fem_impact.cli.options import Options
-from fem_impact.cli.terminal import chosen_meter, print_table
+from fem_impact.cli.options import Options, add_out, add_text, stated_budget
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import checked_out, shown_path, told_kept
+from fem_impact.cli.scene_options import add_scene, changed_scene, say_kept
+from fem_impact.cli.terminal import chosen_meter, headed, print_table, size_text
 from fem_impact.errors import RunError, UsageError
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.jobs.executors import cores
-from fem_impact.options import RunOptions
+from fem_impact.options import CHECKPOINT_INTERVAL, FIDELITIES, RunOptions
+from fem_impact.outcome.keys import Num, Unknown, known, or_none
+from fem_impact.outcome.record import KEY_TABLE, Outcome
+from fem_impact.outcome.shares import ABOVE, ADDED, EnergyShare, above_modes, shares
 from fem_impact.progress import clock_text
-from fem_impact.scene.library import materials, shipped
-from fem_impact.scene.shipped import load
 from fem_impact.scene.types import OWN, Scene
 from fem_impact.scene.write import digest
 from fem_impact.tables.table import Table
@@ -36,11 +31,50 @@ from fem_impact.tables.text import wrapped
 if TYPE_CHECKING:
     from fem_impact.answers.refine.loop import OwnLadder
     from fem_impact.answers.wanted_error import ChosenSetting
-    from fem_impact.outcome.record import Outcome
+    from fem_impact.outcome.groups import Energy
 
 
 LONG = 600.0
 """Expected computing time, s, above which `run` prints it before it starts."""
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    example = "fem-impact run t5b --fidelity modal --set impact.angle='30 deg'"
+    parser.state(run, "fem-impact run quick", example)
+    add_scene(parser)
+    parser.add_argument(
+        "--fidelity",
+        choices=FIDELITIES,
+        default="",
+        help="rigid: impulses (at once); modal: vibration modes and a contact law (a second); "
+        "solid: finite elements (default)",
+    )
+    budget = (
+        "wall time on the cores used, one or two, for a scene that states its error, if no similar "
+        "scene was measured (default: 2 min)"
+    )
+    add_text(parser, "--budget", "TIME", budget)
+    add_out(parser, "results/SCENE")
+    parser.add_argument("--resume", action="store_true", help="go on from the checkpoint of a stopped run")
+    parser.add_argument(
+        "--checkpoint",
+        type=_seconds,
+        default=CHECKPOINT_INTERVAL,
+        metavar="SECONDS",
+        help="time between checkpoints (default: 30)",
+    )
+
+
+def _seconds(text: str) -> float:
+    """Read a time in s."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = -1.0
+    if not 0 <= value < 1e6:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a time in seconds (0 to 1e6)")
+    return value
 
 
 def run(options: Options) -> int:
@@ -56,7 +90,6 @@ def run(options: Options) -> int:
     if options.resume and scene.accuracy.target is None and not (out / CHECKPOINT).exists():
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     from fem_impact.answers.wanted_error import simulate
-    from fem_impact.cli.outcome import print_outcome
 
     try:
         with told_kept(out, options), closing(chosen_meter(options)) as meter:
@@ -86,12 +119,9 @@ def _say_comparison(scene: Scene, outcome: Outcome, options: Options) -> None:
     if tests is None:
         return
     head = ("", "model", "measured", "SD", "")
+    numbers = "model", "measured_mean", "measured_sd"
     rows = [
-        (
-            row["quantity"],
-            *(f"{row[key]:.4g}" for key in ("model", "measured_mean", "measured_sd")),
-            row["verdict"],
-        )
+        (row["quantity"], *(f"{row[key]:.4g}" for key in numbers), row["verdict"])
         for row in compare(outcome, tests)
         if row["measured_mean"] is not None and row["model"] is not None
     ]
@@ -117,9 +147,8 @@ def _setting(scene: Scene, options: Options) -> ChosenSetting | OwnLadder | None
     if scene.accuracy.target is None:
         if budget is not None:
             remedy = """Add --set 'accuracy="5 %"', or leave it out."""
-            raise UsageError(
-                "is for a wanted error, and the scene gives a mesh.", key="--budget", remedy=remedy
-            )
+            problem = "is for a wanted error, and the scene gives a mesh."
+            raise UsageError(problem, key="--budget", remedy=remedy)
         return None
     from fem_impact.answers.wanted_error import settle
 
@@ -154,40 +183,140 @@ def _default_out(scene: Scene, options: Options) -> Path:
     return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
 
 
-def scenes(options: Options) -> int:
-    """List the shipped scenes, or the shipped materials."""
-    if options.materials:
-        return _materials(options)
-    listed = [_listed(load(name)) for name in shipped()]
-    if options.json:
-        print_json({"scenes": listed})
-    else:
-        rows = [[scene[key] for key in ("id", "speed", "title")] for scene in listed]
-        print_table(Table.of(("id", "speed", "title"), rows, left=range(3)), options)
-    return 0
+_MOTION = (
+    ("impulse ratio mu", "mu", ""),
+    ("V_n after", "V_n_m_per_s", "m/s"),
+    ("V_t after", "V_t_m_per_s", "m/s"),
+    ("Omega after", "Omega_rad_per_s", "rad/s"),
+)
+_BARRIER = (
+    ("V_n of the barrier after", "V_bn_m_per_s", "m/s"),
+    ("V_t of the barrier after", "V_bt_m_per_s", "m/s"),
+)
+HEATING = "friction + top 0.1 mm of both"
+"""Label of the work that can heat the contact."""
+_IF_ON = ("damping", "contact", "plate", "barrier")
+"""Shares that are left out where they are not known: their effects are off."""
 
 
-def _materials(options: Options) -> int:
-    """List the shipped materials with their values."""
-    head = ("material", "E_Pa", "nu", "rho_kg_per_m3", "yield_stress_Pa", "ultimate_stress_Pa")
-    rows = [
-        (name, m.E, m.nu, m.rho, *(x if x < math.inf else None for x in (m.yield_stress, m.ultimate_stress)))
-        for name, m in materials().items()
-    ]
-    if options.json:
-        print_json({"materials": [dict(zip(head, row, strict=True)) for row in rows]})
-    else:
-        told = [(row[0], *("none" if x is None else f"{x:.4g}" for x in row[1:])) for row in rows]
-        print_table(Table.of(head, told), options)
-    return 0
+def print_outcome(outcome: Outcome, out: Path, own_tests: bool = False) -> None:
+    """Print the motion after impact, where the energy went, and every warning.
+
+    ``own_tests``: the scene names tests of the user's own, with whose arms e is worked out if they state any.
+    """
+    lines = [headed(outcome.provenance.scene_id, outcome.provenance.scene_title), ""]
+    rows = _motion_rows(outcome, own_tests)
+    lines += [_motion_line(outcome, *row) for row in rows]
+    of = "" if isinstance(outcome.validity.mesh_limit, Unknown) else ", on the finest mesh"
+    if not outcome.validity.finished:
+        of = ", at the stop of this unfinished run"
+    gravity = or_none(ADDED.of(outcome.energy))
+    added = "" if gravity is None else f", to which gravity added {100 * gravity:.3f} %"
+    lines += ["", *wrapped(f"of the initial energy, E_0 = {_number(outcome.energy.E_0)} J{added}{of}:")]
+    listed = _listed_shares(outcome)
+    lines += [_share_line(label, value) for label, value in listed.items()]
+    lines += [_share_line("not accounted for", outcome.energy.residual)]
+    lines += ["", _share_line(HEATING, outcome.energy.skin)]
+    if or_none(outcome.energy.below_floor):
+        floor = _value(outcome.energy.vibration_floor)
+        lines += [f"  vibration is below its numerical floor (fraction {floor})"]
+    lines += _accuracy_lines(outcome)
+    motion = {label: KEY_TABLE[name].of(outcome) for label, name, _ in rows}
+    lines += _unknown_lines({**motion, **listed, HEATING: outcome.energy.skin})
+    v = outcome.validity
+    notes = (*v.assumptions, *v.outside, *v.warnings, *_again(outcome))
+    lines += ["", *(line for sentence in notes for line in wrapped(f"note: {sentence}"))]
+    sys.stdout.write("\n".join([*lines, f"results: {out}"]) + "\n")
 
 
-def _listed(scene: Scene) -> dict[str, Any]:
-    speed = math.hypot(scene.relative.v_n, scene.relative.v_t)
-    return {
-        "id": scene.id,
-        "title": scene.title,
-        "speed": f"{speed:.2f} m/s",
-        "measured": scene.measured,
-        "digest": digest(scene),
-    }
+def _motion_rows(outcome: Outcome, own_tests: bool) -> list[tuple[str, str, str]]:
+    """Return label, key and unit of what is told of the motion; of the barrier's only if it moves."""
+    stated = outcome.restitution.tests_state_arms
+    arms, key = ("tests'" if own_tests else "paper's", "e_paper") if stated else ("tip's", "e_edge")
+    rows = [(f"restitution e ({arms} arms)", key, ""), *_MOTION]
+    barrier = outcome.barrier
+    if any(or_none(v) != 0 for v in (barrier.v_bn, barrier.v_bt, barrier.V_bn, barrier.V_bt)):
+        rows += _BARRIER
+    if or_none(barrier.Omega_b) is not None:
+        rows.append(("Omega of the barrier after", "barrier_Omega_rad_per_s", "rad/s"))
+    return rows
+
+
+def _again(outcome: Outcome) -> list[str]:
+    """Return that the rod strikes again later, of a finished run whose velocities are known."""
+    from fem_impact.run.common import strikes_again
+
+    V_n, V_bn = or_none(outcome.motion.V_n), or_none(outcome.barrier.V_bn)
+    if V_n is None or V_bn is None or not outcome.validity.finished:
+        return []
+    sentence = strikes_again(V_n - V_bn).strip()
+    return [sentence] if sentence else []
+
+
+def _listed_shares(outcome: Outcome) -> dict[str, Num]:
+    """Return the shares of E_0 in this run by their labels."""
+    energy, listed = outcome.energy, dict[str, Num]()
+    for share in shares("terminal"):
+        name, value = share.key.path[-1], share.of(energy)
+        if not (isinstance(value, Unknown) and name in _IF_ON):
+            listed[_label(share, energy)] = value
+        if name == "vibration" and (above := above_modes(energy)):
+            listed[ABOVE] = above
+    return listed
+
+
+def _label(share: EnergyShare, energy: Energy) -> str:
+    """Return the label of a share; a body in which nothing yields has no residual stress."""
+    body = share.key.path[-1].removeprefix("locked_")
+    elastic = share.label.startswith("residual") and getattr(energy, f"plastic_{body}") == 0.0
+    return f"elastic energy left in {body}" if elastic else share.label
+
+
+def _accuracy_lines(outcome: Outcome) -> list[str]:
+    """Return expected and achieved error and time of a run whose setting a target error chose."""
+    v = outcome.validity
+    if isinstance(v.accuracy_target, Unknown):
+        return []
+    both = (("expected", v.expected_error, v.expected_wall), ("achieved", v.achieved_error, v.achieved_wall))
+    lines = ["", f"asked for {_percent(v.accuracy_target)}: {known(v.accuracy_setting)}"]
+    judged = "e" if isinstance(outcome.energy.vibration, Unknown) else "e and E_vib"  # a rigid rod has none
+    for label, error, wall in both:
+        lines += [f"  {label} error of {judged} {_percent(error)}, time {_value(wall)} s"]
+    limits = or_none(v.mesh_limit) or {}
+    names = (("e_edge", "e (tip's arms)"), ("E_vib_over_E_0", "E_vib/E_0"))
+    together = ", ".join(f"{label} {_number(limits[name])}" for name, label in names if name in limits)
+    return [*lines, f"  all runs together: {together}"] if together else lines
+
+
+def _percent(value: Num) -> str:
+    return f"not known: {value.reason}" if isinstance(value, Unknown) else f"{100 * value:.2g} %"
+
+
+def _motion_line(outcome: Outcome, label: str, name: str, unit: str) -> str:
+    value, band = outcome.estimate(KEY_TABLE[name])
+    spread = f" +- {_number(band)}" if band is not None else ""
+    text = "not known" if isinstance(value, Unknown) else f"{_number(value)}{spread} {unit}"
+    return f"  {label:<30} {text}".rstrip()
+
+
+def _share_line(label: str, share: Num) -> str:
+    text = f"{'not known':>11}" if isinstance(share, Unknown) else f"{100 * share:9.3f} %"
+    return f"  {label:<30} {text.replace('-0.000', ' 0.000')}"
+
+
+def _unknown_lines(listed: Mapping[str, Num]) -> list[str]:
+    """Return why shares are not known, each reason once."""
+    named: dict[str, list[str]] = {}
+    for label, value in listed.items():
+        if isinstance(value, Unknown):
+            named.setdefault(value.reason, []).append(label)
+    notes = [wrapped(f"not known ({'; '.join(labels)}): {reason}", "  ") for reason, labels in named.items()]
+    return [line for lines in ([""], *notes) for line in lines] if notes else []
+
+
+def _value(value: Num) -> str:
+    return f"not known: {value.reason}" if isinstance(value, Unknown) else _number(value)
+
+
+def _number(value: float) -> str:
+    return f"{value:.4g}"

@@ -1,19 +1,22 @@
-"""The commands ``study`` and ``stress``: many runs, in local processes or on a cluster."""
+"""The command ``study``: many runs, in local processes or on a cluster, and the conclusions from them."""
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor
-from contextlib import closing, contextmanager
+from contextlib import closing
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.about_studies import OWN_TESTS
-from fem_impact.cli.common import checked_out, print_json, told_kept
-from fem_impact.cli.options import Options
-from fem_impact.cli.terminal import chosen_meter, print_markdown
+from fem_impact.cli.options import Options, add_cluster, add_out, add_page, add_workers
+from fem_impact.cli.page import asked_page, write_study_page
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import checked_out, told_kept
+from fem_impact.cli.terminal import chosen_meter, print_answer, print_json, print_markdown, print_notes
 from fem_impact.errors import RunError, UsageError, did_you_mean
+from fem_impact.progress import clock_text
 
 if TYPE_CHECKING:
     from fem_impact.answers.report import Request
@@ -21,68 +24,225 @@ if TYPE_CHECKING:
     from fem_impact.progress import ProgressMeter
 
 
+@dataclass(frozen=True, slots=True)
+class Study:
+    """What the help of a study tells.
+
+    Attributes
+    ----------
+    summary : its line in the list of studies
+    about : what it computes and concludes
+    size, quick : runs and processor time of the whole study, and of the one with ``--quick``
+    runs, quick_runs : the same numbers of runs; a test holds them to the study
+    sets : the measured sets that it takes when none is named; empty where it takes none
+    """
+
+    summary: str
+    about: str
+    size: str
+    quick: str
+    runs: int
+    quick_runs: int
+    sets: str = ""
+
+
+STUDIES = {
+    "sets": Study(
+        "the published series of tests beside the model",
+        "Each of the thirteen measured sets by finite elements on two meshes, with the grid of the plate at "
+        "two places, and again with each uncertain input changed. It compares e, mu, Omega, the velocities "
+        "and the energies after impact with the tests, says which agree and what could explain those that do "
+        "not, and shows where the energy went. A scene file that names your own tests (the key measured) is "
+        "taken like a set.",
+        "130 runs, some 10 min",
+        "three sets, one place of the grid: 6 runs, under 1 min",
+        130,
+        6,
+        "all thirteen",
+    ),
+    "convergence": Study(
+        "their limits for vanishing elements",
+        "Measured sets on three meshes, each at several places of the plate's grid, and what "
+        "vanishing elements would give: the limit of each quantity, its order, and the band of two meshes "
+        "beside it.",
+        "40 runs, some 15 min",
+        "a coarser mesh for the finest, one place of the grid: 12 runs, some 2 min",
+        40,
+        12,
+        "t3-machined, t3-contaminated, t5b, t6-17",
+    ),
+    "gamma": Study(
+        "vibration against slenderness",
+        "Which share of the energy vibration takes, against the slenderness gamma from 10 to 120: steel rods "
+        "of 19 mm at 45 degrees and 2.1 m/s, elastic and yielding, for every state of the surface; then "
+        "other diameters, speeds and angles, and strength from hardness. Finite elements on two meshes, "
+        "three measured sets and the reduced model beside them. It says what the published limit, gamma = "
+        "26.45, means.",
+        "1407 runs, most with finite elements, some 50 min; where the band is wide a finer mesh follows, as "
+        "at half of the points of the full study, and at a fifth of them a second: some 2.5 h in all",
+        "five rods on coarse elements: 61 runs, some 2 min",
+        1407,
+        61,
+    ),
+    "criterion": Study(
+        "when a rod may be called rigid",
+        "Restitution against inclination from 1 to 80 degrees of rods that vibrate and of the same rods that "
+        "cannot: by how much rigid theory is wrong, against the slenderness gamma and against the ratio of "
+        "bending period to contact time, T1/tau. It says where the published limit and its exponent come "
+        "from.",
+        "2629 runs, 680 of them finite elements, some 70 min",
+        "a few rods and angles: 195 runs, under 1 min",
+        2629,
+        195,
+    ),
+    "effects": Study(
+        "effects chosen by the scene beside everything on, and what each costs",
+        "Scenes with the effects that the program chooses for them, beside the same scenes with all effects "
+        "on: how much e and the vibration energy change, and how much computing time each effect takes. The "
+        "measured sets, and others that are short and long, slow and fast, hard and soft.",
+        "87 runs, some 5 min",
+        "three scenes: 17 runs, under 1 min",
+        87,
+        17,
+        "all thirteen and the others",
+    ),
+    "reduced": Study(
+        "the reduced model beside the finite elements",
+        "Each scene by both models (fidelity modal and solid): the measured sets, scenes that the reduced "
+        "model was made with, and scenes drawn at random. Its table is what every outcome of the reduced "
+        "model is judged by.",
+        "86 runs, half of them finite elements, some 10 min",
+        "four random scenes: 8 runs, under 1 min",
+        86,
+        8,
+    ),
+    "causes": Study(
+        "what rate, hardness and a hard skin change, one after the other and alone",
+        "A measured set without any effect of the strain rate on the flow stress; then with the nominal rate "
+        "law, with flow stress from hardness, and with a hardened skin, one after the other and each alone. "
+        "It shows e, mu and Omega of every step beside the tests.",
+        "12 runs, some 2 min",
+        "t5b on coarse elements: 6 runs, under 1 min",
+        12,
+        6,
+        "t5b, t6-17",
+    ),
+    "tip": Study(
+        "what the rows of Table 3 say about the tip of its rods",
+        "The caption of Table 3 says tip B. Which arms of the contact point fit the rotation of its rows by "
+        "momentum alone, and what finite elements give with either tip, beside the tests. Tip A is shown "
+        "beside the measured sets and counted in none of their numbers.",
+        "24 runs, some 5 min",
+        "the machined rod on coarse elements: 4 runs, under 1 min",
+        24,
+        4,
+    ),
+    "validation": Study(
+        "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
+        "The difference between model and tests of each measured set beside the standard uncertainties of "
+        "mesh, inputs and measurement; which input causes how much of it; and the values of the inputs that "
+        "would meet all sets at once. All inputs vary together, in 64 runs a set.",
+        "884 runs, some 50 min",
+        "t5b with 16 runs a set: 18 runs, under 1 min",
+        884,
+        18,
+        "all thirteen",
+    ),
+}
+
+OWN_TESTS = ("sets",)
+"""Studies that take scene files with own tests."""
+REPORT = "one page over all studies beside it"
+_REPORT_ABOUT = (
+    "Read the studies in the directories beside --out, and write one HTML page over them: conclusions with "
+    "their figures, comparison with the tests, energy of every run, papers behind the methods. It computes "
+    "nothing and takes some ten seconds."
+)
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and those of the studies."""
+    parser.state(study, "fem-impact study sets --quick")
+    studies = parser.add_subparsers(
+        title="studies",
+        dest="name",
+        metavar="NAME",
+        required=True,
+        description="fem-impact study NAME --help tells what a study does and how long it takes",
+    )
+    for name, one in STUDIES.items():
+        _add_study(studies.add_parser(name, help=one.summary), name, one)
+    report = studies.add_parser("report", help=REPORT)
+    report.state(study, "fem-impact study report", about=_REPORT_ABOUT)
+    add_out(report, "results/report")
+
+
+def _add_study(parser: CommandParser, name: str, one: Study) -> None:
+    """State one study, the sets it takes, and the options of many runs."""
+    first_look = f"With --quick, which is a first look and no result: {one.quick}."
+    about = f"{one.about}\n\nSize and processor time: {one.size}. {first_look}"
+    examples = f"fem-impact study {name} --quick", f"fem-impact study {name} --estimate"
+    parser.state(study, *examples, about=about)
+    if one.sets:
+        files = " or scene files with own tests" if name in OWN_TESTS else ""
+        taken = f"measured sets, such as t5b{files} (default: {one.sets})"
+        parser.add_argument("ids", nargs="*", default=[], metavar="ID", help=taken)
+    parser.add_argument("--quick", action="store_true", help="the small version, for a first look")
+    add_out(parser, f"results/{name}")
+    add_workers(parser)
+    add_cluster(parser)
+    estimate = "say how long it takes on 1 to 1000 workers, and stop"
+    parser.add_argument("--estimate", action="store_true", help=estimate)
+    add_page(parser, "also")
+
+
 def study(options: Options) -> int:
     """Run the named study and print its result, or say how long it would take."""
     ids = _checked_ids(options.ids, own=options.name in OWN_TESTS)
     out = checked_out(options.out or Path("results") / options.name)
     from fem_impact.answers.report import Request
-    from fem_impact.files.lock import directory_lock
 
     if options.name == "report":
-        with directory_lock(out):
-            return _report(options, out)
-    return _computed(f"studies.{options.name}", options, Request(out, ids, options.quick))
-
-
-def stress(options: Options) -> int:
-    """Run one hard case, or all of them; the exit code says whether all ended as they must."""
-    from fem_impact.answers.report import Request
-    from fem_impact.evidence.hard_cases.scenes import CASES
-
-    if options.only and options.page:
-        raise UsageError("runs all cases.", key="--page", remedy="Leave --only out.")
-    if options.only and options.only not in CASES:
-        hint = did_you_mean(options.only, CASES, f"Known are: {', '.join(CASES)}.")
-        raise UsageError("is no hard case.", key="--only", value=options.only, remedy=hint)
-    out = checked_out(options.out or Path("results") / "stress")
-    ids = (options.only,) if options.only else ()
-    line = " ".join(["fem-impact stress", *(["--only", options.only] if options.only else [])])
-    # one place keeps all cases, whichever were asked for last
-    return _computed("hard_cases.study", options, Request(out, ids, line=line, cases="hard cases"))
-
-
-def _computed(module: str, options: Options, request: Request) -> int:
-    """Run a study by its module of `fem_impact.evidence` and print its result, or estimate its time."""
-    from fem_impact.cli.page import asked_page
-    from fem_impact.files.lock import directory_lock
-
-    page = asked_page(options)
-    with (
-        directory_lock(request.out),
-        told_kept(request.out, options),
-        closing(chosen_meter(options)) as meter,
-        _workers(options) as executor,
-    ):
-        if options.estimate:
-            return _estimate(module, options, request, meter, executor)
-        return _study(module, options, request, meter, executor, page)
+        return _report(options, out)
+    return carry_out(f"studies.{options.name}", options, Request(out, ids, options.quick))
 
 
 def _report(options: Options, out: Path) -> int:
     """Write one page over the studies in the parent directory of ``out``."""
+    from fem_impact.files.lock import directory_lock
     from fem_impact.pages.all_page import write_all
 
-    if not options.quiet:
-        sys.stderr.write("reading the studies and drawing their figures ...\n")
-    path = write_all(out.parent, out)
-    if options.json:
-        print_json({"path": str(path)})
-    else:
-        sys.stdout.write(f"report: {path}\n")
+    with directory_lock(out):
+        if not options.quiet:
+            sys.stderr.write("reading the studies and drawing their figures ...\n")
+        path = write_all(out.parent, out)
+    print_answer(options, {"path": str(path)}, f"report: {path}\n")
     return 0
 
 
-def _study(
+def carry_out(module: str, options: Options, request: Request) -> int:
+    """Run a study by its module of `fem_impact.evidence` and print its result, or estimate its time."""
+    from fem_impact.evidence.runner import estimate_study
+    from fem_impact.files.lock import directory_lock
+    from fem_impact.jobs.executors import LocalProcesses, on_scheduler
+
+    page = asked_page(options)
+    lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
+    with (
+        directory_lock(request.out),
+        told_kept(request.out, options),
+        closing(chosen_meter(options)) as meter,
+        lent as executor,
+    ):
+        if not options.estimate:
+            return _run(module, options, request, meter, executor, page)
+        forecast = estimate_study(module, request, meter, executor)
+        meter.close()
+        print_answer(options, asdict(forecast), _estimate_text(forecast))
+        return 0
+
+
+def _run(
     module: str,
     options: Options,
     request: Request,
@@ -90,7 +250,6 @@ def _study(
     executor: Executor,
     page: Path | None,
 ) -> int:
-    from fem_impact.cli.page import write_study_page
     from fem_impact.evidence.runner import run_study
 
     result, notes = run_study(module, request, meter, executor), []
@@ -99,39 +258,21 @@ def _study(
         from fem_impact.pages.write import present
 
         frames = QUICK_FRAMES if request.quick else STUDY_FRAMES
-        here = None if options.scheduler else executor  # workers of a cluster may not see the files
-        notes = present(result.runs, request.out, meter, frames, here)
+        presenter = None if options.scheduler else executor  # workers of a cluster may not see the files
+        notes = present(result.runs, request.out, meter, frames, presenter)
     meter.close()
     if page:
         write_study_page(page, request.command(options.name), result.text, request.out)
     if options.json:
         print_json({**result.document, "notes": [*result.document.get("notes", []), *notes]})
     else:
-        sys.stderr.writelines(f"note: {note}\n" for note in notes)
+        print_notes(notes)
         print_markdown(result.text, options)
         sys.stdout.write(f"results: {request.out}\n")
     return RunError.exit_code if result.document["failures"] else 0
 
 
-def _estimate(
-    module: str, options: Options, request: Request, meter: ProgressMeter, executor: Executor
-) -> int:
-    from dataclasses import asdict
-
-    from fem_impact.evidence.runner import estimate_study
-
-    forecast = estimate_study(module, request, meter, executor)
-    meter.close()
-    if options.json:
-        print_json(asdict(forecast))
-    else:
-        sys.stdout.write(_estimate_text(forecast))
-    return 0
-
-
 def _estimate_text(forecast: WorkForecast) -> str:
-    from fem_impact.progress import clock_text
-
     lines = [
         f"{_jobs(forecast.jobs)}, {forecast.stored} of them stored; work left: {clock_text(forecast.work_s)}"
     ]
@@ -148,8 +289,6 @@ def _jobs(count: object) -> str:
 
 def _group_line(group: JobGroup) -> str:
     """Return number, fidelity, tip size and expected times of a group of jobs."""
-    from fem_impact.progress import clock_text
-
     name = group.fidelity + (f", tip {group.tip_size_m * 1e3:.2g} mm" if group.tip_size_m else "")
     low, high = f"{group.least_s:.2g}", f"{group.most_s:.2g}"
     each = f"{low} s each" if low == high else f"{low} to {high} s each"
@@ -164,29 +303,20 @@ def _basis(fidelity: str, pace: Pace) -> str:
     return f"  solid: the plan of each scene, times {pace.ratio:.2g} by {ran}"
 
 
-@contextmanager
-def _workers(options: Options) -> Iterator[Executor]:
-    from fem_impact.jobs.executors import LocalProcesses, on_scheduler
-
-    lent = on_scheduler(options.scheduler) if options.scheduler else LocalProcesses(options.workers)
-    with lent as executor:
-        yield executor
-
-
 def _checked_ids(ids: Sequence[str], own: bool) -> tuple[str, ...]:
     """Return the ids of measured sets, with ``own`` also files of scenes that name own tests, each once."""
     from fem_impact.scene.types import MEASURED_SETS
 
     for name in ids:
         if own and name.endswith(".toml"):
-            _check_own(name)
+            _refuse_without_tests(name)
         elif name not in MEASURED_SETS:
             remedy = did_you_mean(name, MEASURED_SETS, f"Measured: {', '.join(MEASURED_SETS)}.")
             raise UsageError("is not a measured set.", key="ID", value=name, remedy=remedy)
     return tuple(dict.fromkeys(ids))
 
 
-def _check_own(name: str) -> None:
+def _refuse_without_tests(name: str) -> None:
     """Refuse a scene file without tests, or with some that cannot be read."""
     from fem_impact.run.tests import tests_of
     from fem_impact.scene.shipped import load

@@ -1,4 +1,4 @@
-"""Standard output and error of the command: printable texts, and on a terminal tables and progress by rich.
+"""Standard output and error: printable text, answers as text or JSON; tables and progress on a terminal.
 
 rich is imported only where a terminal is.
 """
@@ -6,13 +6,14 @@ rich is imported only where a terminal is.
 from __future__ import annotations
 
 import io
+import json
 import os
 import re
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 from fem_impact.errors import printable
 from fem_impact.progress import CaseProgress, LineMeter, Notice, NullMeter, Progress, ProgressMeter, describe
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rich.console import Console
     from rich.progress import Progress as Bar
 
+    from fem_impact.case.size import RunSize
     from fem_impact.cli.options import Options
     from fem_impact.tables.table import Table
 
@@ -63,6 +65,25 @@ def chosen_meter(options: Options) -> ProgressMeter:
     if not sys.stderr.isatty() or _plain(options):
         return LineMeter(sys.stderr)
     return LiveMeter(_console(sys.stderr, options))
+
+
+def print_json(document: Any) -> None:
+    """Print one JSON document; NaN and infinity raise ValueError."""
+    sys.stdout.write(json.dumps(document, indent=2, allow_nan=False, ensure_ascii=False) + "\n")
+
+
+def print_answer(options: Options, document: Any, text: str, notes: Iterable[str] = ()) -> None:
+    """Print what a command found: with ``--json`` its document, else notes on standard error and its text."""
+    if options.json:
+        print_json(document)
+    else:
+        print_notes(notes)
+        sys.stdout.write(text)
+
+
+def print_notes(notes: Iterable[str]) -> None:
+    """Print notes on standard error."""
+    sys.stderr.writelines(f"note: {note}\n" for note in notes)
 
 
 def print_table(table: Table, options: Options, indent: str = "") -> None:
@@ -151,3 +172,15 @@ class LiveMeter:
         if self._bar:
             self._bar.stop()
             self._bar = None
+
+
+def headed(scene_id: str, title: str) -> str:
+    """Return the line that names a scene; one without a title has its id for it."""
+    return scene_id if title == scene_id else f"{scene_id}: {title}"
+
+
+def size_text(size: RunSize) -> str:
+    """Return numbers of elements and steps in words."""
+    from fem_impact.case.size import about
+
+    return f"{about(size.rod + size.barrier)} elements, {about(size.steps)} steps"

@@ -1,19 +1,36 @@
-"""The command ``verify``: problems with known answers."""
+"""The command ``verify``: problems with known answers, run through the solver."""
 
 from __future__ import annotations
 
 import sys
 
-from fem_impact.cli.common import print_json
-from fem_impact.cli.options import Options
+from fem_impact.cli.options import Options, add_page
 from fem_impact.cli.page import checked_page, write_page
-from fem_impact.cli.terminal import print_table
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.terminal import print_json, print_table
 from fem_impact.errors import RunError, UsageError
-from fem_impact.evidence.problems import catalogue
-from fem_impact.evidence.problems.catalogue import PROBLEMS, problem
-from fem_impact.evidence.problems.problem import Problem, Verification
+from fem_impact.evidence.problems.catalogue import PROBLEMS, page, problem
+from fem_impact.evidence.problems.problem import Verification
 from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
+
+TITLE, ABOUT = (
+    "Verification",
+    "Each problem with a known answer, and of its checks the one nearest to its limit.",
+)
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    parser.state(verify, "fem-impact verify bar", 'fem-impact verify modes --set length="120 mm"')
+    name = "one problem, such as bar (default: all of them)"
+    parser.add_argument("problem", nargs="?", default="", metavar="NAME", help=name)
+    changed = "change one parameter, such as --set length='80 mm' (a bare number is SI); may be repeated"
+    parser.add_argument(
+        "--set", dest="changes", action="append", default=[], metavar="PARAMETER=VALUE", help=changed
+    )
+    parser.add_argument("--parameters", action="store_true", help="list the parameters of a problem")
+    add_page(parser, "run all problems and")
 
 
 def verify(options: Options) -> int:
@@ -27,9 +44,8 @@ def verify(options: Options) -> int:
         return _write_page(options)
     changes = dict(_change(text) for text in options.changes)
     if changes and not options.problem:
-        raise UsageError(
-            "belongs to one problem.", key="--set", remedy="Name it: fem-impact verify NAME --set ..."
-        )
+        remedy = "Name it: fem-impact verify NAME --set ..."
+        raise UsageError("belongs to one problem.", key="--set", remedy=remedy)
     chosen = [problem(name) for name in ([options.problem] if options.problem else PROBLEMS)]
     done = []
     for one in chosen:
@@ -45,12 +61,6 @@ def verify(options: Options) -> int:
     return 0 if all(verification.passed for verification in done) else RunError.exit_code
 
 
-VERIFICATION = (
-    "Verification",
-    "Each problem with a known answer, and of its checks the one nearest to its limit.",
-)
-
-
 def _write_page(options: Options) -> int:
     """Run all problems at their defaults and write the page."""
     if options.problem or options.changes:
@@ -60,7 +70,7 @@ def _write_page(options: Options) -> int:
         done.append(problem(name).run())
         if not options.quiet:
             sys.stderr.write(_text(done[-1]).splitlines()[0] + "\n")
-    write_page(path, *VERIFICATION, "fem-impact verify --page FILE", catalogue.page(done))
+    write_page(path, TITLE, ABOUT, "fem-impact verify --page FILE", page(done))
     if options.json:
         print_json([verification.document() for verification in done])
     return 0 if all(verification.passed for verification in done) else RunError.exit_code
@@ -75,9 +85,8 @@ def _change(text: str) -> tuple[str, str]:
 
 def _show_parameters(options: Options) -> int:
     if not options.problem:
-        raise UsageError(
-            "needs a problem.", key="--parameters", remedy=f"Name one of: {', '.join(PROBLEMS)}."
-        )
+        remedy = f"Name one of: {', '.join(PROBLEMS)}."
+        raise UsageError("needs a problem.", key="--parameters", remedy=remedy)
     chosen = problem(options.problem)
     if options.json:
         print_json(
@@ -87,17 +96,14 @@ def _show_parameters(options: Options) -> int:
                 for p in chosen.parameters
             ]
         )
-    else:
-        sys.stdout.write(f"{chosen.name}: {chosen.words}\n")
-        print_table(_parameter_table(chosen), options)
-    return 0
-
-
-def _parameter_table(chosen: Problem) -> Table:
+        return 0
+    sys.stdout.write(f"{chosen.name}: {chosen.words}\n")
+    head = "name", "unit", "default", "range", "meaning"
     rows = [
         (p.key, p.si_unit, f"{p.default:g}", f"{p.low:g} to {p.high:g}", p.meaning) for p in chosen.parameters
     ]
-    return Table.of(("name", "unit", "default", "range", "meaning"), rows, left=range(5))
+    print_table(Table.of(head, rows, left=range(5)), options)
+    return 0
 
 
 def _text(verification: Verification) -> str:

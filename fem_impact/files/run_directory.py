@@ -11,7 +11,8 @@ from fem_impact.files.digests import CHECKSUM, DIGESTS
 from fem_impact.files.lock import LOCK
 
 CHECKPOINT = "run.checkpoint"
-BESIDE = ("contacts.csv", "history.csv", "fields.vtkhdf", "waves.h5")
+FIELDS = "fields.vtkhdf"
+BESIDE = ("contacts.csv", "history.csv", FIELDS, "waves.h5")
 """Files beside an outcome, whose digests stand in `DIGESTS`."""
 COMPUTED = (CHECKPOINT, "outcome.json", *BESIDE, DIGESTS)
 """Files that a run computes."""

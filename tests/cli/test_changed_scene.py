@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.cli.common import changed_scene, shown_path
+from fem_impact.cli.paths import shown_path
+from fem_impact.cli.scene_options import changed_scene
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace
 from fem_impact.scene.write import to_toml

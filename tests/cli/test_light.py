@@ -5,6 +5,8 @@ import sys
 
 import pytest
 
+from fem_impact.cli.parser import COMMANDS
+
 HEAVY = ("numpy", "scipy", "numba", "skfem", "matplotlib", "pyvista", "vtkmodules", "meshio", "h5py", "PIL")
 PROBE = """
 import sys
@@ -17,7 +19,12 @@ print(",".join(sorted(name for name in sys.modules if "." not in name)))
 """
 
 
-@pytest.mark.parametrize("words", [["--help"], ["run", "--help"], ["run", "no-such-scene"]])
+HELPS = [[name, "--help"] for name in COMMANDS]
+
+
+@pytest.mark.parametrize(
+    "words", [["--help"], *HELPS, ["study", "gamma", "--help"], ["run", "no-such-scene"]]
+)
 def test_no_heavy_module_is_imported(words):
     done = subprocess.run([sys.executable, "-c", PROBE, *words], capture_output=True, text=True, check=True)
     loaded = set(done.stdout.splitlines()[-1].split(","))
@@ -25,10 +32,14 @@ def test_no_heavy_module_is_imported(words):
     assert not loaded & set(HEAVY)
 
 
-def test_help_imports_no_scene_either():
-    probe = "import sys, fem_impact.cli.main; print('fem_impact.scene' in sys.modules)"
+def test_the_list_of_commands_imports_no_command_and_no_scene():
+    probe = (
+        "import sys\nfrom fem_impact.cli.parser import COMMANDS, build_parser\nbuild_parser(['--help'])\n"
+        "rooms = [f'fem_impact.cli.{name}' for name in COMMANDS]\n"
+        "print([name for name in ['fem_impact.scene', *rooms] if name in sys.modules])"
+    )
     done = subprocess.run([sys.executable, "-c", probe], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
+    assert done.stdout.strip() == "[]"
 
 
 def test_the_module_runs_as_the_command():

@@ -103,7 +103,7 @@ def test_study_passes_what_is_asked(cli, stand):
     assert cli("study", "convergence", "--quick", "--out", "here")[0] == 0
     names = [args[0] for _, args in stand.calls]
     asked = [args[1] for _, args in stand.calls]
-    assert names == ["sets", "convergence"]
+    assert names == ["studies.sets", "studies.convergence"]
     assert asked[0] == Request(Path("results/sets"), ("t4", "t5a"))
     assert asked[1] == Request(Path("here"), (), quick=True)
 

@@ -8,8 +8,8 @@ from importlib import import_module
 import pytest
 
 from fem_impact.answers.report import Request
-from fem_impact.cli.about_studies import STUDIES
 from fem_impact.cli.parser import build_parser, every_command, read_line
+from fem_impact.cli.study import STUDIES
 
 ROD = ("--length", "80 mm", "--diameter", "19 mm", "--angle", "45 deg")
 DROP = (*ROD, "--height", "0.82 m", "--surface", "machined")

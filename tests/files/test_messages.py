@@ -14,7 +14,7 @@ import pytest
 
 import fem_impact
 from fem_impact.cli.options import Options
-from fem_impact.cli.outcome import print_outcome
+from fem_impact.cli.run import print_outcome
 from fem_impact.cli.terminal import chosen_meter, printable_streams
 from fem_impact.errors import FemImpactError, ResultError, SceneError, UsageError, did_you_mean, printable
 from fem_impact.files.fields import read_fields

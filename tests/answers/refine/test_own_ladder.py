@@ -19,7 +19,7 @@ from fem_impact.answers.refine.loop import ALONE, OwnLadder, achieved_error
 from fem_impact.answers.refine.times import LONGER
 from fem_impact.answers.wanted_error import settle
 from fem_impact.case.plan import plan
-from fem_impact.cli.outcome import print_outcome
+from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown

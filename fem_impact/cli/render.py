@@ -1,20 +1,52 @@
-"""The commands that show results: ``render`` and ``report``."""
+"""The command ``render``: a film of the stress waves."""
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from fem_impact.cli.about_results import FILMED
-from fem_impact.cli.common import checked_file, checked_result, print_json
 from fem_impact.cli.options import Options
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.paths import checked_file, checked_result
+from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import MissingLibraryError, ResultError, UsageError
+from fem_impact.files.run_directory import FIELDS
 
 if TYPE_CHECKING:
     from fem_impact.films.movement import Span
 
-FIELDS = "fields.vtkhdf"
+FILMED = ("strain", "stress", "velocity", "plastic")  # what a film can show, the default first
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    example = "fem-impact render results/quick"
+    parser.state(render, example, f"{example} --until '0.1 ms'")
+    several = "directory that a run or a study wrote; several make one film side by side"
+    film = "film: .mp4, .webp, .gif, .png for a folder, or .html to turn it (default: beside the fields)"
+    parser.add_argument("results", nargs="+", type=Path, metavar="RESULT", help=several)
+    parser.add_argument("--out", type=Path, metavar="FILE", help=film)
+    colours = "colours of the film (default: strain along the axis)"
+    parser.add_argument("--field", choices=FILMED, default=FILMED[0], help=colours)
+    parser.add_argument("--frames", type=int, metavar="N", help="number of frames (default: 144)")
+    for option, name, text in (
+        ("--from", "first", "first time, such as '20 us'"),
+        ("--until", "last", "last time, such as '0.3 ms'"),
+        ("--speed", "speed", "motion in one second of the film, such as '25 us'"),
+    ):
+        parser.add_argument(option, dest=name, default="", metavar="TIME", help=text)
+    pixels = "size of the film in pixels, multiples of 16 (default: 1280x720)"
+    parser.add_argument("--size", type=_size, default=(1280, 720), metavar="WxH", help=pixels)
+
+
+def _size(text: str) -> tuple[int, int]:
+    """Read width and height in pixels."""
+    width, by, height = text.partition("x")
+    if not (by and width.isdecimal() and height.isdecimal()):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a size such as 1280x720")
+    return int(width), int(height)
 
 
 def render(options: Options) -> int:
@@ -24,7 +56,6 @@ def render(options: Options) -> int:
     for result in results:
         _check_fields(result)
     from fem_impact.films import film as films
-    from fem_impact.films.film import render_side_by_side
 
     span = _span(options)
     if len(results) > 1 and options.field != FILMED[0]:
@@ -39,14 +70,11 @@ def render(options: Options) -> int:
 
         film = write_view(results[0], out, span, options.field)
     elif len(results) > 1:
-        film = render_side_by_side(results, out, span, options.size)
+        film = films.render_side_by_side(results, out, span, options.size)
     else:
         film = films.render(results[0], out, span, options.field, options.size)
-    if options.json:
-        print_json({"path": str(film.path) if film.path else None, "notes": list(film.notes)})
-    else:
-        sys.stderr.writelines(f"note: {note}\n" for note in film.notes)
-        sys.stdout.write(f"film: {film.path}\n" if film.path else "")
+    document = {"path": str(film.path) if film.path else None, "notes": list(film.notes)}
+    print_answer(options, document, f"film: {film.path}\n" if film.path else "", film.notes)
     return 0 if film.path else MissingLibraryError.exit_code
 
 
@@ -80,43 +108,3 @@ def _check_fields(result: Path) -> None:
         else (f"fidelity {fidelity} has no mesh", "Run its scene with --fidelity solid.")
     )
     raise ResultError(f"{result}: holds no {FIELDS}, the fields that a film shows: {why}. {way}")
-
-
-def report(options: Options) -> int:
-    """Write the HTML report of a result."""
-    result = checked_result(options.result)
-    from fem_impact.pages.write import write_report
-
-    notes = _missing_film(result, options)
-    path = write_report(result)
-    if options.json:
-        print_json({"path": str(path), "notes": notes})
-    else:
-        sys.stderr.writelines(f"note: {note}\n" for note in notes)
-        sys.stdout.write(f"report: {path}\n")
-    return 0
-
-
-def _missing_film(result: Path, options: Options) -> list[str]:
-    """Make the film of a run that has fields and no film yet; return why there is none."""
-    from fem_impact.pages.sections import has_film
-
-    if has_film(result) or not (result / FIELDS).is_file():
-        return []
-    from fem_impact.films import film as films
-
-    if not options.quiet:
-        sys.stderr.write("drawing the film ...\n")
-    try:
-        return list(films.render(result).notes)
-    except (MissingLibraryError, ResultError) as error:
-        return [f"The page has no film: {error}"]
-
-
-def schema(options: Options) -> int:
-    """Print the JSON Schema of an outcome."""
-    from fem_impact.outcome.check import json_schema
-    from fem_impact.outcome.record import KEYS
-
-    print_json(json_schema(KEYS))
-    return 0

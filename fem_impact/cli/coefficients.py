@@ -1,0 +1,90 @@
+"""The command ``coefficients``: restitution, impulse ratio and moment coefficient of a user's own tests."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from fem_impact.cli.options import Options, add_text
+from fem_impact.cli.parser import CommandParser
+from fem_impact.cli.scene_options import ROD, add_changes, add_rod, angle_of, named_scene, rod_of
+from fem_impact.cli.terminal import print_answer
+from fem_impact.errors import SceneError, UsageError
+
+if TYPE_CHECKING:
+    from fem_impact.scene.camera import Camera
+    from rigid import Arms, Body
+
+TESTED = ("length", "diameter", "angle")
+"""Options of a tested steel rod that must be given where no scene is."""
+
+
+def add_options(parser: CommandParser) -> None:
+    """State the command and its options."""
+    examples = f"fem-impact coefficients tests.csv {ROD}", "fem-impact coefficients tests.csv --scene tube"
+    parser.state(coefficients, *examples)
+    columns = "v_n_m_per_s, v_t_m_per_s, V_n_m_per_s, V_t_m_per_s, Omega_rad_per_s"
+    parser.add_argument("file", type=Path, metavar="FILE.csv", help=f"one test a row; columns {columns}")
+    rod = parser.add_argument_group("a solid steel rod")
+    add_rod(rod)
+    add_text(rod, "--angle", "ANGLE", 'rod axis to barrier normal, such as "45 deg"')
+    other = parser.add_argument_group("any other projectile, such as a tube, instead of that rod")
+    about = "scene whose projectile was tested at its inclination: id or path of a scene file"
+    add_text(other, "--scene", "SCENE", about)
+    add_changes(other)
+    add_text(parser, "--d-c", "LENGTH", "arm along the slope (default: of the tip's shape)")
+    add_text(parser, "--d-d", "LENGTH", "arm along the normal (default: of the tip's shape)")
+
+
+def coefficients(options: Options) -> int:
+    """Work out the coefficients of the user's own tests."""
+    from fem_impact.answers.verdict.text import own_text
+    from fem_impact.evidence.paper.own_data import own_coefficients
+    from fem_impact.physics import contact
+    from fem_impact.scene.camera import read_camera
+    from rigid import RigidError
+
+    if scene := named_scene(options, TESTED):
+        rod, alpha = contact.projectile(scene), scene.impact.angle
+        tip = scene.projectile.tip, scene.projectile.tip_radius
+    else:
+        rod, alpha = rod_of(options), angle_of(options)
+        tip = rod.tip, rod.tip_radius
+    stated = _stated_arms(options)
+    camera = read_camera(options.file)
+    arms, source = _arms(stated, rod, alpha, camera)
+    try:
+        document = own_coefficients(camera, rod, tip, alpha, arms, source)
+    except RigidError as error:
+        raise SceneError(f"{error}.", source=str(options.file), remedy="Check signs and arms.") from None
+    document = {"file": str(options.file), **document}
+    print_answer(options, document, own_text(document))
+    return 0
+
+
+def _stated_arms(options: Options) -> Arms | None:
+    """Return the arms, m, of ``--d-c`` and ``--d-d``, which are given both or neither."""
+    import numpy as np
+
+    from fem_impact.scene.units import option_quantity
+    from rigid import Arms
+
+    given = options.d_c, options.d_d
+    if not any(given):
+        return None
+    if not all(given):
+        raise UsageError("one arm alone was given.", key="--d-c, --d-d", remedy="Give both or neither.")
+    return Arms(*(np.asarray(option_quantity(text, "length", "--d-c, --d-d")) for text in given))
+
+
+def _arms(stated: Arms | None, rod: Body, alpha: float, camera: Camera) -> tuple[Arms, str]:
+    """Return the arms, m, and their source: options, the file, or the shape of the tip."""
+    import numpy as np
+
+    from rigid import Arms
+
+    if stated is not None:
+        return stated, "as stated"
+    if camera.arms:
+        return Arms(*map(np.asarray, camera.arms)), "as the file states"
+    return rod.arms(alpha), "lowest point of the tip's shape"

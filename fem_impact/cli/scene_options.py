@@ -1,0 +1,172 @@
+"""Options that state a scene: an id or a file with changed values, or a solid steel rod in a few words."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import sys
+import tomllib
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from fem_impact.cli.options import Options, add_text
+from fem_impact.errors import SceneError, UsageError
+
+if TYPE_CHECKING:
+    from fem_impact.scene.types import Scene
+    from rigid import Projectile
+
+TITLED = ("projectile", "barrier", "surface", "impact")
+"""Tables of a scene whose changed values its title tells."""
+USUAL_TIP = "B"
+SHAPE = ("tip", "tip_radius")
+"""Options of a steel rod that have a default."""
+ROD = '\\\n      --length "80 mm" --diameter "19 mm" --angle "45 deg"'
+"""A rod in the examples of the help."""
+
+
+def add_scene(parser: argparse.ArgumentParser, optional: bool = False) -> None:
+    """Add the scene and the changes of its values."""
+    about = "id of a shipped scene (see `fem-impact scenes`) or path of a scene file"
+    if optional:
+        parser.add_argument("scene", metavar="SCENE", nargs="?", default="", help=about)
+    else:
+        parser.add_argument("scene", metavar="SCENE", help=about)
+    add_changes(parser)
+
+
+def add_changes(parser: argparse._ActionsContainer) -> None:
+    """Add the changes of a scene's values."""
+    about = "change one value, such as --set accuracy.tip_size='0.5 mm'; may be repeated"
+    parser.add_argument("--set", dest="changes", action="append", default=[], metavar="KEY=VALUE", help=about)
+
+
+def add_rod(parser: argparse._ActionsContainer) -> None:
+    """Add the options that describe a steel rod."""
+    add_text(parser, "--length", "LENGTH", 'of the rod, such as "240 mm"')
+    add_text(parser, "--diameter", "DIAMETER", 'such as "19 mm"')
+    tips = "A: round nose, B: rounded edge (default), plain: sharp edge, or one added to rigid.SHAPES"
+    add_text(parser, "--tip", "TIP", tips)
+    add_text(parser, "--tip-radius", "LENGTH", "default: 7 mm for A, 3 mm for B; an added tip needs it")
+
+
+def changed_scene(id_or_path: str, changes: Sequence[str]) -> Scene:
+    """Load a scene and apply the changes of the command line; the changed scene is checked once.
+
+    Its title tells the values of projectile, barrier, surface and impact that were changed.
+    """
+    from fem_impact.scene.shipped import load_to_change, replace, replace_all, titled
+
+    given = read_changes(changes)
+    scene = load_to_change(id_or_path, given)
+    if not given:
+        return scene
+    changed = replace_all(scene, given)
+    shown = {key: value for key, value in given.items() if key.split(".")[0] in TITLED}
+    if not shown or changed.title != scene.title:
+        return changed
+    return replace(changed, "title", titled(scene.title, shown))
+
+
+def read_changes(changes: Sequence[str]) -> dict[str, Any]:
+    """Return key and value of each ``key=value``; a value is TOML where it can be, text otherwise."""
+    read = [_change(text) for text in changes]
+    keys = [key for key, _ in read]
+    if twice := [key for key in keys if keys.count(key) > 1]:
+        raise UsageError("is given twice.", key=f"--set {twice[0]}", remedy="Keep one of the two.")
+    return dict(read)
+
+
+def _change(change: str) -> tuple[str, Any]:
+    key, equals, text = (part.strip() for part in change.partition("="))
+    if not equals or not key:
+        remedy = "Write --set accuracy.tip_size='0.5 mm'."
+        raise UsageError("is not of the form key=value.", key="--set", value=change, remedy=remedy)
+    if key == "effects" and not text.startswith("[") and "," in text:
+        return key, [name.strip() for name in text.split(",")]
+    try:
+        return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
+    except (ValueError, RecursionError):
+        return key, text
+
+
+def say_kept(scene: Scene, options: Options) -> None:
+    """Say what ``--set`` left as it was: velocities at another angle, a bore in a longer projectile."""
+    changed = set(read_changes(options.changes))
+    _say_fall(scene, changed)
+    rod = scene.projectile
+    longer = bool({"projectile.length", "projectile.length_m"} & changed)
+    if rod.segments and longer and "projectile.segments" not in changed:
+        kept = ", ".join(f"{1e3 * part.to:.4g} mm" for part in rod.segments[:-1])
+        sys.stderr.write(
+            f"fem-impact: the segments still end at {kept or 'the tail'}; the last one ends at the new tail\n"
+        )
+    if rod.open_at_tail and longer and "projectile.bore" not in changed:
+        sys.stderr.write("fem-impact: the bore ends at the new tail\n")
+    elif rod.bore and longer and "projectile.bore" not in changed:
+        ends = f"{1e3 * rod.bore[0][0]:.4g} to {1e3 * rod.bore[-1][0]:.4g} mm"
+        sys.stderr.write(
+            f"fem-impact: warning: the bore is that of the old length, {ends} from the tip. Another one: "
+            '--set projectile.bore=\'[["0 mm", "6 mm"], ["400 mm", "6 mm"]]\'\n'
+        )
+
+
+def _say_fall(scene: Scene, changed: set[str]) -> None:
+    """Say that the velocities are those of the angle before, or that the fall is as fast as it was."""
+    impact = scene.impact
+    stated = any(key.startswith(("impact.v_", "impact.speed", "impact.height")) for key in changed)
+    if stated or not {"impact.angle", "impact.angle_rad"} & changed or impact.height:
+        return
+    speed = math.hypot(impact.v_n, impact.v_t)
+    if impact.speed:
+        ball = getattr(scene.projectile.shape, "name", "") == "ball"
+        falls = "the ball falls" if ball else "the rod falls along its axis"
+        sentence = f"{falls} as fast as before, {speed:.4g} m/s"
+    else:
+        sentence = (
+            "warning: v_n and v_t are those of the old angle. A fall as fast at the new one: "
+            f"--set impact.speed='{speed:.4g} m/s'"
+        )
+    sys.stderr.write(f"fem-impact: {sentence}\n")
+
+
+def named_scene(options: Options, needed: Sequence[str]) -> Scene | None:
+    """Return the scene that is named, None where the options state a solid steel rod instead.
+
+    ``needed`` are the options that state it in full.
+    """
+    given = [f"--{name.replace('_', '-')}" for name in (*needed, *SHAPE) if getattr(options, name)]
+    if options.scene:
+        if given:
+            remedy = "A scene states its rod and impact itself: change it with --set key=value."
+            raise UsageError("describes a rod, but a scene is named too.", key=given[0], remedy=remedy)
+        return changed_scene(options.scene, options.changes)
+    missing = [f"--{name}" for name in needed if not getattr(options, name)]
+    if options.changes or missing:
+        what = (
+            "no scene is given"
+            if len(missing) == len(needed)
+            else f"{', '.join(missing)} {'are' if missing[1:] else 'is'} missing"
+        )
+        remedy = "Name a scene (`fem-impact scenes` lists them), or state a solid steel rod in full."
+        raise UsageError(f"{what}.", key="SCENE", remedy=remedy)
+    return None
+
+
+def rod_of(options: Options) -> Projectile:
+    """Return the solid steel rod that the options describe."""
+    from fem_impact.answers.verdict.drop import rod_from_options
+
+    return rod_from_options(
+        options.length, options.diameter, options.tip or USUAL_TIP, options.tip_radius or None
+    )
+
+
+def angle_of(options: Options) -> float:
+    """Return the angle, rad; one that is not in [0, pi/2) is refused."""
+    from fem_impact.scene.units import option_quantity
+
+    alpha = option_quantity(options.angle, "angle", "--angle")
+    if not 0 <= alpha < math.pi / 2:
+        raise SceneError("must lie from 0 up to 90 degrees.", key="--angle", value=options.angle)
+    return alpha
