@@ -168,7 +168,7 @@ def rigid_theory(outcome: Outcome, scene: Scene | None) -> Outcome | None:
         return None
     try:
         return simulate(replace(scene, accuracy=replace(scene.accuracy, target=None)), "rigid")
-    except (SceneError, RunError, ResultError):  # own tests that can no longer be read are told elsewhere
+    except (SceneError, RunError, ResultError):  # `sections` reports tests that cannot be read
         return None
 
 

@@ -259,7 +259,7 @@ COMPARED = ("model", "measured", "95 % interval of the mean", "n", "verdict")
 def beside_tests(outcome: Outcome, scene: Scene | None, folder: Path) -> Markup:
     """Return the section that sets a run beside the tests its scene names; nothing where it names none.
 
-    Its figure and data are written to ``folder/figures``. Tests that can no longer be read are told.
+    Its figure and data are written to ``folder/figures``. A file of tests that cannot be read is reported.
     """
     title = "Beside the measured tests"
     if scene is None or scene.measured is None:

@@ -113,7 +113,7 @@ def reduce(plan: Plan, result: ModalResult) -> Outcome:
 
 
 def _tilted(result: ModalResult) -> list[str]:
-    """Warn where a barrier turns so far in contact that its surface is not level any more."""
+    """Warn where a barrier turns so far in contact that its surface counts as inclined."""
     turned = abs(result.Omega_b) * float(result.contacts[-1, 1])
     if turned <= TILT_TOLD:
         return []

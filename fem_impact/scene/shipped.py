@@ -87,9 +87,9 @@ def replace_all(scene: Scene, changes: Mapping[str, Any], source: str = "--set")
     """Return a checked copy of the scene with dotted keys changed, checked together at the end.
 
     A new angle leaves a fall a fall, see `restated`. A changed friction makes the surface custom, a changed
-    property renames its material, and a changed rod, impact or surface state no longer repeats a measured
-    set, which the title says: a name never stands for other values. Friction, materials, effects and accuracy
-    are the model's side and leave ``measured`` as it is. ``source`` is named in every message.
+    property renames its material, and with a changed rod, impact or surface state the scene is not a
+    measured set, which the title says: a name never stands for other values. Friction, materials, effects
+    and accuracy are the model's side and leave ``measured`` as it is. ``source`` is named in every message.
 
     Raises
     ------

@@ -124,7 +124,7 @@ class Checkpoint:
         return False
 
     def save(self) -> None:
-        """Write the checkpoint now. Raises OutputPathError."""
+        """Write the checkpoint. Raises OutputPathError."""
         archive = BytesIO()
         np.savez(archive, **{_STAMP: np.array(self.stamp)}, **take_out(self.holders))  # type: ignore[arg-type]
         data = archive.getvalue()

@@ -124,7 +124,7 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     ResultError
         If the checkpoint is missing, damaged, or of another scene or program.
     RunError
-        If the motion is no longer finite.
+        If the motion is not finite.
     """
     whole = Stopwatch()
     if options.progress is not None:

@@ -1,7 +1,7 @@
 """``thornton``: an elastic sphere that yields strikes a rigid frictionless plane at several speeds.
 
 While the contact is fully plastic and still small, restitution falls as speed to the power -1/4. Below, part
-of the contact is elastic and e falls more slowly; above, the tip is no longer a sphere and e falls faster.
+of the contact is elastic and e falls more slowly; above, the tip is flattened and e falls faster.
 The slope is judged only if all speeds lie between; otherwise it is shown with the reason.
 """
 

@@ -26,7 +26,7 @@ from fem_impact.physics.flow_law import flow_law
 from rigid import LIMIT
 
 LEVELS = (0.02, 0.05, 0.10)
-"""Errors of e at which a rod counts as no longer rigid."""
+"""Errors of e beyond which a rod does not count as rigid."""
 
 
 @dataclass(frozen=True, slots=True)

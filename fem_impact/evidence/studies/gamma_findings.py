@@ -19,7 +19,7 @@ from rigid import LIMIT
 PLAIN = {False: "frictionless", True: "machined"}
 """Surface state, elastic and yielding, at which other inputs are changed and the partition is drawn."""
 
-ONE_PERCENT = 0.01  # of E_0: where vibration is no longer small
+ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
 ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
 
 
