@@ -188,7 +188,7 @@ def _title(report: StudyReport, request: Request, results: JobResults) -> str:
 
 def _telling(pictures: Sequence[Picture]) -> list[Picture]:
     """Return the pictures with the panels that have more than one place along x; none without any."""
-    cut = (replace(one, panels=tuple(panel for panel in one.panels if panel.tells)) for one in pictures)
+    cut = (replace(one, panels=tuple(panel for panel in one.panels if panel.informative)) for one in pictures)
     return [one for one in cut if one.panels]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from fem_impact.cli.options import Options
 from fem_impact.errors import OutputPathError, ResultError
-from fem_impact.files.run_directory import COMPUTED, earlier, stranger
+from fem_impact.files.run_directory import COMPUTED, earlier_runs, foreign_entry
 
 RESULT_FILES = ("outcome.json", "study.json")
 
@@ -25,7 +25,7 @@ def checked_out(out: Path) -> Path:
     """
     with _own_errors(out):
         _refuse_files(out)
-        if out.is_dir() and (foreign := stranger(out)):
+        if out.is_dir() and (foreign := foreign_entry(out)):
             raise OutputPathError(
                 f"{out}: the directory holds other files, such as {foreign.name}, and results would mix with "
                 "them. Choose an empty or a new directory with --out."
@@ -106,11 +106,11 @@ def _directory_for(file: Path) -> str:
 @contextmanager
 def told_kept(out: Path, options: Options) -> Iterator[None]:
     """Say at the end which older results of a directory were set aside, and where they are."""
-    before = earlier(out)
+    before = earlier_runs(out)
     try:
         yield
     finally:
-        for place in earlier(out):
+        for place in earlier_runs(out):
             if place not in before and not options.quiet:
                 sys.stderr.write(f"Older results that were in {out} are kept in {place}\n")
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap, half_widths, numbers
-from fem_impact.figures.style import INK, QUIET, colour_of, sides
+from fem_impact.figures.style import INK, QUIET, colour_of, label_sides
 from fem_impact.tables.text import markup
 
 DIGITS = 5
@@ -123,7 +123,7 @@ def _trace(series: Series, at: int, panel: Panel) -> dict[str, Any]:
         trace |= {"fillcolor": colour}
     if series.band is not None:
         band = {"type": "data", "array": numbers(half_widths(series), DIGITS), "color": colour}
-        trace["error_x" if panel.lies else "error_y"] = band | BAND.get(
+        trace["error_x" if panel.horizontal else "error_y"] = band | BAND.get(
             series.drawn, {"thickness": 1.2, "width": 3}
         )
     return trace
@@ -134,7 +134,7 @@ def _hover(label: str, series: Series, panel: Panel) -> str:
     if series.drawn in CURVES and _curves(panel):
         return "%{y:.4g}"
     x, y = ("%{x:.4g}", "%{y:.4g}")
-    if panel.lies:
+    if panel.horizontal:
         x += " ± %{error_x.array:.2g}" if series.band is not None else ""
         return f"<b>{label or '%{y}'}</b><br>{markup(panel.title or panel.x)}: {x}<extra></extra>"
     y += " ± %{error_y.array:.2g}" if series.band is not None else ""
@@ -181,7 +181,7 @@ def _layout(panel: Panel) -> dict[str, Any]:
         "annotations": [
             *(
                 _note(mark.label, x=mark.at, xanchor=side, textangle=-90, y=1, yref="paper", yanchor="top")
-                for mark, side in sides(panel.marks, low, high)
+                for mark, side in label_sides(panel.marks, low, high)
             ),
             *(
                 _note(level.label, x=0.99, xref="paper", xanchor="right", y=level.at, yanchor="bottom")

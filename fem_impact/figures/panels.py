@@ -130,13 +130,13 @@ class Panel:
     logarithmic: bool = False
 
     @property
-    def tells(self) -> bool:
+    def informative(self) -> bool:
         """Whether it has names, rows or a map, or more than one place along x."""
         places = {x for series in self.series for x in np.asarray(series.x, float).tolist()}
         return bool(self.names or self.rows or self.shaded) or len(places) > 1
 
     @property
-    def lies(self) -> bool:
+    def horizontal(self) -> bool:
         """Whether bands and bars lie along x."""
         return bool(self.rows)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.figures.panels import Panel, Picture, Series, ShadedMap
-from fem_impact.figures.style import INK, QUIET, colour_of, figure, sides
+from fem_impact.figures.style import INK, QUIET, colour_of, figure, label_sides
 from fem_impact.files.atomic import write_text
 from fem_impact.tables.text import formula
 
@@ -94,7 +94,7 @@ def _panel(axes: Axes, panel: Panel) -> None:
         _shade(axes, panel.shaded)
     below = np.zeros(max(1, len(panel.rows)))
     for at, series in enumerate(panel.series):
-        below = _series(axes, series, colour_of(series.colour, at), below, panel.lies)
+        below = _series(axes, series, colour_of(series.colour, at), below, panel.horizontal)
     for level in panel.levels:
         axes.axhline(level.at, color=QUIET, linewidth=0.8, linestyle=(0, (2, 2)))
         look: dict[str, Any] = {"ha": "right", "va": "bottom", "fontsize": 7.5, "color": INK, "zorder": 5}
@@ -110,7 +110,7 @@ def _panel(axes: Axes, panel: Panel) -> None:
     axes.grid(axis="x" if panel.rows else "both")
 
 
-def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, lies: bool) -> np.ndarray:
+def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, horizontal: bool) -> np.ndarray:
     """Draw a series over what is stacked so far; return what the next area or bar stands on."""
     label = formula(series.label)
     if series.drawn == "area":
@@ -129,7 +129,7 @@ def _series(axes: Axes, series: Series, colour: str, below: np.ndarray, lies: bo
     if series.band is None:
         axes.plot(series.x, series.y, color=colour, label=label, **look)
     else:
-        bands: dict[str, Any] = {"xerr" if lies else "yerr": series.band}
+        bands: dict[str, Any] = {"xerr" if horizontal else "yerr": series.band}
         axes.errorbar(series.x, series.y, **bands, color=colour, label=label, **ERROR | look)
     return below
 
@@ -179,7 +179,7 @@ def _marks(axes: Axes, panel: Panel) -> None:
     for mark in panel.marks:
         axes.axvline(mark.at, color=QUIET, linewidth=0.7, linestyle=(0, (1, 2)))
     look: dict[str, Any] = {"rotation": 90, "va": "top", "fontsize": 7.0, "color": QUIET, "zorder": 1.5}
-    for mark, side in sides(panel.marks, *axes.get_xlim()):
+    for mark, side in label_sides(panel.marks, *axes.get_xlim()):
         axes.text(mark.at, 0.99, formula(mark.label), transform=axes.get_xaxis_transform(), ha=side, **look)
 
 

@@ -114,7 +114,9 @@ def colour_of(colour: int | str | None, at: int) -> str:
     return PALETTE[name]
 
 
-def sides(marks: Iterable[Mark], low: float, high: float) -> list[tuple[Mark, Literal["left", "right"]]]:
+def label_sides(
+    marks: Iterable[Mark], low: float, high: float
+) -> list[tuple[Mark, Literal["left", "right"]]]:
     """Return marks from left to right with the alignment of their labels on an axis from low to high.
 
     A label stands left of its line, or right where the mark before is within `NEAR`.

@@ -53,7 +53,7 @@ def remove_scene_alone(out: Path) -> None:
         (out / "scene.toml").unlink(missing_ok=True)
 
 
-def earlier(out: Path) -> list[Path]:
+def earlier_runs(out: Path) -> list[Path]:
     """Return the directories of older runs, the oldest first."""
     return sorted(out.glob("earlier-*"))
 
@@ -79,7 +79,7 @@ _KNOWN = (*_MARKS, *COMPUTED, *DERIVED, *_FILMS, "earlier-*", ".*-????????.*")
 """Names that the program gives; the last is that of drafts (`fem_impact.files.atomic`)."""
 
 
-def stranger(out: Path) -> Path | None:
+def foreign_entry(out: Path) -> Path | None:
     """Return something in a directory that the program did not write; None where all of it is its own.
 
     That is a file with a foreign name, or any file where none shows that the program was here. A directory
@@ -92,7 +92,7 @@ def stranger(out: Path) -> Path | None:
         (
             path
             for path in entries
-            if not any(map(path.match, known)) and not (path.is_dir() and stranger(path) is None)
+            if not any(map(path.match, known)) and not (path.is_dir() and foreign_entry(path) is None)
         ),
         None,
     )

@@ -14,7 +14,7 @@ import numpy as np
 
 from fem_impact.errors import MissingLibraryError, ResultError
 from fem_impact.figures.style import INK, QUIET
-from fem_impact.films import board
+from fem_impact.films import frame
 from fem_impact.films.encode import best_suffix, encode, require_gl
 from fem_impact.films.motion import FilmData, prepare
 from fem_impact.films.movement import FPS, WHOLE, Span, film_times, read_movement, slow_motion
@@ -79,7 +79,7 @@ def render(
     MissingLibraryError, OutputPathError
         Off-screen drawing or the encoder is missing; the film cannot be written.
     """
-    folder, layout = Path(result_dir), board.FrameLayout(*size)
+    folder, layout = Path(result_dir), frame.FrameLayout(*size)
     movement, left_out = read_movement(folder)
     times = film_times(movement, field, span)
     motion = prepare(movement, field, times)
@@ -126,12 +126,12 @@ def context(folder: Path) -> tuple[str, tuple[np.ndarray, np.ndarray], list[str]
 
 def _frames(
     motion: FilmData,
-    layout: board.FrameLayout,
+    layout: frame.FrameLayout,
     times: np.ndarray,
     title: str,
     curve: tuple[np.ndarray, np.ndarray],
 ) -> Iterator[np.ndarray]:
-    background = board.FilmBackground.make(layout, motion, title, curve, times)
+    background = frame.FilmBackground.make(layout, motion, title, curve, times)
     size = layout.rod.size
     whole = RodPicture(motion, size, needed_height(motion, size))
     near = None if background.profile else CloseView(motion, layout.close.size)
@@ -181,18 +181,20 @@ def render_side_by_side(
     folders = [Path(result) for result in results]
     read = [read_movement(folder) for folder in folders]
     movements = [movement for movement, _ in read]
-    motions = _alike([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
+    motions = _on_one_scale([prepare(m, "strain", film_times(m, "strain", WHOLE)) for m in movements])
     require_libraries()
     path, notes = target(folders[0], out, "film-side-by-side")
     titles, curves, missing = zip(*map(context, folders), strict=True)
     times = film_times(max(movements, key=lambda movement: movement.end), "strain", span)
-    background = PairBackground.make(board.Abreast(*size, len(folders)), motions, titles, curves, times)
-    film = encode(_abreast(background, motions, times), path, FPS)
+    background = PairBackground.make(
+        frame.SideBySideLayout(*size, len(folders)), motions, titles, curves, times
+    )
+    film = encode(_side_by_side_frames(background, motions, times), path, FPS)
     left_out = [left_out for _, left_out in read]
     return RenderResult(film, (*notes, *chain(*left_out, *missing)), len(times))
 
 
-def _alike(motions: Sequence[FilmData]) -> list[FilmData]:
+def _on_one_scale(motions: Sequence[FilmData]) -> list[FilmData]:
     """Give all motions the widest colour range and the smallest magnification."""
     top = max(motion.far[1] for motion in motions)
     peak = min(motion.peak for motion in motions)
@@ -205,7 +207,7 @@ class PairBackground:
 
     Parameters
     ----------
-    layout : Abreast
+    layout : SideBySideLayout
     base : Image
         The still picture that the views are pasted into.
     strips : tuple of Strip
@@ -213,59 +215,59 @@ class PairBackground:
         End of each run, s.
     """
 
-    layout: board.Abreast
+    layout: frame.SideBySideLayout
     base: Image
-    strips: tuple[board.Strip, ...]
+    strips: tuple[frame.Strip, ...]
     ends: tuple[float, ...]
 
     @classmethod
     def make(
         cls,
-        layout: board.Abreast,
+        layout: frame.SideBySideLayout,
         motions: Sequence[FilmData],
         titles: Sequence[str],
-        curves: Sequence[board.Curve],
+        curves: Sequence[frame.Curve],
         times: np.ndarray,
     ) -> PairBackground:
         """Draw the still parts once, with title and force curve of each run."""
-        drawn = board.blank(layout)
-        board.heading(drawn, layout, TITLE)
-        limits = board.limits_of(curves, times)
+        drawn = frame.blank(layout)
+        frame.heading(drawn, layout, TITLE)
+        limits = frame.limits_of(curves, times)
         strips = []
         for title, curve, view, place in zip(titles, curves, layout.views, layout.strips, strict=True):
             _title(drawn, layout, view, title)
-            strips.append(board.Strip.draw(drawn, layout, place, curve, limits))
+            strips.append(frame.Strip.draw(drawn, layout, place, curve, limits))
         middle = layout.views[len(layout.views) // 2]
-        board.colour_bar(drawn, layout, middle, "strain", motions[0].far)
+        frame.colour_bar(drawn, layout, middle, "strain", motions[0].far)
         scale = f"one scale; deformation × {motions[0].peak:g},\nfading to × 1 at the contact"
-        board.below(drawn, layout, layout.views[0], scale, QUIET)
+        frame.below(drawn, layout, layout.views[0], scale, QUIET)
         ends = tuple(motion.movement.end for motion in motions)
-        return cls(layout, board.picture(drawn), tuple(strips), ends)
+        return cls(layout, frame.picture(drawn), tuple(strips), ends)
 
     def compose(self, pictures: Sequence[np.ndarray], time: float) -> np.ndarray:
         """Return one frame ``(height, width, 3) uint8`` from the views at ``time`` in s."""
         from PIL import Image, ImageDraw
 
-        frame = self.base.copy()
-        pen = ImageDraw.Draw(frame)
+        image = self.base.copy()
+        pen = ImageDraw.Draw(image)
         for drawn, view in zip(pictures, self.layout.views, strict=True):
-            frame.paste(Image.fromarray(drawn), view.corner)
+            image.paste(Image.fromarray(drawn), view.corner)
         for strip, view, end in zip(self.strips, self.layout.views, self.ends, strict=True):
             strip.mark(pen, time)
             if time > end:
                 place = (view.left + view.width - 8, view.top + 4)
-                board.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
-        board.clock(pen, self.layout, time)
-        return np.asarray(frame)
+                frame.write(pen, place, f"over at {end * 1e6:.0f} µs", 13)
+        frame.clock(pen, self.layout, time)
+        return np.asarray(image)
 
 
-def _title(drawn: Figure, layout: board.Abreast, view: board.Rectangle, title: str) -> None:
+def _title(drawn: Figure, layout: frame.SideBySideLayout, view: frame.Rectangle, title: str) -> None:
     place = (view.left / layout.width, 1 - (view.top - 2) / layout.height)
     lines = fill(title, view.width // 8, max_lines=2, placeholder=" …")
     drawn.text(*place, lines, fontsize=9.5, color=INK, va="bottom", linespacing=1.1, parse_math=False)
 
 
-def _abreast(
+def _side_by_side_frames(
     background: PairBackground, motions: Sequence[FilmData], times: np.ndarray
 ) -> Iterator[np.ndarray]:
     sizes = [view.size for view in background.layout.views]

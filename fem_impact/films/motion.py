@@ -99,12 +99,12 @@ def magnified(rigid: np.ndarray, moved: np.ndarray, factor: np.ndarray) -> np.nd
     return shown
 
 
-def nice_factor(wanted: float) -> float:
-    """Return the largest of 1, 2, 5, 10, 20, 50, ... not above ``wanted``, and 1 at least."""
-    if not np.isfinite(wanted) or wanted <= 1.0:
+def nice_factor(limit: float) -> float:
+    """Return the largest of 1, 2, 5, 10, 20, 50, ... not above ``limit``, and 1 at least."""
+    if not np.isfinite(limit) or limit <= 1.0:
         return 1.0
-    decade = 10.0 ** np.floor(np.log10(wanted))
-    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= wanted * (1.0 + 1e-12)))
+    decade = 10.0 ** np.floor(np.log10(limit))
+    return float(decade * max(step for step in (1.0, 2.0, 5.0) if step * decade <= limit * (1.0 + 1e-12)))
 
 
 class FieldStyle(NamedTuple):

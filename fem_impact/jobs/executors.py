@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
@@ -138,7 +137,7 @@ class _Worker:
 def _leave(*_: object) -> None:
     """End the process by way of its blocks of `finally`, which remove the drafts of files; only once."""
     signal.signal(signal.SIGTERM, signal.SIG_IGN)
-    sys.exit(1)
+    raise SystemExit(1)
 
 
 def _serve(pipe: Connection) -> None:

@@ -113,16 +113,16 @@ def run_jobs(
     RunError
         A worker holds another version of the program.
     """
-    wanted = {job.name: job for job in jobs}
+    by_name = {job.name: job for job in jobs}
     with Store.open(store) as base:
-        results = stored_results(base, wanted.values(), progress)
-        costs = expected_costs(wanted.values(), results)
+        results = stored_results(base, by_name.values(), progress)
+        costs = expected_costs(by_name.values(), results)
         if costs:
             # the longest first, so that no worker is left alone with one at the end
-            waiting = [wanted[name] for name in sorted(costs, key=lambda name: -costs[name])]
+            waiting = [by_name[name] for name in sorted(costs, key=lambda name: -costs[name])]
             with LocalProcesses() if executor is None else nullcontext(executor) as engine:
-                _compute(waiting, base, engine, results, Eta(costs, len(wanted), progress))
-    return {name: results[name] for name in wanted}
+                _compute(waiting, base, engine, results, Eta(costs, len(by_name), progress))
+    return {name: results[name] for name in by_name}
 
 
 def stored_results(
@@ -223,17 +223,17 @@ def estimate(
     planned time of the jobs of its fidelity. Where none has run yet, a few of the cheaper half do.
     Compilation, the start of workers and sharing a machine's memory among them are not in the figures.
     """
-    wanted = list(jobs)
+    all_jobs = list(jobs)
     with Store.open(store) as base:
-        done = stored_results(base, wanted, progress)
-    done |= run_jobs(_samples(wanted, done), store, progress, executor)
-    expected = expected_costs(wanted, done)
+        done = stored_results(base, all_jobs, progress)
+    done |= run_jobs(_samples(all_jobs, done), store, progress, executor)
+    expected = expected_costs(all_jobs, done)
     groups: dict[JobKind, list[float]] = {}
-    for job in wanted:
+    for job in all_jobs:
         if job.name in expected:
             groups.setdefault(job.kind, []).append(expected[job.name])
     return WorkForecast(
-        len(wanted),
+        len(all_jobs),
         len(done),
         sum(expected.values()),
         max(expected.values(), default=0.0),
@@ -242,7 +242,7 @@ def estimate(
             JobGroup(fidelity, size or None, len(times), min(times), max(times), sum(times))
             for (fidelity, size), times in groups.items()
         ],
-        paces(wanted, done),
+        paces(all_jobs, done),
     )
 
 

@@ -180,6 +180,7 @@ def _pair(row: Outcome, name: str) -> tuple[float, float]:
     return getattr(row.motion, name), known(getattr(row.contact.markers, name))
 
 
+TITLE = "Where the energy of a dropped steel rod goes"
 QUESTIONS = {
     "sets": "Does the model meet the measured series?",
     "validation": "How large is the error of the model, and what causes it?",
@@ -226,8 +227,7 @@ def write_all(results: Path, out: Path) -> Path:
     failed = sum(len(study.failures) for study in studies)
     counts = f"{len(studies)} studies, {len(ledger)} runs, {failed} of them failed."
     lead = f"{counts} First what each study asks, and its answer; the rest is folded below."
-    title = "Where the energy of a dropped steel rod goes"
-    text = html.page(title, "All studies", lead, _footer(studies), body)
+    text = html.page(TITLE, "All studies", lead, _footer(studies), body)
     return write_text(out / "report.html", text)
 
 
@@ -285,7 +285,7 @@ def _short(cell: str) -> str:
 
 def _markdown(studies: Iterable[StudyRecord], concluded: str) -> str:
     """Return the summaries of all studies below the conclusions, figure links relative to the report."""
-    parts = ["# Where the energy of a dropped steel rod goes", concluded]
+    parts = [f"# {TITLE}", concluded]
     for study in studies:
         text = read_text(study.folder / "summary.md").strip()
         text = text.replace("](figures/", f"](../{study.folder.name}/figures/")
@@ -297,9 +297,8 @@ def _footer(studies: Sequence[StudyRecord]) -> str:
     row = next((row for study in studies for row in study.rows), None)
     if row is None:
         return "Versions and dates of the runs stand in the ledger."
-    return (
-        f"Computed with {html.versions_text(row.provenance.versions)}; dates of the runs stand in the ledger."
-    )
+    versions = html.versions_text(row.provenance.versions)
+    return f"Computed with {versions}; dates of the runs stand in the ledger."
 
 
 class Conclusion(NamedTuple):

@@ -134,7 +134,7 @@ def run_page(folder: Path) -> str:
         *([screening_box(scene, str(folder / "scene.toml"))] if scene else ()),
         _cards(outcome, rigid),
         sections.film_section(folder),
-        sections.notices([outcome], sections.strangers(outcome, folder)),
+        sections.notices([outcome], sections.mismatches(outcome, folder)),
         sections.beside_tests(outcome, scene, folder),
         html.section(f"Where the energy went{stop}", shares, _folded(outcome, "shares", ENERGY, rigid)),
         html.section("Motion", _folded(outcome, "velocities and impulse ratios", MOTION, rigid)),

@@ -34,7 +34,7 @@ LENGTHS = (
 )
 
 
-def strangers(outcome: Outcome, folder: Path) -> list[str]:
+def mismatches(outcome: Outcome, folder: Path) -> list[str]:
     """Return warnings that the folder's scene or history does not belong to the outcome."""
     return [*_other_scene(outcome, folder), *_short_history(outcome, folder)]
 

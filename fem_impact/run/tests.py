@@ -132,6 +132,6 @@ def _own(scene: Scene, changed: int) -> MeasuredTests:
     return SingleTests(_arms(scene, camera.arms), camera.motion, body.k2, body.mass)
 
 
-def _arms(scene: Scene, stated: tuple[float, float] | None) -> Arms:
-    """Return the stated arms, else those of the tip, m."""
-    return Arms(*(stated or arms(scene)))  # type: ignore[arg-type]
+def _arms(scene: Scene, of_file: tuple[float, float] | None) -> Arms:
+    """Return the arms of the file, else those of the tip, m."""
+    return Arms(*(of_file or arms(scene)))  # type: ignore[arg-type]

@@ -14,7 +14,7 @@ from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, Row
 from fem_impact.answers.vary import Case, cases, in_unit, read_vary
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
-from fem_impact.files.run_directory import earlier
+from fem_impact.files.run_directory import earlier_runs
 from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.tables.table import read_csv
@@ -367,7 +367,7 @@ def swept_here(cli, vary, *more):
     assert code == 0
     names = ("sweep.csv", "runs.csv", "summary.md", "figures/sweep.csv")
     return [
-        {name: (d / name).read_text() for name in names} for d in (Path("here"), *earlier(Path("here")))
+        {name: (d / name).read_text() for name in names} for d in (Path("here"), *earlier_runs(Path("here")))
     ], err
 
 
@@ -377,7 +377,7 @@ def test_another_sweep_in_the_directory_sets_the_report_of_the_first_aside(cli):
     assert "Older results" not in err
     (second, kept), err = swept_here(cli, "surface.friction=0.2,0.4")
     assert kept == first and second["sweep.csv"] != first["sweep.csv"]
-    (place,) = earlier(Path("here"))
+    (place,) = earlier_runs(Path("here"))
     assert f"Older results that were in here are kept in {place}" in err
     assert (place / "report.html").exists() and not Path("here/report.html").exists()
     other_fidelity = ("--fidelity", "modal")
@@ -397,7 +397,7 @@ def test_the_same_sweep_goes_on_in_its_directory_after_a_kill_and_with_other_col
         patch.setattr(jobs_run, "_compute", None)  # would be called for a job that is not stored
         assert cli(*line, "--out", "here")[0] == 0
         assert cli(*line, "--out", "here", "--columns", "mu")[0] == 0
-    assert not earlier(Path("here"))
+    assert not earlier_runs(Path("here"))
 
 
 def raises(error):

@@ -4,7 +4,7 @@ import os
 
 import pytest
 
-from fem_impact.files.run_directory import earlier, set_aside
+from fem_impact.files.run_directory import earlier_runs, set_aside
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
 from fem_impact.run.simulate import simulate
@@ -26,7 +26,7 @@ def test_an_older_run_goes_whole_into_a_directory_of_its_time(tmp_path):
     (tmp_path / "outcome.json").write_text("another")
     os.utime(tmp_path / "outcome.json", (1e9, 1e9))
     assert set_aside(tmp_path).name == f"{place.name}-2"
-    assert earlier(tmp_path) == [place, tmp_path / f"{place.name}-2"]
+    assert earlier_runs(tmp_path) == [place, tmp_path / f"{place.name}-2"]
 
 
 def test_a_scene_alone_is_no_run(tmp_path):
@@ -38,7 +38,7 @@ def test_a_scene_alone_is_no_run(tmp_path):
 def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch):
     first = simulate(load("t5b"), "rigid", RunOptions(out=tmp_path))
     second = simulate(load("t5c"), "rigid", RunOptions(out=tmp_path))
-    (place,) = earlier(tmp_path)
+    (place,) = earlier_runs(tmp_path)
     assert Outcome.read(place / "outcome.json") == first
     assert read_toml(place / "scene.toml") == load("t5b")
     assert Outcome.read(tmp_path / "outcome.json") == second
@@ -50,14 +50,14 @@ def test_another_run_into_the_same_directory_loses_nothing(tmp_path, monkeypatch
     with pytest.raises(KeyboardInterrupt):
         simulate(load("t5d"), "rigid", RunOptions(out=tmp_path))
     assert not (tmp_path / "outcome.json").exists()
-    assert Outcome.read(earlier(tmp_path)[-1] / "outcome.json") in (first, second)
+    assert Outcome.read(earlier_runs(tmp_path)[-1] / "outcome.json") in (first, second)
 
 
 def test_a_reduced_run_does_not_go_on_from_a_checkpoint(tmp_path):
     (tmp_path / "run.checkpoint").write_bytes(b"of a finite-element run")
     (tmp_path / "fields.vtkhdf").write_bytes(b"its fields")
     simulate(load("t5b"), "rigid", RunOptions(out=tmp_path, resume=True))
-    (place,) = earlier(tmp_path)
+    (place,) = earlier_runs(tmp_path)
     assert {path.name for path in place.iterdir()} == {"run.checkpoint", "fields.vtkhdf"}
     assert not (tmp_path / "fields.vtkhdf").exists()
 

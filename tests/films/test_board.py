@@ -6,8 +6,17 @@ import pytest
 from matplotlib.figure import Figure
 
 from fem_impact.figures.style import QUIET
-from fem_impact.films.board import Abreast, FrameLayout, below, blank, clock, colour_bar, heading, picture
 from fem_impact.films.film import TITLE, _title
+from fem_impact.films.frame import (
+    FrameLayout,
+    SideBySideLayout,
+    below,
+    blank,
+    clock,
+    colour_bar,
+    heading,
+    picture,
+)
 from fem_impact.films.motion import FIELDS
 
 LONG = "a rod of a title that somebody wrote with all that was known of surfaces, speed, angle and tip " * 3
@@ -23,7 +32,7 @@ def boxes(drawn: Figure):
 @pytest.mark.parametrize("field", FIELDS)
 @pytest.mark.parametrize("count", [None, 3, 4])
 def test_words_under_a_view_clear_the_view_the_bar_and_the_strip(field, count):
-    frame = FrameLayout(1280, 720) if count is None else Abreast(1280, 720, count)
+    frame = FrameLayout(1280, 720) if count is None else SideBySideLayout(1280, 720, count)
     view = frame.close if count is None else frame.views[1]
     drawn = blank(frame)
     colour_bar(drawn, frame, view, field, (-1.0, 1.0))
@@ -56,7 +65,7 @@ def test_a_title_ends_before_the_clock(title):
 
 @pytest.mark.parametrize("count", [2, 3, 4])
 def test_titles_of_rods_clear_the_heading_and_each_other(count):
-    frame = Abreast(1280, 720, count)
+    frame = SideBySideLayout(1280, 720, count)
     drawn = blank(frame)
     heading(drawn, frame, TITLE)
     for view in frame.views:

@@ -14,9 +14,9 @@ import fem_impact.films.encode as encoding
 import fem_impact.films.encode as probe
 from fem_impact.errors import MissingLibraryError, OutputPathError, ResultError, UsageError
 from fem_impact.files.fields import read_fields
-from fem_impact.films.board import Abreast, FrameLayout
 from fem_impact.films.encode import require_gl
-from fem_impact.films.film import _alike, render, render_side_by_side
+from fem_impact.films.film import _on_one_scale, render, render_side_by_side
+from fem_impact.films.frame import FrameLayout, SideBySideLayout
 from fem_impact.films.motion import (
     axis_of,
     hex_volumes,
@@ -106,7 +106,7 @@ def test_rods_side_by_side_share_scale_and_colours(result):
     motions = [prepare(movement, "strain", times[[frame]]) for frame in (1, 3)]
     assert motions[0].far != motions[1].far
     assert motions[0].peak != motions[1].peak
-    one, other = _alike(motions)
+    one, other = _on_one_scale(motions)
     assert one.far == other.far == max((m.far for m in motions), key=lambda far: far[1])
     assert one.peak == other.peak == min(m.peak for m in motions)
     assert one.factor.max() == one.peak
@@ -257,7 +257,7 @@ def test_side_by_side_film_moves_in_every_view(result, tmp_path):
     made = render_side_by_side([result, result], tmp_path / "film.png", Span(frames=3), size=(640, 480))
     assert (made.frames, made.notes) == (3, ())
     first, second = (np.asarray(Image.open(p)).astype(int) for p in sorted(made.path.iterdir())[:2])
-    layout = Abreast(640, 480, 2)
+    layout = SideBySideLayout(640, 480, 2)
     for view in (*layout.views, *layout.strips):
         cut = np.s_[view.top : view.top + view.height, view.left : view.left + view.width]
         assert first[cut].std() > 5

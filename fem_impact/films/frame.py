@@ -96,7 +96,7 @@ class FrameLayout(Frame):
 
 
 @dataclass(frozen=True, slots=True)
-class Abreast(Frame):
+class SideBySideLayout(Frame):
     """Views of several rods side by side, each over its own force curve.
 
     Parameters
