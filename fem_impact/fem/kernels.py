@@ -1,4 +1,4 @@
-"""Decorators and intrinsics of the compiled kernels, and the cache of their machine code."""
+"""Decorators of the compiled kernels, and the cache of their machine code."""
 
 from __future__ import annotations
 
@@ -10,11 +10,9 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-from llvmlite import ir
 from llvmlite.binding import get_host_cpu_features
-from numba import extending, types
+from numba import extending
 from numba.core import event
-from numba.extending import models, register_model
 
 SETTINGS: Any = numba.config
 F = TypeVar("F", bound=Callable[..., Any])
@@ -127,85 +125,3 @@ def by_type(argument: str, others: dict[type, Callable[..., Any]]) -> Callable[[
 
 def _compiled(function: F, **options: Any) -> F:
     return cast(F, numba.njit(fastmath=FAST, error_model="numpy", **options)(function))
-
-
-VECTOR, LANE = ir.VectorType(ir.DoubleType(), 4), ir.IntType(32)
-intrinsic: Any = extending.intrinsic  # its callers leave out the first argument
-NUMBER = 8  # alignment, bytes: the index of a load or store need not be a multiple of four
-
-
-class Four(types.Type):
-    """The numba type of four float64 in one vector register."""
-
-    def __init__(self) -> None:
-        super().__init__(name="Four")
-
-
-FOUR = Four()
-
-
-@register_model(Four)
-class _Register(models.PrimitiveModel):
-    def __init__(self, manager, of):  # type: ignore[no-untyped-def]
-        super().__init__(manager, of, VECTOR)
-
-
-def _place(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-    """Return the address of the four numbers of an array from an index on."""
-    array = context.make_array(signature.args[0])(context, builder, arguments[0])
-    return builder.bitcast(builder.gep(array.data, [arguments[1]]), VECTOR.as_pointer())
-
-
-@intrinsic
-def load(typing, values, place):  # type: ignore[no-untyped-def]
-    """Return four numbers of a contiguous array from the flat index ``place`` on."""
-
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        return builder.load(_place(context, builder, signature, arguments), align=NUMBER)
-
-    return FOUR(values, types.intp), code
-
-
-@intrinsic
-def store(typing, values, place, lanes):  # type: ignore[no-untyped-def]
-    """Store four numbers in a contiguous array from the flat index ``place`` on."""
-
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        builder.store(arguments[2], _place(context, builder, signature, arguments), align=NUMBER)
-        return context.get_dummy_value()
-
-    return types.void(values, types.intp, FOUR), code
-
-
-@intrinsic
-def spread(typing, number):  # type: ignore[no-untyped-def]
-    """Return a vector of four times the same number."""
-
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        none = ir.Constant(VECTOR, ir.Undefined)
-        one = builder.insert_element(none, arguments[0], LANE(0))
-        return builder.shuffle_vector(one, none, ir.Constant(ir.VectorType(LANE, 4), [0] * 4))
-
-    return FOUR(types.float64), code
-
-
-@intrinsic
-def add_product(typing, total, a, b):  # type: ignore[no-untyped-def]
-    """Return total + a b, lane by lane."""
-
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        total, a, b = arguments
-        return builder.fadd(total, builder.fmul(a, b))
-
-    return FOUR(FOUR, FOUR, FOUR), code
-
-
-@intrinsic
-def three(typing, lanes):  # type: ignore[no-untyped-def]
-    """Return the sum of the first three numbers."""
-
-    def code(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
-        a, b, c = (builder.extract_element(arguments[0], LANE(k)) for k in range(3))
-        return builder.fadd(builder.fadd(a, b), c)
-
-    return types.float64(FOUR), code

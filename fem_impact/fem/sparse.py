@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.elements import Kind, element_stiffness
-from fem_impact.fem.kernels import add_product, inlined, kernel, load, spread, store, three
+from fem_impact.fem.kernels import inlined, kernel
+from fem_impact.fem.vectors import add_product, load, spread, store, sum_of_three
 
 Counts = NDArray[np.uint32]
 
@@ -161,9 +162,9 @@ def _add_row(columns, kinds, blocks, d, f, i):  # type: ignore[no-untyped-def]
         sum_b = add_product(sum_b, l, other)
         sum_n = add_product(sum_n, m, other)
         store(f, j, add_product(add_product(add_product(load(f, j), k, t), l, b), m, n))
-    f[i, 0] += three(sum_t)
-    f[i, 1] += three(sum_b)
-    f[i, 2] += three(sum_n)
+    f[i, 0] += sum_of_three(sum_t)
+    f[i, 1] += sum_of_three(sum_b)
+    f[i, 2] += sum_of_three(sum_n)
 
 
 @kernel

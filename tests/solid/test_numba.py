@@ -49,7 +49,8 @@ def _events():
 
 
 def _vectors():
-    from fem_impact.fem.kernels import kernel, load, spread, store
+    from fem_impact.fem.kernels import kernel
+    from fem_impact.fem.vectors import load, spread, store
 
     out = np.zeros((2, 4))
     kernel(lambda a: store(a, 4, spread(2.0)))(out)
