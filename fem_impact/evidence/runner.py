@@ -22,9 +22,10 @@ def run_study(
 
     Parameters
     ----------
-    name : module of ``fem_impact.evidence``, such as "studies.tip", with two functions. ``plan(request,
-        results)`` returns its jobs; it is called with the results so far until it returns no new one.
-        ``conclude(request, results)`` returns its `StudyReport`
+    name : str
+        Module of ``fem_impact.evidence``, such as "studies.tip", with two functions.
+        ``plan(request, results)`` returns its jobs; it is called with the results so far until it returns
+        no new one. ``conclude(request, results)`` returns its `StudyReport`.
     progress : meter, updated after each job
     executor : where the jobs run; local processes when None
 
