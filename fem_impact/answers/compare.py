@@ -11,7 +11,7 @@ from fem_impact.outcome.shares import shares
 from fem_impact.run.tests import MeasuredTests
 from rigid.experiments import Statistic, measured_set
 
-Row = dict[str, Any]
+ComparisonRow = dict[str, Any]
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def verdict(model: float, band: float | None, measured: Statistic) -> str:
     return f"miss by {beyond if away > 0 else -beyond:+.1f} SD"
 
 
-def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[Row]:
+def compare(outcome: Outcome, tests: MeasuredTests | None = None) -> list[ComparisonRow]:
     """Return one row a quantity of an outcome beside tests; without them beside the set of its scene's id.
 
     With a second mesh, model and band are the limit for vanishing elements and its uncertainty; without one,

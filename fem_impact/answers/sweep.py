@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from fem_impact.answers.report import Request, Sheet, StudyReport, StudyResult, publish
-from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, Row, row_of
+from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow, row_of
 from fem_impact.answers.vary import cases, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.figures.panels import Panel, Picture, Series
@@ -202,7 +202,7 @@ def _findings(results: Results, drawn: Sequence[str]) -> list[str]:
     return sentences
 
 
-def _stated(row: Row, without: str = "") -> str:
+def _stated(row: SweepRow, without: str = "") -> str:
     return ", ".join(f"{key} = {value}" for key, value in row.case.values.items() if key != without)
 
 

@@ -53,7 +53,7 @@ def require_columns(names: Sequence[str]) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class SweepRow:
     """One case of a sweep: the values that it states, its outcome, or None and the reason."""
 
     case: Case
@@ -62,7 +62,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Results(Sequence[Row]):
+class Results(Sequence[SweepRow]):
     """The cases of a sweep in the order of their values, the last key changing fastest.
 
     Attributes
@@ -81,12 +81,12 @@ class Results(Sequence[Row]):
     """
 
     vary: Mapping[str, Sequence[Any]]
-    rows: tuple[Row, ...]
+    rows: tuple[SweepRow, ...]
 
     def __len__(self) -> int:
         return len(self.rows)
 
-    def __iter__(self) -> Iterator[Row]:
+    def __iter__(self) -> Iterator[SweepRow]:
         return iter(self.rows)
 
     def __getitem__(self, at: Any) -> Any:
@@ -188,7 +188,7 @@ def _same(stated: Any, wanted: Any) -> bool:
     return abs(a - b) <= 1e-9 * max(abs(a), abs(b))
 
 
-def _ended(row: Row, columns: Sequence[str]) -> list[Cell]:
+def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
     if row.outcome is None:
         return [False, row.reason, *([None] * len(columns))]
     values, validity = row.outcome.to_dict(), row.outcome.validity
@@ -197,8 +197,8 @@ def _ended(row: Row, columns: Sequence[str]) -> list[Cell]:
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 
 
-def row_of(case: Case, result: Outcome | Failure | None) -> Row:
+def row_of(case: Case, result: Outcome | Failure | None) -> SweepRow:
     """Return the row of a case from what its job gave."""
     if isinstance(result, Outcome):
-        return Row(case, result, "")
-    return Row(case, None, result.reason if result else case.refused)
+        return SweepRow(case, result, "")
+    return SweepRow(case, None, result.reason if result else case.refused)

@@ -11,7 +11,7 @@ from outcome_maker import altered, outcome
 
 import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
-from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, Row
+from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
 from fem_impact.answers.vary import Case, cases, in_unit, read_vary
 from fem_impact.errors import MissingLibraryError, SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs
@@ -173,7 +173,7 @@ def test_the_table_holds_every_scalar_of_an_outcome_once(swept):
 def made_up(tips, **changed):
     """Results of cases that differ in the size of their cells."""
     rows = [
-        Row(
+        SweepRow(
             Case(f"case-{at}", {"projectile.diameter": f"{at} mm"}, None),
             outcome(tip_size_m=tip, **changed),
             "",
@@ -210,7 +210,7 @@ def test_what_is_not_known_in_some_cases_is_told_with_its_reason(tmp_path):
     known, unknown = made_up((3e-4, 3e-4)).rows
     lost = {"e_edge": "too coarse.", "mu": "too coarse."}
     other = altered(unknown.outcome, **dict.fromkeys(lost), reasons=lost)
-    results = Results({"projectile.diameter": ["1 mm", "2 mm"]}, (known, Row(unknown.case, other, "")))
+    results = Results({"projectile.diameter": ["1 mm", "2 mm"]}, (known, SweepRow(unknown.case, other, "")))
     findings = publish_sweep(results, "t", "fem-impact sweep", tmp_path).document["findings"]
     told = [line for line in findings if line.startswith("Not known")]
     assert told == ["Not known in 1 of 2 cases, the first of them case-2: `e_edge`, `mu` (too coarse)."]

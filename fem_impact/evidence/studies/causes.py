@@ -1,149 +1,96 @@
 """Ladder of causes: the readings of strength switched on one after the other, and each alone.
 
-A measured set runs at its default mesh, first with the nominal tensile law of both steels and no rate effect,
-then with the nominal rate law, with flow stress from hardness, and with a hardened skin. Tensile law and rate
-are the nominal inputs; the others are readings that no source made nominal (docs/explanation/inputs.md).
+What they are and what the ladder rests on: docs/explanation/inputs.md.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.answers.compare import MEASURED
+from fem_impact import load, replace_all
+from fem_impact.answers.compare import MEASURED, ComparedQuantity
 from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.evidence.studies.declared import DeclaredSweep
 from fem_impact.evidence.studies.sets import QUICK
 from fem_impact.figures.panels import Panel, Picture, Series
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.keys import known
-from fem_impact.outcome.record import Outcome
-from fem_impact.scene.shipped import load, replace_all
-from fem_impact.tables.table import Cell, Table
+from fem_impact.tables.table import Table
 from rigid.experiments import Statistic, measured_set
 
 if TYPE_CHECKING:
+    import pandas
+
     from fem_impact.scene.types import Scene
 
 
 SETS = ("t5b", "t6-17")  # by default: the short rod in slow drops, at 45 and at 17 degrees
 SHOWN = MEASURED[:3]  # e, mu, Omega
-BASE = "tensile, no rate"
+SLOW: dict[str, Any] = {"effects": ["auto", "-rate-hardening"]}
+HARD = {f"{body}.material.law": "hardness" for body in ("projectile", "barrier")}
 SKIN = {"surface.skin_depth": "0.11 mm", "surface.skin_factor": 1.5}
-SLOW = {"effects": ["auto", "-rate-hardening"]}
-
-
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """A reading of the strength: name, what it is, and the changed keys of a scene without it."""
-
-    name: str
-    description: str
-    changes: dict[str, Any]
-
-
-CAUSES = (
-    Cause("rate", "the nominal rate law of both steels", {}),
-    Cause(
-        "hardness",
-        "flow stress of both steels from their hardness instead of their ultimate stress: another reading",
-        {"projectile.material.law": "hardness", "barrier.material.law": "hardness"},
-    ),
-    Cause(
-        "skin",
-        "a layer of 0.11 mm with 1.5 times the flow stress on both bodies: depth and factor are from memory, "
-        "no source could be read",
-        SKIN,
-    ),
-)
-STEPS = {
-    BASE: (),
-    **{("+ " if n else "") + c.name: CAUSES[: n + 1] for n, c in enumerate(CAUSES)},
-    **{f"{c.name} alone": (c,) for c in CAUSES[1:]},
+BASE = "tensile, no rate"
+STEPS: dict[str, dict[str, Any]] = {
+    BASE: SLOW,
+    "rate": {},
+    "+ hardness": HARD,
+    "+ skin": HARD | SKIN,
+    "hardness alone": SLOW | HARD,
+    "skin alone": SLOW | SKIN,
 }
-"""Causes that are on in each run; the first alone is the second step of the ladder."""
-LADDER = tuple(STEPS)[: len(CAUSES) + 1]
-ALONE = (LADDER[1], *tuple(STEPS)[len(CAUSES) + 1 :])
+"""Changed keys of the scene in each run."""
+LADDER = tuple(STEPS)[:4]
+ALONE = {"rate": "rate", "hardness": "hardness alone", "skin": "skin alone"}
+"""The run in which a cause is on alone."""
 
 
-def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return one job a set and step."""
+def _scenes(request: Request) -> dict[str, Scene]:
     coarse = {**(QUICK if request.quick else {}), "save.frames": 0}
-    return [
-        Job(f"{name}: {step}", _changed(replace_all(load(name), coarse), causes))
-        for name in _sets(request)
-        for step, causes in STEPS.items()
+    names = request.ids or (SETS[:1] if request.quick else SETS)
+    return {name: replace_all(load(name), coarse) for name in names}
+
+
+def _report(table: pandas.DataFrame) -> StudyReport:
+    """Return what each cause changes in each set, beside the tests; ``table`` as `DeclaredSweep.table`."""
+    sentences = [_sentence(name, row) for name, row in table.iterrows()]
+    rows = [
+        (name, q.name, *(row[q.name, step] for step in STEPS), measured.mean, measured.low, measured.high)
+        for name, row in table.iterrows()
+        for q, measured in _measured(name)
     ]
-
-
-def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: results of every step beside the measured ones."""
-    runs = {
-        name: {step: run for step in STEPS if isinstance(run := results[f"{name}: {step}"], Outcome)}
-        for name in _sets(request)
-    }
-    complete = {name: found for name, found in runs.items() if len(found) == len(STEPS)}
-    sentences = [_sentence(name, found) for name, found in complete.items()]
+    head = ("set", "quantity", *STEPS, "measured", "measured low", "measured high")
     return StudyReport(
         "causes",
         "Ladder of causes: what rate, hardness and skin do, one after the other and alone",
-        [_answer(complete), *sentences] if complete else ["No set has all its runs: see those that failed."],
-        [_picture(complete)] if complete else (),
-        [_sheet(complete)],
+        [_answer(table), *sentences] if rows else ["No set has all its runs: see those that failed."],
+        [_picture(table)] if rows else (),
+        [Sheet("causes", "Results by step; measured mean and its 95 % interval", Table.of(head, rows))],
         [
             "One run a step, all on the same mesh at one place of the barrier's grid: no band of meshes.",
-            *(f"{cause.name}: {cause.description}." for cause in CAUSES),
-            "sliding speed: friction that falls with the speed has no law with constants that could be read, "
-            "so it is no step here (docs/explanation/inputs.md).",
-            "Friction stays nominal. Nothing is chosen or changed after these runs.",
+            "What rate, hardness and skin stand for is told in docs/explanation/inputs.md.",
         ],
         conclusions=[("causes", sentence) for sentence in sentences],
     )
 
 
-def _sets(request: Request) -> tuple[str, ...]:
-    return request.ids or (SETS[:1] if request.quick else SETS)
+def _measured(name: str) -> list[tuple[ComparedQuantity, Statistic]]:
+    """Return the shown quantities with the measured means and 95 % intervals of a set."""
+    statistics = measured_set(name).statistics()
+    return [(quantity, statistics[str(quantity.measured)]) for quantity in SHOWN]
 
 
-def _changed(scene: Scene, causes: Sequence[Cause]) -> Scene:
-    """Return the scene with these causes on and the others off."""
-    changes: dict[str, Any] = {} if CAUSES[0] in causes else dict(SLOW)
-    for cause in causes:
-        changes |= cause.changes
-    return replace_all(scene, changes)
-
-
-def _statistics(name: str) -> list[Statistic]:
-    """Return the measured means and 95 % intervals of `SHOWN`."""
-    found = measured_set(name).statistics()
-    return [found[str(quantity.measured)] for quantity in SHOWN]
-
-
-def _sheet(runs: dict[str, dict[str, Outcome]]) -> Sheet:
-    rows: list[tuple[Cell, ...]] = []
-    for name, found in runs.items():
-        for quantity, measured in zip(SHOWN, _statistics(name), strict=True):
-            values = (known(quantity.key.of(found[step])) for step in STEPS)
-            rows.append((name, quantity.name, *values, measured.mean, measured.low, measured.high))
-    head = ("set", "quantity", *STEPS, "measured", "measured low", "measured high")
-    return Sheet("causes", "Results by step; measured mean and its 95 % interval", Table.of(head, rows))
-
-
-def _picture(runs: dict[str, dict[str, Outcome]]) -> Picture:
+def _picture(table: pandas.DataFrame) -> Picture:
     """Return a panel a set and quantity: the ladder, each cause alone, and the measured interval."""
     panels, places = [], np.arange(len(LADDER), dtype=float)
-    for name, found in runs.items():
-        for quantity, measured in zip(SHOWN, _statistics(name), strict=True):
-            values = {step: known(quantity.key.of(run)) for step, run in found.items()}
+    for name, row in table.iterrows():
+        for quantity, measured in _measured(name):
+            values = row[quantity.name]
             half = np.full(len(places), measured.high - measured.mean)
             mean = np.full(len(places), measured.mean)
             series = (
                 Series("measured mean, 95 %", places, mean, "dashed", 1, half),
-                Series("one after the other", places, [values[step] for step in LADDER], "joined", 0),
-                Series("each alone", places[1:], [values[step] for step in ALONE], "diamonds", 5),
+                Series("one after the other", places, values[[*LADDER]].tolist(), "joined", 0),
+                Series("each alone", places[1:], values[[*ALONE.values()]].tolist(), "diamonds", 5),
             )
             label = quantity.name + (f", {quantity.key.unit}" if quantity.key.unit != "-" else "")
             panels.append(Panel(name, "strength", label, series, names=LADDER))
@@ -151,30 +98,35 @@ def _picture(runs: dict[str, dict[str, Outcome]]) -> Picture:
     return Picture("causes", caption, tuple(panels), len(SHOWN))
 
 
-def _answer(runs: dict[str, dict[str, Outcome]]) -> str:
+def _answer(table: pandas.DataFrame) -> str:
     """Return the cause that changes each quantity of each set most, alone."""
     parts = []
-    for name, found in runs.items():
+    for name, row in table.iterrows():
         for quantity in SHOWN:
-            base = known(quantity.key.of(found[BASE]))
-            changes = {
-                c.name: known(quantity.key.of(found[s])) - base for c, s in zip(CAUSES, ALONE, strict=True)
-            }
+            values = row[quantity.name]
+            changes = {cause: values[step] - values[BASE] for cause, step in ALONE.items()}
             most = max(changes, key=lambda cause: abs(changes[cause]))
             parts.append(f"{quantity.name} of {name} by {most} ({changes[most]:+.2g})")
     return f"Each alone, most changes {', '.join(parts)}."
 
 
-def _sentence(name: str, found: dict[str, Outcome]) -> str:
+def _sentence(name: str, row: pandas.Series) -> str:
     """Return what each cause changes alone, beside what lacks without any of them."""
     parts = []
-    for quantity, measured in zip(SHOWN, _statistics(name), strict=True):
-        base = known(quantity.key.of(found[BASE]))
-        changes = ", ".join(
-            f"{cause.name} {known(quantity.key.of(found[step])) - base:+.2g}"
-            for cause, step in zip(CAUSES, ALONE, strict=True)
-        )
-        together = known(quantity.key.of(found[LADDER[-1]])) - base
+    for quantity, measured in _measured(name):
+        values = row[quantity.name]
+        base = values[BASE]
+        changes = ", ".join(f"{cause} {values[step] - base:+.2g}" for cause, step in ALONE.items())
         lacks = f"{quantity.name} {base:.3g}, {measured.mean - base:+.2g} to the measured mean"
-        parts.append(f"{lacks}: {changes}, all {together:+.2g}")
+        parts.append(f"{lacks}: {changes}, all {values[LADDER[-1]] - base:+.2g}")
     return f"{name}, without any of them and by each alone: {'; '.join(parts)}."
+
+
+_SWEEP = DeclaredSweep(
+    _scenes,
+    lambda scene: {step: (replace_all(scene, changes), "solid") for step, changes in STEPS.items()},
+    {quantity.name: quantity.key.of for quantity in SHOWN},
+    _report,
+    "{scene}: {variant}",
+)
+plan, conclude = _SWEEP.plan, _SWEEP.conclude

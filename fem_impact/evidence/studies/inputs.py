@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, Row
+from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, ComparisonRow
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.outcome.keys import Num, known
@@ -246,7 +246,9 @@ def sensitivity_jobs(coarse: Job, out: Path) -> dict[str, Job]:
     return jobs
 
 
-def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]) -> list[Row]:
+def sensitivity_rows(
+    coarse: Outcome | Failure, changed: Mapping[str, Outcome | Failure]
+) -> list[ComparisonRow]:
     """Return one row per input and quantity: set, input, quantity, base and changed value."""
     if not isinstance(coarse, Outcome):
         return []
@@ -270,7 +272,9 @@ def sensitivity_rows(coarse: Outcome | Failure, changed: Mapping[str, Outcome | 
     ]
 
 
-def explanations(comparison: Iterable[Row], sensitivities: Iterable[Row]) -> list[Row]:
+def explanations(
+    comparison: Iterable[ComparisonRow], sensitivities: Iterable[ComparisonRow]
+) -> list[ComparisonRow]:
     """Return, for each quantity outside its 95 % interval, the share of the miss by each input.
 
     The miss is measured mean less model; an input's share is its change of the result over the miss: 1 brings

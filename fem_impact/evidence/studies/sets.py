@@ -6,11 +6,11 @@ the place too; the run at the first place of the finer mesh is the one that is k
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from fem_impact.answers.compare import COMPARED, Row, compare
+from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.inputs import (
     DESCRIPTIONS,
@@ -20,7 +20,7 @@ from fem_impact.evidence.studies.inputs import (
     sensitivity_rows,
 )
 from fem_impact.evidence.studies.pairs import PLACES, finer_and_coarser, shifted, with_limits
-from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
@@ -77,31 +77,35 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study of sets and measurements, with the runs of the finer mesh to be presented."""
-    out, outcomes, comparison, changed = request.out, list[Outcome](), list[Row](), list[Row]()
+    outcomes, comparison, changed = list[Outcome](), list[ComparisonRow](), list[ComparisonRow]()
     for name in chosen(request):
-        runs = {kind: results[job.name] for kind, job in jobs_of(name, request.quick, out).items()}
-        if isinstance(runs["fine"], Outcome):
+        jobs = jobs_of(name, request.quick, request.out)
+        if run := limited(jobs, results):
             scene = load(name)
-            limited = with_limits(at_places(runs, "fine"), at_places(runs, "coarse"))
-            limited.write(out / scene.id / "outcome.json")
-            outcomes.append(limited)
-            comparison += compare(limited, tests_of(scene))
+            run.write(request.out / scene.id / "outcome.json")
+            outcomes.append(run)
+            comparison += compare(run, tests_of(scene))
         if not request.quick:
-            changed += sensitivity_rows(runs["coarse"], {i.name: runs[i.name] for i in INPUT_CHANGES})
+            inputs = {i.name: results[jobs[i.name].name] for i in INPUT_CHANGES}
+            changed += sensitivity_rows(results[jobs["coarse"].name], inputs)
     report = sets_report(outcomes, comparison, changed)
-    return replace(report, runs=[out / outcome.provenance.scene_id for outcome in outcomes])
+    return replace(report, runs=[request.out / outcome.provenance.scene_id for outcome in outcomes])
 
 
-def at_places(runs: JobResults, mesh: str) -> list[Outcome | Failure]:
-    """Return the runs of a mesh at its places of the barrier's grid, of `mesh_jobs`."""
-    return [runs[kind] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in runs]
+def limited(jobs: Mapping[str, Job], results: JobResults) -> Outcome | None:
+    """Return the finer mesh's run with limits and bands by all runs of `mesh_jobs`; None if it failed."""
+    fine, coarse = (
+        [results[jobs[kind].name] for kind in (mesh, f"{mesh}-{HALF_CELL}") if kind in jobs]
+        for mesh in ("fine", "coarse")
+    )
+    return with_limits(fine, coarse) if isinstance(fine[0], Outcome) else None
 
 
 SENSITIVITY = ("set", "quantity", "input", "base", "changed")
 
 
 def sets_report(
-    outcomes: Sequence[Outcome], comparison: Sequence[Row], changed: Sequence[Row]
+    outcomes: Sequence[Outcome], comparison: Sequence[ComparisonRow], changed: Sequence[ComparisonRow]
 ) -> StudyReport:
     """Return the study: comparison, energy shares, limits of two meshes, and what changed inputs explain."""
     explained = explanations(comparison, changed)
@@ -130,7 +134,7 @@ def sets_report(
     )
 
 
-def inside_sentence(comparison: Sequence[Row]) -> str:
+def inside_sentence(comparison: Sequence[ComparisonRow]) -> str:
     """Return the sentence on how many quantities agree with the measurement, and how many do not."""
     verdicts = [row["verdict"] for row in comparison if row["measured_mean"] is not None]
     starts = ("inside", "undecided", "outside, within the scatter")
@@ -142,7 +146,7 @@ def inside_sentence(comparison: Sequence[Row]) -> str:
     )
 
 
-def miss_sentence(explained: Sequence[Row]) -> str:
+def miss_sentence(explained: Sequence[ComparisonRow]) -> str:
     """Return the sentence on how many misses each input could explain, and how many none could."""
     counts = {name: sum(name in row["could"] for row in explained) for name in DESCRIPTIONS}
     ranked = sorted((name for name in counts if counts[name]), key=lambda name: -counts[name])
@@ -173,7 +177,7 @@ def with_spread(value: float, spread: float | None, digits: int) -> str:
     return f"{value:.{digits}f}" + ("" if spread is None else f" ± {spread:.{digits}f}")
 
 
-def _cell(row: Row) -> str:
+def _cell(row: ComparisonRow) -> str:
     digits = 1 if row["quantity"] == "Omega" else 3
     model, measured = (
         DASH if row[value] is None else with_spread(row[value], row[spread], digits)
@@ -227,7 +231,7 @@ def _limits(outcomes: Sequence[Outcome]) -> list[Sheet]:
     return [Sheet("limits", caption, Table.of(head, rows))] if rows else []
 
 
-def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Sheet]:
+def _input_sheets(changed: Sequence[ComparisonRow], explained: Sequence[ComparisonRow]) -> list[Sheet]:
     return [
         Sheet("sensitivity", "Values with each changed input", Table.of(SENSITIVITY, changed), shown=False),
         Sheet("changes", "Changes by each input alone, on the coarser mesh", _changes(changed)),
@@ -240,9 +244,9 @@ def _input_sheets(changed: Sequence[Row], explained: Sequence[Row]) -> list[Shee
     ]
 
 
-def _changes(changed: Sequence[Row]) -> Table:
+def _changes(changed: Sequence[ComparisonRow]) -> Table:
     """Return one row per set and quantity: value on the coarser mesh and its change by each input."""
-    by_quantity: dict[tuple[str, str], dict[str, Row]] = {}
+    by_quantity: dict[tuple[str, str], dict[str, ComparisonRow]] = {}
     for row in changed:
         by_quantity.setdefault((row["set"], row["quantity"]), {})[row["input"]] = row
     rows = []
@@ -253,7 +257,7 @@ def _changes(changed: Sequence[Row]) -> Table:
     return Table.of(("set", "quantity", "coarser mesh", *DESCRIPTIONS), rows)
 
 
-def _explanations(explained: Sequence[Row]) -> Table:
+def _explanations(explained: Sequence[ComparisonRow]) -> Table:
     """Return one row per quantity outside its interval: the inputs that could explain it, and the others."""
     rows = []
     for row in explained:

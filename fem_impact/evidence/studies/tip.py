@@ -1,27 +1,28 @@
 """Table 3 beside its caption: what its own rows say about the tip of its rods.
 
-The caption of Table 3 says tip B. Momentum alone binds the rotation of a rod to its velocities by the arms of
-the contact point, and those differ between the tips; the finite elements run with both. The scenes with tip A
-are a second reading, shown beside: they are none of the thirteen sets and count in none of their numbers.
+The caption says tip B. Momentum alone binds the rotation of a rod to its velocities by the arms of the
+contact point, and those differ between the tips; the finite elements run with both. The scenes with tip A
+are a second reading: none of the thirteen sets, counted in none of their numbers
+(docs/explanation/measured-sets.md).
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from fem_impact.answers.compare import MEASURED, Row, compare
+from fem_impact import load, replace_all
+from fem_impact.answers.compare import MEASURED, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.pairs import with_limits
-from fem_impact.evidence.studies.sets import at_places, mesh_jobs
+from fem_impact.evidence.studies.sets import limited, mesh_jobs
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import projectile
 from fem_impact.run.tests import tests_of
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set
 
@@ -29,6 +30,8 @@ SETS = ("t3-machined", "t3-contaminated", "t3-cleaned")
 TIPS = {"B": "{}", "A": "{}-tip-a"}
 """Names of the scenes by tip."""
 COUNTED = tuple(quantity.name for quantity in MEASURED)
+Compared = Mapping[tuple[str, str], Mapping[str, Any]]
+"""Rows of `compare` by set and quantity."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +48,12 @@ class Reading:
         dV_n, dV_t = changes(measured)
         return np.asarray((self.d_c * dV_n - self.d_d * dV_t) / self.k2)
 
+    @property
+    def misfit(self) -> float:
+        """Root mean square difference of the rotation from the measured one over all rows, rad/s."""
+        off = [self.rotation(s) - s.motion["Omega"] for s in map(measured_set, SETS)]
+        return float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
+
 
 def changes(measured: MeasuredSet) -> tuple[Array, Array]:
     """Return V_n - v_n and V_t - v_t (n,) of the rows, m/s."""
@@ -52,7 +61,7 @@ def changes(measured: MeasuredSet) -> tuple[Array, Array]:
     return np.asarray(m["V_n"] - m["v_n"]), np.asarray(m["V_t"] - m["v_t"])
 
 
-def fitted_arms(sets: list[MeasuredSet]) -> tuple[Array, Array]:
+def fitted_arms(sets: Sequence[MeasuredSet]) -> tuple[Array, Array]:
     """Return d_c, d_d (2,), m, that fit the rows' rotations by least squares, and their standard errors."""
     dV_n, dV_t = (np.concatenate(parts) for parts in zip(*map(changes, sets), strict=True))
     design = np.column_stack([dV_n, -dV_t])
@@ -64,14 +73,13 @@ def fitted_arms(sets: list[MeasuredSet]) -> tuple[Array, Array]:
 
 def readings() -> tuple[Reading, ...]:
     """Return the arms by which Table 3 was worked out, and those of a rod with either tip."""
-    printed = measured_set(SETS[0])
-    found = [Reading("as printed", float(printed.arms.d_c), float(printed.arms.d_d), printed.k2)]
+    printed, drawn = measured_set(SETS[0]), []
     for tip, name in TIPS.items():
         scene = load(name.format(SETS[0]))
         rod = projectile(scene)
         d_c, d_d = rod.arms(scene.impact.angle)
-        found.append(Reading(f"tip {tip}", float(d_c), float(d_d), float(rod.k2)))
-    return tuple(found)
+        drawn.append(Reading(f"tip {tip}", float(d_c), float(d_d), float(rod.k2)))
+    return Reading("as printed", float(printed.arms.d_c), float(printed.arms.d_d), printed.k2), *drawn
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
@@ -81,28 +89,14 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: rotation by momentum alone, and finite elements with either tip."""
-    rows: dict[str, list[Row]] = {}
-    for tip in TIPS:
-        for name in _sets(request):
-            runs = {kind: results[job.name] for kind, job in _jobs(name, tip, request).items()}
-            if isinstance(runs["fine"], Outcome):
-                limited = with_limits(at_places(runs, "fine"), at_places(runs, "coarse"))
-                found = compare(limited, tests_of(load(TIPS[tip].format(name))))
-                rows.setdefault(tip, []).extend(row for row in found if row["quantity"] in COUNTED)
+    rows: dict[str, Compared] = {tip: _compared(tip, request, results) for tip in TIPS}
     sentences = [*_momentum_sentences(), *_model_sentences(rows)]
     return StudyReport(
         "tip",
         "Table 3: tip A or tip B?",
         sentences,
         sheets=[_momentum_sheet(), _model_sheet(rows)],
-        assumptions=[
-            "The caption of Table 3 says tip B, and the thirteen sets follow it. Tip A is shown beside and "
-            "counted nowhere.",
-            "Table 3 prints e, mu and e_m; velocities and rotation follow from them with the arms, the "
-            "radius of gyration and the approach of 1.6 m/s by which it was worked out.",
-            "Arms and radii of gyration of the tips are those of the drawn rods; tip A's shape beyond 60 "
-            "degrees of its sphere is an assumption.",
-        ],
+        assumptions=["Tip A is shown beside the thirteen sets, which have tip B, and counted nowhere."],
         conclusions=[("", sentence) for sentence in sentences],
     )
 
@@ -116,10 +110,15 @@ def _jobs(name: str, tip: str, request: Request) -> dict[str, Job]:
     return {k: Job(job.name, replace_all(job.scene, {"save.frames": 0})) for k, job in jobs.items()}
 
 
-def _misfit(reading: Reading) -> float:
-    """Return the root mean square difference of the rotation from the measured one over all rows, rad/s."""
-    off = [reading.rotation(s) - s.motion["Omega"] for s in map(measured_set, SETS)]
-    return float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
+def _compared(tip: str, request: Request, results: JobResults) -> Compared:
+    """Return the counted quantities of the sets with a tip, beside the tests."""
+    return {
+        (name, str(row["quantity"])): row
+        for name in _sets(request)
+        if (run := limited(_jobs(name, tip, request), results))
+        for row in compare(run, tests_of(load(TIPS[tip].format(name))))
+        if row["quantity"] in COUNTED
+    }
 
 
 def _momentum_sentences() -> list[str]:
@@ -127,82 +126,74 @@ def _momentum_sentences() -> list[str]:
     arms, errors = fitted_arms(sets)
     printed, *tips = readings()
     drawn = "; ".join(f"{t.name} {1e3 * t.d_c:.1f} and {1e3 * t.d_d:.1f} mm" for t in tips)
-    missed = ", ".join(f"{t.name} {_misfit(t):.2f}" for t in (printed, *tips))
-    best = _misfit(replace(printed, d_c=float(arms[0]), d_d=float(arms[1])))
-    second = measured_set("t2")
-    same = (second.arms, second.k2) == (sets[0].arms, sets[0].k2)
-    nearer = min(tips, key=_misfit)
-    return [
+    missed = ", ".join(f"{t.name} {t.misfit:.2f}" for t in (printed, *tips))
+    best = replace(printed, d_c=float(arms[0]), d_d=float(arms[1])).misfit
+    nearer, other = sorted(tips, key=lambda tip: tip.misfit)
+    sentences = [
         f"The rows of Table 3 turn as rods of {nearer.name} rather than of the other: with its arms momentum "
-        f"alone misses their rotation by {_misfit(nearer):.2f} rad/s (root mean square), with the other's by "
-        f"{max(map(_misfit, tips)):.2f}.",
+        f"alone misses their rotation by {nearer.misfit:.2f} rad/s (root mean square), with the other's by "
+        f"{other.misfit:.2f}.",
         "Momentum alone: the arms d_c and d_d that fit the rotation of the "
         f"{sum(len(s.motion['Omega']) for s in sets)} rows are "
         f"{1e3 * arms[0]:.1f} +- {1e3 * errors[0]:.1f} and {1e3 * arms[1]:.1f} +- {1e3 * errors[1]:.1f} mm "
         f"(one standard error, not independent); those of the drawn rods are {drawn}.",
         f"Misfit by reading, rad/s: {missed}; the scatter about the fit is {best:.2f}.",
-        *(
-            [
-                "Table 3 was worked out with the arms and the radius of gyration of Table 2, whose rods have "
-                "tip A."
-            ]
-            if same
-            else []
-        ),
     ]
+    second = measured_set("t2")
+    if (second.arms, second.k2) == (sets[0].arms, sets[0].k2):
+        worked_out = "Table 3 was worked out with the arms and the radius of gyration of Table 2, whose rods"
+        sentences.append(f"{worked_out} have tip A.")
+    return sentences
 
 
 def _momentum_sheet() -> Sheet:
     """Return Omega by momentum alone with each reading, beside the measured mean and its standard error."""
-    found, rows = readings(), list[tuple[Cell, ...]]()
-    for name in SETS:
-        s = measured_set(name)
+    rows: list[tuple[Cell, ...]] = []
+    for s in map(measured_set, SETS):
         mean = s.statistics()["Omega"]
-        values = (float(reading.rotation(s).mean()) for reading in found)
-        rows.append((name, *values, mean.mean, float(mean.sd / np.sqrt(mean.n))))
-    head = ("set", *(f"Omega, {reading.name}" for reading in found), "measured", "standard_error")
+        values = (float(reading.rotation(s).mean()) for reading in readings())
+        rows.append((s.id, *values, mean.mean, float(mean.sd / np.sqrt(mean.n))))
+    head = ("set", *(f"Omega, {reading.name}" for reading in readings()), "measured", "standard_error")
     caption = "Omega, rad/s, by momentum from the measured velocities, mean over the rows"
     return Sheet("momentum", caption, Table.of(head, rows))
 
 
-def _model_sentences(rows: dict[str, list[Row]]) -> list[str]:
+def _model_sentences(rows: Mapping[str, Compared]) -> list[str]:
     """Return how many numbers each tip meets, and e, mu and Omega of the machined rod."""
     parts = []
-    for tip, found in rows.items():
-        inside = sum(row["verdict"] == "inside" for row in found)
-        missed = sum(row["verdict"].startswith("miss") for row in found)
-        parts.append(
-            f"with tip {tip} {inside} of {len(found)} lie inside the 95 % interval and {missed} miss it"
-        )
-    first = [
-        f"{row['quantity']} {row['model']:.3g} with tip {tip}, {row['measured_mean']:.3g} measured"
+    for tip, compared in rows.items():
+        verdicts = [row["verdict"] for row in compared.values()]
+        inside, missed = verdicts.count("inside"), sum(v.startswith("miss") for v in verdicts)
+        if verdicts:
+            within = f"{inside} of {len(verdicts)} lie inside the 95 % interval"
+            parts.append(f"with tip {tip} {within} and {missed} miss it")
+    machined = [
+        f"{quantity} {row['model']:.3g} with tip {tip}, {row['measured_mean']:.3g} measured"
         for quantity in ("e", "mu", "Omega")
-        for tip, found in rows.items()
-        for row in found
-        if row["quantity"] == quantity and _key(row)[0].startswith(SETS[0])
+        for tip, compared in rows.items()
+        if (row := compared.get((SETS[0], quantity)))
     ]
     if not parts:
         return []
     return [
         f"Finite elements, both counted alike: {'; '.join(parts)}.",
-        f"The machined rod: {'; '.join(first)}.",
+        f"The machined rod: {'; '.join(machined)}.",
     ]
 
 
-def _model_sheet(rows: dict[str, list[Row]]) -> Sheet:
-    table: list[tuple[Cell, ...]] = []
-    for row in rows.get("B", []):
-        same = (r for r in rows.get("A", []) if (r["set"].removesuffix("-tip-a"), r["quantity"]) == _key(row))
-        other = next(same, None)
-        beside = (other["model"], other["band"], other["verdict"]) if other else (None, None, None)
-        measured = (row["measured_mean"], row["measured_low"], row["measured_high"])
-        table.append((*_key(row), row["model"], row["band"], row["verdict"], *beside, *measured))
+def _model_sheet(rows: Mapping[str, Compared]) -> Sheet:
+    model, measured = ("model", "band", "verdict"), ("measured_mean", "measured_low", "measured_high")
+    table = [
+        (
+            *key,
+            *(row[name] for name in model),
+            *(rows["A"].get(key, {}).get(name) for name in model),
+            *(row[name] for name in measured),
+        )
+        for key, row in rows["B"].items()
+    ]
     head = ("set", "quantity", "tip B", "band B", "verdict B", "tip A", "band A", "verdict A")
     caption = (
         "Finite elements with tip B, as the caption says, and with tip A; measured mean and its 95 % interval"
     )
     return Sheet("tips", caption, Table.of((*head, "measured", "low", "high"), table))
-
-
-def _key(row: Row) -> tuple[str, str]:
-    return str(row["set"]), str(row["quantity"])

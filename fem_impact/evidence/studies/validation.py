@@ -12,9 +12,8 @@ import numpy as np
 
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, sample_values
-from fem_impact.evidence.studies.pairs import with_limits
 from fem_impact.evidence.studies.response import fit
-from fem_impact.evidence.studies.sets import at_places, mesh_jobs
+from fem_impact.evidence.studies.sets import limited, mesh_jobs
 from fem_impact.evidence.studies.validated import (
     DRAWN,
     KEYS,
@@ -26,7 +25,7 @@ from fem_impact.evidence.studies.validated import (
     unit_sample,
 )
 from fem_impact.evidence.studies.validation_report import study_report
-from fem_impact.jobs.job import Failure, Job
+from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
@@ -75,14 +74,12 @@ def _sample(name: str, request: Request) -> list[Job]:
 def _validated(name: str, request: Request, results: JobResults) -> ValidatedSet | None:
     """Return the set from its runs; None where one of its meshes or too much of its sample failed."""
     measured = measured_set(name)
-    nominal = {kind: results[job.name] for kind, job in _meshes(name, request).items()}
-    fine, coarse = (at_places(nominal, mesh) for mesh in ("fine", "coarse"))
+    nominal = limited(_meshes(name, request), results)
     runs = [results[job.name] for job in _sample(name, request)]
     finished = {i: run for i, run in enumerate(runs) if isinstance(run, Outcome)}
-    if isinstance(fine[0], Failure) or len(finished) < FEWEST:
+    if nominal is None or len(finished) < FEWEST:
         return None
-    validity = with_limits(fine, coarse).validity
-    limits, bands = validity.mesh_limit, validity.mesh_band
+    limits, bands = nominal.validity.mesh_limit, nominal.validity.mesh_band
     if isinstance(limits, Unknown) or isinstance(bands, Unknown):
         return None
     sampled = scaled(name, unit_sample(len(runs)))[list(finished)]

@@ -9,7 +9,7 @@ from fem_impact.answers.report import Request
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.skin import layer
 from fem_impact.case.plan import plan as plan_of
-from fem_impact.evidence.studies.causes import ALONE, BASE, LADDER, STEPS, conclude, plan
+from fem_impact.evidence.studies.causes import BASE, STEPS, conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.shipped import load
 
@@ -48,7 +48,7 @@ def test_the_study_tells_each_change_and_draws_the_measured_interval(tmp_path):
     written = json.loads((tmp_path / "study.json").read_text())
     (sheet,) = written["sheets"]
     row = dict(zip(sheet["columns"], sheet["rows"][0], strict=True))
-    assert [row[step] for step in (*LADDER, *ALONE[1:])] == pytest.approx([0.2, 0.21, 0.31, 1.31, 0.3, 1.2])
+    assert [row[step] for step in STEPS] == pytest.approx([0.2, 0.21, 0.31, 1.31, 0.3, 1.2])
     assert row["measured low"] < row["measured"] < row["measured high"]
     assert (tmp_path / "figures" / "causes.svg").stat().st_size > 500
 

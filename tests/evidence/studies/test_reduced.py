@@ -1,12 +1,24 @@
 """The study of the reduced model: scenes on both models, near or not, and the stored copy of its table."""
 
+import pandas
 import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
 from fem_impact.case.measured import reduced_table
-from fem_impact.evidence.studies.reduced import HEAD, conclude, plan, scenes, study_report
-from fem_impact.evidence.studies.reduced_scenes import COUNT, SIDES, design
+from fem_impact.evidence.studies.reduced import (
+    COUNT,
+    HEAD,
+    KEYS,
+    MODELS,
+    SIDES,
+    conclude,
+    design,
+    group_of,
+    plan,
+    report_of,
+    scenes,
+)
 from fem_impact.jobs.job import Failure
 
 
@@ -18,8 +30,10 @@ def fake(job):
 def test_every_scene_runs_on_both_models_and_lies_within_the_hypercube():
     assert len({job.name for job in plan(Request("x"), {})}) == 2 * (13 + 6 + COUNT)
     for row in design(COUNT):
-        assert all(side.low <= row[side.name] <= side.high for side in SIDES)
-    assert {group for group, _ in scenes(True)} == {"hypercube"}
+        assert all(low <= row[side] <= high for side, (low, high) in SIDES.items())
+    assert {group_of(name) for name in scenes(Request("x", quick=True))} == {"hypercube"}
+    groups = [group_of(name) for name in scenes(Request("x"))]
+    assert [groups.count(name) for name in ("measured", "calibration", "hypercube")] == [13, 6, COUNT]
 
 
 def test_near_and_far_are_counted_and_a_failed_run_leaves_its_row_out(tmp_path):
@@ -32,8 +46,9 @@ def test_near_and_far_are_counted_and_a_failed_run_leaves_its_row_out(tmp_path):
 
 
 def test_a_difference_beyond_the_limit_is_not_near():
-    row = ("a", "hypercube", 0.47, 0.40, 0.3, 0.3, 1.0, 1.0, 0.026, 0.02, 0.1, 0.1)
-    (sentence,) = study_report([row]).findings
+    values = (0.47, 0.40, 0.3, 0.3, 1.0, 1.0, 0.026, 0.02, 0.1, 0.1)
+    columns = pandas.MultiIndex.from_product([KEYS, MODELS])
+    (sentence,) = report_of(pandas.DataFrame([values], ["reduced-0"], columns)).findings
     assert "in 0 of 1 scenes" in sentence and "in 0, both in 0" in sentence
 
 
