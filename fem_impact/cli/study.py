@@ -140,8 +140,8 @@ STUDIES = {
     "validation": Study(
         "errors of the model with every uncertainty (ASME V&V 20), and what causes them",
         "The difference between model and tests of each measured set beside the standard uncertainties of "
-        "mesh, inputs and measurement; which input causes how much of it; and the values of the inputs that "
-        "would meet all sets at once. All inputs vary together, in 64 runs a set.",
+        "mesh, inputs and measurement, and which input causes how much of it. All inputs vary together, in "
+        "64 runs a set.",
         "884 runs, some 50 min",
         "t5b with 16 runs a set: 18 runs, under 1 min",
         884,

@@ -2,8 +2,7 @@
 
 Each measured set runs on two meshes as in the study of the sets, and on the coarser one also over a sample of
 all uncertain inputs at once (`.inputs`). Response surfaces through that sample give the uncertainty by the
-inputs, the share of each input in it, the spread from test to test, and the constants that would meet all
-sets at once (`.calibration`).
+inputs, the share of each input in it, and the spread from test to test.
 """
 
 from __future__ import annotations
@@ -45,7 +44,7 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: comparison errors, their uncertainties, what causes them, calibrated constants."""
+    """Return the study: comparison errors, their uncertainties, and what causes them."""
     sets = [found for name in _sets(request) if (found := _validated(name, request, results))]
     return study_report(sets)
 

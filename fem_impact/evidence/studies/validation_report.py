@@ -1,4 +1,4 @@
-"""What the validation study tells: errors of the model, causes, distributions, calibrated constants."""
+"""What the validation study tells: errors of the model, causes, distributions, response surfaces."""
 
 from __future__ import annotations
 
@@ -10,25 +10,23 @@ from scipy.stats import sobol_indices, uniform, wasserstein_distance
 from fem_impact.answers.compare import MEASURED
 from fem_impact.answers.report import Sheet, StudyReport
 from fem_impact.arrays import Array
-from fem_impact.evidence.studies.calibration import Calibration, calibrate, constants_of
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS
 from fem_impact.evidence.studies.reach import MISS, SHOWN, reach_sentences
 from fem_impact.evidence.studies.validated import COVERAGE, NAMES, OUTPUTS, SEED, Comparison, ValidatedSet
 from fem_impact.figures.panels import Look, Mark, Panel, Picture, Series
-from fem_impact.scene.shipped import load
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import correlations
 
 AXES = {"e": "e", "mu": "mu", "Omega": "Omega, rad/s"}
 TITLES = {**dict(zip(NAMES, (q.name for q in MEASURED), strict=True)), "E_vib_over_E_0": "E_vib/E_0"}
 SOBOL_POINTS = 1024
+TERMS = (len(UNCERTAIN_INPUTS) + 1) * (len(UNCERTAIN_INPUTS) + 2) // 2  # of a surface of second order
 
 
 def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
     """Return the study of the validated sets."""
     compared = [c for found in sets for c in found.comparisons]
-    calibration = calibrate(sets) if sets else None
-    sentences = [*_verdict_sentences(compared), *(_calibrated_sentences(calibration) if calibration else ())]
+    sentences = _verdict_sentences(compared)
     takes = [_surface_sentence(sets)] if sets else []
     takes += [sentence for found in sets for sentence in reach_sentences(found)]
     return StudyReport(
@@ -41,7 +39,7 @@ def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
             _cause_sheet(sets),
             _spread_sheet(sets),
             _correlation_sheet(sets),
-            *(_calibrated_sheets(calibration, sets) if calibration else ()),
+            _surface_sheet(sets),
         ],
         [
             "S is the limit of two meshes at the nominal inputs, D the measured mean, E = S - D.",
@@ -96,16 +94,6 @@ def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
 
 
 U = {"u_num": "the mesh", "u_input": "the inputs", "u_D": "the measurement"}
-
-
-def _calibrated_sentences(calibration: Calibration) -> list[str]:
-    met = sum(r.met for r in calibration.residuals)
-    sentence = (
-        f"Calibrated (never a default): one set of constants inside all intervals meets {met} of "
-        f"{len(calibration.residuals)} values of e, mu and Omega within two standard uncertainties."
-    )
-    missed = [f"{r.quantity} of {r.set}" for r in calibration.residuals if not r.met]
-    return [sentence + (f" Not met: {', '.join(missed)}." if missed else "")]
 
 
 def _errors(compared: Sequence[Comparison]) -> Picture:
@@ -236,35 +224,26 @@ def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     return Sheet("correlations", caption, Table.of(head, rows))
 
 
-def _calibrated_sheets(calibration: Calibration, sets: Sequence[ValidatedSet]) -> list[Sheet]:
-    columns = zip(
-        calibration.names, _spans(sets), calibration.mean, calibration.sd, calibration.best, strict=True
-    )
-    constants: list[tuple[Cell, ...]] = [
-        (name, low, high, *(low + (high - low) * float(v) for v in (mean, best)), (high - low) * float(sd))
-        for name, (low, high), mean, sd, best in columns
-    ]
-    left = [(r.set, r.quantity, r.D, r.S, r.S - r.D, r.u, r.met) for r in calibration.residuals]
-    return [
-        Sheet(
-            "calibrated",
-            "Calibrated constants (never a default): mean and standard deviation of their joint posterior, "
-            "and the best of its draws",
-            Table.of(("constant", "low", "high", "posterior_mean", "best", "posterior_sd"), constants),
-        ),
-        Sheet(
-            "left-over",
-            "Differences that remain with the best constants",
-            Table.of(("set", "quantity", "measured", "best", "difference", "u", "within_2u"), left),
-        ),
-    ]
-
-
-def _spans(sets: Sequence[ValidatedSet]) -> list[tuple[float, float]]:
-    """Return the interval of each constant, in its own unit."""
-    spans: dict[str, tuple[float, float]] = {}
+def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
+    """Return the response surfaces of e, mu and Omega, from which other constants can be judged."""
+    rows: list[tuple[Cell, ...]] = []
     for found in sets:
-        for i in UNCERTAIN_INPUTS:
-            name = i.name if not i.varies else f"{i.name}, {found.measured.surface}"
-            spans.setdefault(name, i.span(load(found.name), found.measured))
-    return [spans[name] for name in constants_of(sets)]
+        for at in (NAMES.index(name) for name in SHOWN):
+            c, coefficients = found.comparisons[at], found.surface.coefficients[:, at]
+            known = (c.D, c.u_num, c.u_D, found.surface.error[at], found.shift[at])
+            second = np.zeros(TERMS - len(coefficients))  # of a surface of first order
+            rows.append((found.name, c.quantity, *map(float, (*known, *coefficients, *second))))
+    head = (
+        "set",
+        "quantity",
+        "D",
+        "u_num",
+        "u_D",
+        "surface_error",
+        "shift",
+        *(f"c{i}" for i in range(TERMS)),
+    )
+    caption = (
+        "Coefficients of the response surfaces (1, x_i, x_i x_j, with x from -1 to 1 over each interval)"
+    )
+    return Sheet("surfaces", caption, Table.of(head, rows), shown=False)

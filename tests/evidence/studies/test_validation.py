@@ -1,10 +1,13 @@
-"""The validation study: seeded samples in stated ranges, surfaces of known functions, errors, calibration."""
+"""The validation study: seeded samples in stated ranges, surfaces of known functions, calibration."""
 
 import json
+import runpy
 from dataclasses import replace
 from math import hypot, sqrt
+from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from study_fakes import outcome, published
 
@@ -13,7 +16,6 @@ from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.plan import plan as plan_of
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies import validation as study
-from fem_impact.evidence.studies.calibration import calibrate, constants_of, posterior
 from fem_impact.evidence.studies.inputs import (
     CONTACT,
     LEVELS,
@@ -34,6 +36,7 @@ from fem_impact.scene.shipped import load, replace_all
 from rigid.experiments import measured_set
 
 SCENE, SET = load("t5b"), measured_set("t5b")
+PAGE = Path(__file__).parents[3] / "docs" / "notebooks" / "calibration.py"
 
 
 def _input(name):
@@ -135,23 +138,34 @@ def test_uncertainties_of_a_known_model(tmp_path):
     assert omega.u_num == pytest.approx(0.0, abs=1e-12)
 
 
-def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_path):
+@pytest.fixture
+def calibrated(monkeypatch):
+    """Return what the page of the calibration computes in a directory with surfaces.csv."""
+
+    def page(folder):
+        monkeypatch.chdir(folder)
+        return runpy.run_path(str(PAGE))
+
+    return page
+
+
+def test_calibration_finds_the_friction_that_the_measurement_was_made_with(tmp_path, calibrated):
     request = Request(tmp_path, ("t5b",))
-    found = study._validated("t5b", request, results_of(request))
+    published(conclude, request, results_of(request))
     speed, f = hypot(SCENE.impact.v_n, SCENE.impact.v_t), 0.63
-    known = [
-        replace(c, D=20 * f + speed, u_D=0.05, u_num=0.0)
-        if c.quantity == "Omega"
-        else replace(c, D=c.S, u_D=1e3)
-        for c in found.comparisons
-    ]
-    calibration = calibrate([replace(found, comparisons=tuple(known))])
-    at = constants_of([found]).index("friction, machined")
+    table = pandas.read_csv(tmp_path / "surfaces.csv")
+    spin = table["quantity"] == "Omega"
+    table.loc[spin, ["D", "u_num", "u_D"]] = 20 * f + speed, 0.0, 0.05
+    table.loc[~spin, "u_D"] = 1e3
+    table.to_csv(tmp_path / "surfaces.csv", index=False)
+    page = calibrated(tmp_path)
+    at = page["constants"].index("friction, machined")
     low, high = _input("friction").span(SCENE, SET)
     width = hypot(0.05, speed * np.ptp(_input("speed").span(SCENE, SET)) / sqrt(12)) / 20
-    assert low + (high - low) * calibration.mean[at] == pytest.approx(f, abs=0.1 * width + 1e-3)
-    assert (high - low) * calibration.sd[at] == pytest.approx(width, rel=0.1)
-    assert all(r.met for r in calibration.residuals)
+    mean, sd = page["draws"].mean(axis=0), page["draws"].std(axis=0)
+    assert low + (high - low) * mean[at] == pytest.approx(f, abs=0.1 * width + 1e-3)
+    assert (high - low) * sd[at] == pytest.approx(width, rel=0.1)
+    assert page["left"]["met"].all()
 
 
 def test_the_study_tells_errors_causes_and_failures(tmp_path):
@@ -167,7 +181,7 @@ def test_the_study_tells_errors_causes_and_failures(tmp_path):
     assert causes["Omega"]["friction"] > 0.9 and causes["Omega"]["flow stress"] < 0.01
     spread = {row[1]: row for row in sheets["spread"]["rows"]}
     assert spread["e"][-2] == pytest.approx(SET.statistics()["e"].sd)
-    assert "show no error of the model beyond" in found.text and "never a default" in found.text
+    assert "show no error of the model beyond" in found.text
     for name in ("errors.svg", "distribution-e.json", "distribution-Omega.csv"):
         assert (tmp_path / "figures" / name).stat().st_size > 500
     assert written["command"] == "fem-impact study validation t5b --quick"
@@ -219,9 +233,11 @@ def test_what_a_miss_would_take_is_read_off_the_response_surface(tmp_path):
     assert reach_sentences(quiet) == []
 
 
-def test_draws_find_a_narrow_posterior_in_a_corner():
+def test_draws_find_a_narrow_posterior_in_a_corner(calibrated):
     """Normal: .002 wide at .3 in one direction, and half of one .01 wide at the face of another."""
-    draws = posterior(lambda x: ((x[:, 0] - 0.3) / 0.002) ** 2 + ((x[:, 1] - 1) / 0.01) ** 2, 4)
+    draws = calibrated(PAGE.parent)["posterior"](
+        lambda x: ((x[:, 0] - 0.3) / 0.002) ** 2 + ((x[:, 1] - 1) / 0.01) ** 2, 4
+    )
     assert draws.min() >= 0 and draws.max() <= 1
     assert draws[:, 0].mean() == pytest.approx(0.3, abs=3e-4)
     assert draws[:, 0].std() == pytest.approx(0.002, rel=0.1)
