@@ -135,7 +135,7 @@ def publish_sweep(
         sources=sorted(effects),
     )
     made = publish(report, Request(out, line=line, cases=cases), runs)
-    if find_spec("pandas") and find_spec("pyarrow"):
+    if find_spec("pyarrow"):
         results.to_dataframe().to_parquet(out / "sweep.parquet")
     return made
 

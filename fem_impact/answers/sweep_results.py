@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.answers.vary import Case, in_unit, measure
-from fem_impact.errors import MissingLibraryError, UsageError, did_you_mean
+from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEYS, Outcome
 from fem_impact.tables.table import Cell, Table
@@ -167,14 +167,9 @@ class Results(Sequence[SweepRow]):
         ------
         UsageError
             A name is no column of an outcome.
-        MissingLibraryError
-            pandas is not installed.
         """
-        try:
-            import pandas
-        except ImportError:
-            problem = "A data frame needs pandas: pip install 'fem-impact[frames]'. The table needs nothing."
-            raise MissingLibraryError(problem) from None
+        import pandas
+
         table = self.table(columns)
         return pandas.DataFrame(list(table.rows), columns=[column.name for column in table.columns])
 

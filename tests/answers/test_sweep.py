@@ -1,11 +1,11 @@
 """Sweeps: values with units, cases that fail as rows, a store to go on from, tables and data frames."""
 
 import json
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
+import pandas
 import pytest
 from outcome_maker import altered, outcome
 
@@ -13,7 +13,7 @@ import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
 from fem_impact.answers.vary import Case, cases, in_unit, read_vary
-from fem_impact.errors import MissingLibraryError, SceneError, UsageError
+from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs
 from fem_impact.jobs import run as jobs_run
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -320,7 +320,6 @@ def test_a_choice_of_what_is_not_there_is_refused(swept):
 
 
 def test_a_data_frame_holds_the_table(swept):
-    pandas = pytest.importorskip("pandas")
     results, _ = swept
     frame = results.to_dataframe()
     assert isinstance(frame, pandas.DataFrame)
@@ -328,12 +327,6 @@ def test_a_data_frame_holds_the_table(swept):
     assert frame["mu"].notna().sum() == 4
     assert "W_radiated_over_E_0" in frame
     assert list(results.to_dataframe(["mu", "e_edge"]).columns)[-2:] == ["mu", "e_edge"]
-
-
-def test_without_pandas_the_error_says_what_to_install(swept, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pandas", None)
-    with pytest.raises(MissingLibraryError, match=r"fem-impact\[frames\]"):
-        swept[0].to_dataframe()
 
 
 def test_the_files_of_a_sweep(swept, tmp_path):
@@ -421,7 +414,6 @@ def test_each_sweep_has_a_directory_of_its_own_unless_one_is_named(cli):
 
 
 def test_two_keys_make_all_combinations_and_a_parquet_file(cli, tmp_path):
-    pandas = pytest.importorskip("pandas")
     pytest.importorskip("pyarrow")
     line = (
         "--vary",
@@ -445,14 +437,12 @@ def test_two_keys_make_all_combinations_and_a_parquet_file(cli, tmp_path):
 
 
 @pytest.mark.parametrize("there", [True, False])
-def test_parquet_is_written_where_both_packages_are(swept, tmp_path, monkeypatch, there):
-    pandas = pytest.importorskip("pandas")
+def test_parquet_is_written_where_pyarrow_is(swept, tmp_path, monkeypatch, there):
     written = []
     monkeypatch.setattr(
         pandas.DataFrame, "to_parquet", lambda frame, path: written.append((len(frame), path))
     )
-    found = {"pandas": True, "pyarrow": there}
-    monkeypatch.setattr("fem_impact.answers.sweep.find_spec", lambda name: found[name])
+    monkeypatch.setattr("fem_impact.answers.sweep.find_spec", {"pyarrow": there}.__getitem__)
     publish_sweep(swept[0], "t5b", "fem-impact sweep t5b", tmp_path)
     assert written == ([(6, tmp_path / "sweep.parquet")] if there else [])
 

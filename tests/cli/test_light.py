@@ -7,7 +7,19 @@ import pytest
 
 from fem_impact.cli.parser import COMMANDS
 
-HEAVY = ("numpy", "scipy", "numba", "skfem", "matplotlib", "pyvista", "vtkmodules", "meshio", "h5py", "PIL")
+HEAVY = (
+    "numpy",
+    "scipy",
+    "pandas",
+    "numba",
+    "skfem",
+    "matplotlib",
+    "pyvista",
+    "vtkmodules",
+    "meshio",
+    "h5py",
+    "PIL",
+)
 PROBE = """
 import sys
 from fem_impact.cli.main import main
