@@ -38,7 +38,11 @@ def added(group: str, ours: Collection[str]) -> dict[str, Any]:
     for entry in _entries(group):
         if entry.name in ours or entry.name in entries:
             raise wrong(entry.name, group, "is a name that is already taken.")
-        entries[entry.name] = _loaded(entry, group)
+        try:
+            entries[entry.name] = entry.load()
+        except Exception as error:  # a foreign module may fail in any way
+            problem = f"cannot be imported ({type(error).__name__}: {error})."
+            raise wrong(entry.name, group, problem) from error
     return entries
 
 
@@ -59,11 +63,3 @@ def wrong(name: str, group: str, problem: str) -> UsageError:
 @cache
 def _entries(group: str) -> tuple[EntryPoint, ...]:
     return tuple(entry_points(group=f"fem_impact.{group}"))
-
-
-def _loaded(entry: EntryPoint, group: str) -> Any:
-    try:
-        return entry.load()
-    except Exception as error:  # a foreign module may fail in any way
-        problem = f"cannot be imported ({type(error).__name__}: {error})."
-        raise wrong(entry.name, group, problem) from error

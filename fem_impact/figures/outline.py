@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from matplotlib.axes import Axes
 
-    from fem_impact.arrays import Array
     from rigid import Body
 
 
@@ -78,11 +77,15 @@ def draw(body: Body, touch: tuple[float, float], parts: Sequence[Part], path: Pa
 
 def _fill(axes: Axes, body: Body, parts: Sequence[Part]) -> None:
     """Fill the wall of each segment above and below the axis in the colour of its material."""
+    from rigid import Turned
+
     names = list(dict.fromkeys(name for _, name in parts))
     begin = 0.0
     for end, name in parts:
         z = np.linspace(begin, end, POINTS)
-        inner, outer = (1e3 * r for r in _radii(body, z))
+        inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)  # at the ends those just inside
+        bore = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
+        inner, outer = 1e3 * np.asarray(bore), 1e3 * np.asarray(body.radius(inside))
         for side, label in ((1.0, name), (-1.0, "")):
             axes.fill_between(
                 1e3 * z,
@@ -94,12 +97,3 @@ def _fill(axes: Axes, body: Body, parts: Sequence[Part]) -> None:
                 edgecolor=INK,
             )
         begin = end
-
-
-def _radii(body: Body, z: Array) -> tuple[Array, Array]:
-    """Return inner and outer radius, m, at places along the axis, m; at the ends those just inside."""
-    from rigid import Turned
-
-    inside = np.clip(z, 1e-6 * body.length, (1 - 1e-6) * body.length)
-    inner = body.inner_radius(inside) if isinstance(body, Turned) else np.zeros_like(z)
-    return np.asarray(inner), np.asarray(body.radius(inside))
