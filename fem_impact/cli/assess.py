@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -10,7 +9,16 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.cli.options import Options, add_text, add_workers, stated_budget
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out
-from fem_impact.cli.scene_options import ROD, SHAPE, add_rod, add_scene, angle_of, named_scene, rod_of
+from fem_impact.cli.scene_options import (
+    ROD,
+    SHAPE,
+    add_rod,
+    add_scene,
+    angle_of,
+    command_line,
+    named_scene,
+    rod_of,
+)
 from fem_impact.cli.terminal import print_answer
 from fem_impact.errors import UsageError
 from fem_impact.tables.text import wrapped
@@ -59,7 +67,7 @@ def assess(options: Options) -> int:
 
     budget = stated_budget(options)
     means = BUDGET if budget is None else budget, min(options.workers or cores(), 2)
-    scene = named_scene(options, SHORT) or _short(options)
+    scene = named_scene(options, SHORT) or _dropped_rod(options)
     case = dropped(scene) if options.heat else None
     out = checked_out(options.out) if options.out else None
     if out is not None:
@@ -78,7 +86,8 @@ def assess(options: Options) -> int:
     except KeyboardInterrupt:
         remedy = "--budget bounds the time of the next one, --fidelity modal takes seconds."
         raise KeyboardInterrupt(f"an assessment that is stopped keeps nothing: {remedy}") from None
-    answer = document(verdict, _command(options))
+    # without the options that the next step may add
+    answer = document(verdict, command_line(options, "assess", *SHORT, *SHAPE, "tolerance"))
     if case is not None:
         from fem_impact.answers.verdict.transfer import transfer
 
@@ -91,18 +100,7 @@ def assess(options: Options) -> int:
     return 0
 
 
-def _command(options: Options) -> str:
-    """Return the command without the options that the next step may add."""
-    if options.scene:
-        given = [options.scene, *(word for change in options.changes for word in ("--set", change))]
-    else:
-        names = [name for name in (*SHORT, *SHAPE) if getattr(options, name)]
-        given = [word for name in names for word in (f"--{name.replace('_', '-')}", getattr(options, name))]
-    tolerance = ["--tolerance", options.tolerance] if options.tolerance else []
-    return shlex.join(["fem-impact", "assess", *given, *tolerance])
-
-
-def _short(options: Options) -> Scene:
+def _dropped_rod(options: Options) -> Scene:
     """Return the scene of the dropped steel rod that the options state."""
     from fem_impact.answers.verdict.drop import DroppedRod
     from fem_impact.answers.verdict.dropped import scene_of

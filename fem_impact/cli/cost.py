@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shlex
 from contextlib import closing
 from math import inf
 from pathlib import Path
@@ -13,7 +12,7 @@ from fem_impact.cli.options import Options, add_out, add_page, add_text, stated_
 from fem_impact.cli.page import asked_page, write_study_page
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out
-from fem_impact.cli.scene_options import add_scene, changed_scene
+from fem_impact.cli.scene_options import add_scene, changed_scene, command_line
 from fem_impact.cli.terminal import chosen_meter, print_answer
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.tables.text import wrapped
@@ -26,6 +25,8 @@ if TYPE_CHECKING:
 
 
 PAPER, PAGE = "paper", "report.html"
+STATED = ("target", "budget", "of", "finest")
+"""Options that the page repeats."""
 
 
 def add_options(parser: CommandParser) -> None:
@@ -75,7 +76,7 @@ def cost(options: Options) -> int:
 
     with directory_lock(out):
         study = _measured(scene, out, options, meshes, budget or inf)
-        notes = _write(study, scene_report(study, names, target, budget), _line(options), out)
+        notes = _write(options, study, scene_report(study, names, target, budget), out)
     advice = [*_left_out(scene, meshes, study, budget), *answers(study, names, target, budget)]
     if target is not None:
         advice.append(group_sentence(study.settings, study.quantities, names, target))
@@ -86,23 +87,15 @@ def cost(options: Options) -> int:
     return RunError.exit_code if study.failures else 0
 
 
-def _write(study: CostStudy, report: StudyReport, line: str, out: Path) -> list[str]:
+def _write(options: Options, study: CostStudy, report: StudyReport, out: Path, scene: str = "") -> list[str]:
     """Write the tables of a scene's costs and its page; return what could not be made."""
     from fem_impact.answers.cost.document import write_cost
     from fem_impact.answers.report import Request, publish
     from fem_impact.pages.write import page
 
     write_cost(study, out)
-    publish(report, Request(out, line=line), study.runs)
+    publish(report, Request(out, line=command_line(options, "cost", *STATED, scene=scene)), study.runs)
     return page(out)
-
-
-def _line(options: Options, scene: str = "") -> str:
-    words = ["fem-impact", "cost", scene or options.scene]
-    words += [word for change in options.changes for word in ("--set", change)]
-    stated = ("target", "budget", "of", "finest")
-    words += [word for key in stated if (text := getattr(options, key)) for word in (f"--{key}", text)]
-    return shlex.join(words)
 
 
 def _share(text: str) -> float:
@@ -173,14 +166,15 @@ def _paper(options: Options, names: tuple[str, ...]) -> int:
     with directory_lock(out):
         for name, scene in scenes.items():
             costs[name] = _measured(scene, out / name, options, families[name])
-            _write(costs[name], scene_report(costs[name], names), _line(options, name), out / name)
+            _write(options, costs[name], scene_report(costs[name], names), out / name, name)
         document = summarise(costs)
         write_text(out / "summary.json", json.dumps(document, indent=1, allow_nan=False) + "\n")
         runs = {name: run for cost in costs.values() for name, run in cost.runs.items()}
-        made = publish(paper_report(costs), Request(out, line=_line(options)), runs)
+        line = command_line(options, "cost", *STATED)
+        made = publish(paper_report(costs), Request(out, line=line), runs)
         notes = page(out)
     if stated_page:
-        write_study_page(stated_page, _line(options), made.text, out)
+        write_study_page(stated_page, line, made.text, out)
     lines = [line for finding in made.document["findings"] for line in wrapped(finding)]
     paths = [f"page: {out / PAGE}", f"results: {out}", f"summary: {out / 'summary.json'}"]
     print_answer(options, {**document, "notes": notes}, "\n".join([*lines, "", *paths]) + "\n", notes)

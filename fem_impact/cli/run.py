@@ -86,7 +86,7 @@ def run(options: Options) -> int:
     say_kept(scene, options)
     chosen = _setting(scene, options)
     _say_plan(scene, chosen.sentence if chosen else "", options)
-    out = checked_out(options.out or _default_out(scene, options))
+    out = checked_out(options.out or Path("results") / _usual_name(scene, options))
     if options.resume and scene.accuracy.target is None and not (out / CHECKPOINT).exists():
         sys.stderr.write(f"fem-impact: {out} holds no checkpoint: the run starts at the beginning\n")
     from fem_impact.answers.wanted_error import simulate
@@ -96,7 +96,12 @@ def run(options: Options) -> int:
             run_options = RunOptions(out, meter, options.resume, options.checkpoint)
             outcome = simulate(scene, options.fidelity or None, run_options, cores(), chosen=chosen)
     except KeyboardInterrupt:
-        raise KeyboardInterrupt(f"what was computed so far is kept. Results: {out}; {_way_on(out)}") from None
+        way = (
+            "--resume goes on from the last checkpoint."
+            if (out / CHECKPOINT).exists()
+            else "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
+        )
+        raise KeyboardInterrupt(f"what was computed so far is kept. Results: {out}; {way}") from None
     if options.json:
         sys.stdout.write(outcome.to_json().rstrip("\n") + "\n")
     else:
@@ -171,16 +176,10 @@ def _long_run(scene: Scene) -> str:
     return f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker."
 
 
-def _way_on(out: Path) -> str:
-    if (out / CHECKPOINT).exists():
-        return "--resume goes on from the last checkpoint."
-    return "no checkpoint was due yet (--checkpoint SECONDS), so --resume would start at the beginning."
-
-
-def _default_out(scene: Scene, options: Options) -> Path:
-    """Return results/ID, with 8 digits of the digest of a changed scene and the fidelity if not solid."""
+def _usual_name(scene: Scene, options: Options) -> str:
+    """Return the id, with 8 digits of the digest of a changed scene and the fidelity if not solid."""
     name = f"{scene.id}-{digest(scene)[:8]}" if options.changes else scene.id
-    return Path("results") / (name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}")
+    return name if options.fidelity in ("", "solid") else f"{name}-{options.fidelity}"
 
 
 _MOTION = (

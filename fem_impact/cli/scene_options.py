@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import shlex
 import sys
 import tomllib
 from collections.abc import Sequence
@@ -88,6 +89,20 @@ def _change(change: str) -> tuple[str, Any]:
         return key, tomllib.loads(f"value = {text}")["value"] if "\n" not in text else text
     except (ValueError, RecursionError):
         return key, text
+
+
+def command_line(options: Options, command: str, *names: str, scene: str = "") -> str:
+    """Return the line of a command: its scene with the changes, and the named options that are given.
+
+    ``scene`` stands in place of the one that the options name.
+    """
+    words = ["fem-impact", command, *([scene or options.scene] if scene or options.scene else [])]
+    words += [word for change in options.changes for word in ("--set", change)]
+    for name in names:
+        given = getattr(options, name)
+        values = [given] if isinstance(given, str) else given
+        words += [word for value in values if value for word in (f"--{name.replace('_', '-')}", value)]
+    return shlex.join(words)
 
 
 def say_kept(scene: Scene, options: Options) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import sys
 from collections.abc import Mapping
 from contextlib import closing, nullcontext
@@ -13,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from fem_impact.cli.options import Options, add_cluster, add_out, add_text, add_workers
 from fem_impact.cli.parser import CommandParser
 from fem_impact.cli.paths import checked_out, told_kept
-from fem_impact.cli.scene_options import add_scene, changed_scene, read_changes
+from fem_impact.cli.scene_options import add_scene, changed_scene, command_line, read_changes
 from fem_impact.cli.terminal import chosen_meter, print_json, print_markdown
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.jobs.executors import cores, on_scheduler
@@ -64,7 +63,8 @@ def sweep(options: Options) -> int:
     lent = on_scheduler(options.scheduler) if options.scheduler else nullcontext()
     with told_kept(out, options), closing(chosen_meter(options)) as meter, lent as executor:
         results = swept(scene, vary, fidelity, out, workers, meter, executor)
-        made = publish_sweep(results, scene.title, _line(options), out, columns, about)
+        line = command_line(options, "sweep", "vary", "fidelity", "columns")
+        made = publish_sweep(results, scene.title, line, out, columns, about)
     if options.json:
         print_json(_document(results, out))
     else:
@@ -100,14 +100,6 @@ def _refuse_both(changes: Mapping[str, Any], vary: Mapping[str, Any]) -> None:
         the_way(stated)
     except SceneError as error:
         raise error.under("impact", "--set, --vary") from None
-
-
-def _line(options: Options) -> str:
-    words = ["fem-impact", "sweep", options.scene]
-    words += [word for change in options.changes for word in ("--set", change)]
-    words += [word for text in options.vary for word in ("--vary", text)]
-    words += ["--fidelity", options.fidelity] if options.fidelity else []
-    return shlex.join([*words, *(["--columns", options.columns] if options.columns else [])])
 
 
 def _document(results: Results, out: Path) -> dict[str, Any]:
