@@ -24,8 +24,7 @@ if TYPE_CHECKING:
     from fem_impact.answers.sweep_results import Results
     from fem_impact.answers.verdict.assess import Verdict, assess
     from fem_impact.answers.wanted_error import simulate
-    from fem_impact.case.plan import Plan
-    from fem_impact.case.plan import plan as make_plan
+    from fem_impact.case.case import Case
     from fem_impact.files.fields import read_fields
     from fem_impact.options import RunOptions
     from fem_impact.outcome.keys import Unknown, known
@@ -37,8 +36,8 @@ if TYPE_CHECKING:
     from fem_impact.tables.history import read_history
 
 __all__ = [
+    "Case",
     "Outcome",
-    "Plan",
     "Results",
     "RunOptions",
     "Scene",
@@ -48,7 +47,6 @@ __all__ = [
     "format_quantity",
     "known",
     "load",
-    "make_plan",
     "parse_quantity",
     "read_fields",
     "read_history",
@@ -60,8 +58,8 @@ __all__ = [
 ]
 
 _PLACES = {
+    "Case": "case.case:Case",
     "Outcome": "outcome.record:Outcome",
-    "Plan": "case.plan:Plan",
     "Results": "answers.sweep_results:Results",
     "RunOptions": "options:RunOptions",
     "Scene": "scene.types:Scene",
@@ -71,7 +69,6 @@ _PLACES = {
     "format_quantity": "scene.units:format_quantity",
     "known": "outcome.keys:known",
     "load": "scene.shipped:load",
-    "make_plan": "case.plan:plan",  # the package `fem_impact.case` has the name itself
     "parse_quantity": "scene.units:parse_quantity",
     "read_fields": "files.fields:read_fields",
     "read_history": "tables.history:read_history",

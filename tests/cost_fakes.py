@@ -5,7 +5,7 @@ from math import cos, pi
 
 from outcome_maker import outcome
 
-from fem_impact.case.choose import active
+from fem_impact.case.case import Case
 from fem_impact.scene.write import digest
 
 LIMIT, ORDER = {"e_edge": 0.3, "mu": 0.5, "E_vib_over_E_0": 0.02}, 1.0
@@ -26,7 +26,7 @@ def run(scene, fidelity="solid", options=None):
         for key, limit in LIMIT.items()
     }
     values["e_edge"] += 0 if part else WIGGLE * (h / TIP) * cos(2 * pi * scene.accuracy.grid_shift)
-    if "friction" not in active(scene):
+    if "friction" not in Case(scene).active:
         values["mu"] += 0.5
     values |= {
         "tip_size_m": None if part else h,
@@ -37,7 +37,7 @@ def run(scene, fidelity="solid", options=None):
     values["wall_s"] = 2 * values["cpu_s"] if fidelity == "solid" else 3.0  # a busy machine
     values |= {f"setup_{key}": None if part else values[key] / 4 for key in ("cpu_s", "wall_s")}
     values |= {"E_vib_check_over_E_0": values["E_vib_over_E_0"], "E_vib_floor_over_E_0": 1e-9}
-    if fidelity == "rigid" or "vibration" not in active(scene):
+    if fidelity == "rigid" or "vibration" not in Case(scene).active:
         values["E_vib_over_E_0"] = None
     if part:
         values |= {"peak_memory_MB": None}

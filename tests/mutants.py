@@ -346,9 +346,9 @@ MUTANTS = (
     ),
     Mutant(
         "the impedance of a plate beside its mesh, which bends by itself",
-        "fem_impact/case/plan.py",
-        "slots.plate, slots.bending = None, plate_waves(bodies)[0]",
-        "slots.bending = plate_waves(bodies)[0]",
+        "fem_impact/case/case.py",
+        "slots.plate, slots.bending = None, plate_waves(self.contact)[0]",
+        "slots.bending = plate_waves(self.contact)[0]",
         "tests/case/test_plates.py::test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong",
     ),
     Mutant(

@@ -18,10 +18,9 @@ from skfem import ElementHex1, ElementVector
 from skfem.models.elasticity import lame_parameters
 
 import rigid
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem import forms
 from fem_impact.fem.geometry import build_geometry
-from fem_impact.physics.contact import projectile
 from fem_impact.scene.shipped import load
 
 EFFECTS = ("vibration", "friction", "barrier-rigid")  # what this file computes
@@ -118,11 +117,11 @@ def drop(rod, v_n, v_t, f, dt, time):
 
 def outcome(scene, time):
     """Return what `drop` does of a scene on its own mesh, with restitution e and impulse ratio mu."""
-    impact, zones = scene.impact, plan(scene).zones
-    geometry = build_geometry(scene, zones, START_GAP, meshed_barrier=False)
+    impact, case = scene.impact, Case.of(scene)
+    geometry = build_geometry(case.bodies, case.zones, START_GAP, meshed_barrier=False)
     rod = Rod.of(geometry.rod.mesh, geometry.rod_points, scene.projectile.material)
     end = drop(rod, impact.v_n, impact.v_t, scene.surface.friction, rod.stable_step(), time)
-    d_c = projectile(scene).arms(impact.angle)[0]
+    d_c = scene.projectile.rigid_body.arms(impact.angle)[0]
     end["e"] = rigid.restitution(impact.v_n, end["V_n"], end["Omega"], d_c)
     end["mu"] = rigid.impulse_ratio(impact.v_n, impact.v_t, end["V_n"], end["V_t"])
     return end

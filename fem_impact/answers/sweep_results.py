@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.vary import Case, in_unit, measure
+from fem_impact.answers.vary import Variation, in_unit, measure
 from fem_impact.errors import UsageError, did_you_mean
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.record import KEYS, Outcome
@@ -56,7 +56,7 @@ def require_columns(names: Sequence[str]) -> None:
 class SweepRow:
     """One case of a sweep: the values that it states, its outcome, or None and the reason."""
 
-    case: Case
+    case: Variation
     outcome: Outcome | None
     reason: str
 
@@ -192,7 +192,7 @@ def _ended(row: SweepRow, columns: Sequence[str]) -> list[Cell]:
     return [validity.finished, reason, *(len(cell) if isinstance(cell, list) else cell for cell in cells)]
 
 
-def row_of(case: Case, result: Outcome | Failure | None) -> SweepRow:
+def row_of(case: Variation, result: Outcome | Failure | None) -> SweepRow:
     """Return the row of a case from what its job gave."""
     if isinstance(result, Outcome):
         return SweepRow(case, result, "")

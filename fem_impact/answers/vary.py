@@ -28,7 +28,7 @@ _EXAMPLE = "Write --vary impact.angle=15..60:5deg, or --vary projectile.length=0
 
 
 @dataclass(frozen=True, slots=True)
-class Case:
+class Variation:
     """One combination of values: its name, the values by key as stated, and its scene or why it has none."""
 
     name: str
@@ -113,7 +113,7 @@ def _plain(number: str) -> str:
     return f"{whole or '0'}.{rest or '0'}" if point else number
 
 
-def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Case]:
+def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Variation]:
     """Return the scenes of all combinations, the last key changing fastest; a refused one says why.
 
     Raises
@@ -143,13 +143,13 @@ def _check(vary: Mapping[str, Sequence[Any]]) -> None:
         raise UsageError(f"makes {count} combinations.", key="vary", remedy=remedy)
 
 
-def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Case]:
+def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Variation]:
     for number, values in enumerate(product(*vary.values()), 1):
         stated = dict(zip(vary, values, strict=True))
         try:
-            yield Case(f"case-{number:05d}", stated, replace_all(scene, stated, source=""))
+            yield Variation(f"case-{number:05d}", stated, replace_all(scene, stated, source=""))
         except FemImpactError as error:
-            yield Case(f"case-{number:05d}", stated, None, str(error))
+            yield Variation(f"case-{number:05d}", stated, None, str(error))
 
 
 def measure(value: Any) -> tuple[float | str, str]:

@@ -21,15 +21,12 @@ from fem_impact.answers.refine.levels import Mesh, placed
 from fem_impact.answers.refine.loop import ALONE, OwnLadder, achieved_error
 from fem_impact.answers.refine.quantities import TARGETED
 from fem_impact.answers.refine.times import longest_s, wall_seconds
-from fem_impact.case.choose import active, resolved
-from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.case import Case
 from fem_impact.case.measured import summary, yardsticks
 from fem_impact.errors import SceneError
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.beam import max_time
-from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.run import simulate as run
 from fem_impact.scene.material import Material
 from fem_impact.scene.read import read_dict
@@ -97,20 +94,21 @@ def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
     return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
 
 
-def _features(scene: Scene) -> dict[str, float]:
+def _features(case: Case) -> dict[str, float]:
+    scene, pair = case.scene, case.contact
     rod, impact = scene.projectile, scene.impact
-    speed, radius = hypot(impact.v_n, impact.v_t), sqrt(projectile(scene).k2)
+    speed, radius = hypot(impact.v_n, impact.v_t), sqrt(pair.body.k2)
     return {
         "length over diameter": log(rod.length / rod.diameter),
         "diameter": log(rod.diameter),
         "tip radius over diameter": log(max(rod.tip_radius / rod.diameter, 1e-3)),
         "angle (rad)": impact.angle,
-        "approach of the contact point": log(approach(scene)),
-        "slope of that approach": sliding(scene) / approach(scene),
+        "approach of the contact point": log(pair.approach),
+        "slope of that approach": pair.sliding / pair.approach,
         "spin over speed": impact.omega * radius / speed,
-        "friction f": scene.surface.friction if "friction" in active(scene) else 0.0,
-        **_steel("rod", rod.material, "rod-plasticity" in active(scene)),
-        **_steel("barrier", scene.barrier.material, "barrier-elastoplastic" in active(scene)),
+        "friction f": pair.f,
+        **_steel("rod", rod.material, pair.rod_yields),
+        **_steel("barrier", scene.barrier.material, pair.barrier_yields),
     }
 
 
@@ -122,18 +120,18 @@ def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
     return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
 
 
-def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
+def _distance(case: Case, other_case: Case) -> tuple[float, str]:
     """Return the largest difference over the allowed one, and its name; infinite for another model."""
-    latest, its_latest = (max_time(bodies_of(resolved(one))) for one in (scene, other))
+    scene, other = case.scene, other_case.scene
     for name, mine, others in (
         ("tip", scene.projectile.tip, other.projectile.tip),
-        ("effects", active(scene), active(other)),
+        ("effects", case.active, other_case.active),
         *((name, getattr(scene.accuracy, name), getattr(other.accuracy, name)) for name in SAME),
-        ("max_time", min(latest, its_latest), its_latest),
+        ("max_time", min(case.max_time, other_case.max_time), other_case.max_time),
     ):
         if mine != others:
             return inf, name
-    a, b = _features(scene), _features(other)
+    a, b = _features(case), _features(other_case)
     gaps = {name: 0.0 if a[name] == b[name] else abs(a[name] - b[name]) / NEARNESS[name] for name in NEARNESS}
     name = max(gaps, key=lambda key: gaps[key])
     return gaps[name], name
@@ -141,8 +139,9 @@ def _distance(scene: Scene, other: Scene) -> tuple[float, str]:
 
 def nearest(scene: Scene) -> tuple[str, float, str]:
     """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
+    case = Case(scene)
     distances = [
-        (*_distance(scene, read_dict(cost["scene"], "cost summary")), name)
+        (*_distance(case, Case(read_dict(cost["scene"], "cost summary"))), name)
         for name, cost in summary()["scenes"].items()
     ]
     distance, differs, name = min(distances)

@@ -31,11 +31,10 @@ from math import ceil, log2, sqrt
 import numpy as np
 
 import meshes
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.mesh import no_mesh
-from fem_impact.physics.contact import ContactBodies, barrier_conforms, contact_estimate
 from fem_impact.scene.fields import TIP_SIZE
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Scene
 from rigid import Turned
 
 LEAST = {"elastic": 1.6, "yielding": 2.0}  # below it e, mu and all shares are not given
@@ -47,48 +46,39 @@ THIN = 10.0  # median thickness of a user's cells over that of one that makes th
 FINEST = TIP_SIZE.low  # m
 
 
-def kind(bodies: ContactBodies) -> str:
+def kind(bodies: Bodies) -> str:
     """Return which numbers of this module a contact has."""
-    return "yielding" if bodies.yielding else "elastic"
+    return "yielding" if bodies.contact.yielding else "elastic"
 
 
-def contact_radius(bodies: ContactBodies) -> float:
+def contact_radius(bodies: Bodies) -> float:
     """Return the estimated radius of the contact, m: the geometric mean of its semi-axes."""
-    size = contact_estimate(bodies)
-    return sqrt(size.a_t * size.a_b)
+    return bodies.estimate.radius
 
 
-def posture(scene: Scene) -> float:
-    """Return the angle, rad, between the axis of the projectile's mesh and the barrier's normal.
-
-    It is that of the impact, but a ball has no axis: it is meshed with its pole at the contact.
-    """
-    return 0.0 if scene.projectile.is_ball else scene.impact.angle
-
-
-def body_cell(scene: Scene) -> float:
+def body_cell(bodies: Bodies) -> float:
     """Return the edge, m, of the body's cells where it touches, before they are split.
 
     As many lie over the diameter of a rod as ``accuracy.across`` says; over that of the nose or section that
     touches if the projectile has a shape of its own. A meshed barrier has cells of the same size; under a
     projectile with a mesh of its own, as many over its largest width.
     """
-    rod = scene.projectile
+    rod = bodies.rod
     plain = rod.is_rod or rod.own_mesh is not None
-    width = rod.diameter if plain else 2 * _contact_radius(rod, posture(scene), scene.across)
-    return width / scene.across
+    width = rod.diameter if plain else 2 * _contact_radius(rod, bodies.mesh_inclination, bodies.scene.across)
+    return width / bodies.scene.across
 
 
-def rod_cell(scene: Scene) -> float:
+def rod_cell(bodies: Bodies) -> float:
     """Return the edge, m, of the projectile's cells where it touches, before they are split.
 
     Of a mesh of its own it is the mean edge of the cells at the point that touches first.
     """
-    mesh = scene.projectile.own_mesh
+    mesh = bodies.rod.own_mesh
     if mesh is None:
-        return body_cell(scene)
-    half, (x, z) = mesh.half(), scene.projectile.body().contact_point(scene.impact.angle)
-    here = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * scene.projectile.length
+        return body_cell(bodies)
+    half, (x, z) = mesh.half(), bodies.body.contact_point(bodies.scene.impact.angle)
+    here = np.linalg.norm(half.points - [x, 0.0, z], axis=1) < 1e-9 * bodies.rod.length
     touching = np.flatnonzero(here[half.cells].any(axis=1))
     return float(meshes.edge_lengths(half, touching).mean())
 
@@ -105,47 +95,45 @@ def _contact_radius(rod: ProjectileSpec, angle: float, across: int) -> float:
         raise no_mesh(error, rod, across) from None
 
 
-def levels_of(bodies: ContactBodies) -> tuple[int, int]:
+def levels_of(bodies: Bodies) -> tuple[int, int]:
     """Return how often the cells are split at the contact, for the rod and for a meshed barrier.
 
     Splitting comes as near to a stated size as halving can; the rod's is `ADVISED` where none is stated, the
     barrier's that of the rod.
     """
-    scene = bodies.scene
-    tip = scene.accuracy.tip_size or max(size_for(bodies, ADVISED[kind(bodies)]), FINEST)
-    edges = (rod_cell(scene), tip), (body_cell(scene), scene.accuracy.barrier_size or tip)
+    tip = bodies.scene.accuracy.tip_size or max(size_for(bodies, ADVISED[kind(bodies)]), FINEST)
+    edges = (rod_cell(bodies), tip), (body_cell(bodies), bodies.scene.accuracy.barrier_size or tip)
     rod, barrier = (max(0, round(log2(base / size))) for base, size in edges)
     return rod, barrier
 
 
-def contact_edge(bodies: ContactBodies) -> float:
+def contact_edge(bodies: Bodies) -> float:
     """Return the edge, m, of the cells that resolve the contact, as they are split.
 
     A barrier that takes the rod's form resolves it with its own cells, else the larger ones count.
     """
     rod, barrier = levels_of(bodies)
-    of_rod, of_barrier = rod_cell(bodies.scene) / 2**rod, body_cell(bodies.scene) / 2**barrier
-    if barrier_conforms(bodies):
+    of_rod, of_barrier = rod_cell(bodies) / 2**rod, body_cell(bodies) / 2**barrier
+    if bodies.contact.barrier_conforms:
         return float(of_barrier)
-    return float(max(of_rod, of_barrier) if bodies.compliant else of_rod)
+    return float(max(of_rod, of_barrier) if bodies.contact.compliant else of_rod)
 
 
-def expected_cells(bodies: ContactBodies) -> float:
-    """Return the cells over the radius that are expected on the mesh of the scene."""
+def expected_cells(bodies: Bodies) -> float:
+    """Return the cells over the radius that are expected on the mesh of the bodies.scene."""
     return float(contact_radius(bodies) / contact_edge(bodies) + RIM)
 
 
-def size_for(bodies: ContactBodies, cells: float, radius: float | None = None) -> float:
+def size_for(bodies: Bodies, cells: float, radius: float | None = None) -> float:
     """Return the tip size, m, with so many cells over a radius, m, by default the estimated one.
 
     Halving comes as near to it as it can: the cells may be a factor of sqrt(2) larger or smaller.
     """
-    scene = bodies.scene
-    widest = COARSEST * body_cell(scene)
+    widest = COARSEST * body_cell(bodies)
     return min((contact_radius(bodies) if radius is None else radius) / (cells - RIM), widest)
 
 
-def advice(bodies: ContactBodies, radius: float | None = None) -> str:
+def advice(bodies: Bodies, radius: float | None = None) -> str:
     """Return what to give so that a contact, of a radius, m, if that is known, is resolved.
 
     It is the size of cells that halving makes: a larger one may be rounded up to cells that are too large.
@@ -153,11 +141,11 @@ def advice(bodies: ContactBodies, radius: float | None = None) -> str:
     h = size_for(bodies, ADVISED[kind(bodies)], radius)
     if h < FINEST:
         return "No tip size resolves it: use the modal fidelity"
-    made = min(base / 2 ** ceil(log2(base / h)) for base in (rod_cell(bodies.scene), body_cell(bodies.scene)))
+    made = min(base / 2 ** ceil(log2(base / h)) for base in (rod_cell(bodies), body_cell(bodies)))
     return f"Give accuracy.tip_size = {max(made, FINEST) * 1e3:.2g} mm or less"
 
 
-def widest_tip_size(bodies: ContactBodies) -> float:
+def widest_tip_size(bodies: Bodies) -> float:
     """Return the largest ``accuracy.tip_size``, m, two digits, that just resolves the estimated contact.
 
     Splitting halves the edges, so they come out up to sqrt(2) longer than asked for.
@@ -165,9 +153,9 @@ def widest_tip_size(bodies: ContactBodies) -> float:
     return float(f"{size_for(bodies, LEAST[kind(bodies)]) / sqrt(2):.1e}")
 
 
-def thin_cells(scene: Scene) -> tuple[str, ...]:
+def thin_cells(rod: ProjectileSpec) -> tuple[str, ...]:
     """Return a sentence when a cell of the user's mesh is so thin that it makes the time step small."""
-    mesh = scene.projectile.own_mesh
+    mesh = rod.own_mesh
     if mesh is None:
         return ()
     thick = meshes.thicknesses(mesh.half())
@@ -183,10 +171,9 @@ def thin_cells(scene: Scene) -> tuple[str, ...]:
     )
 
 
-def coarse_tip(bodies: ContactBodies) -> tuple[str, ...]:
+def coarse_tip(bodies: Bodies) -> tuple[str, ...]:
     """Return a sentence when the mesh may not resolve the contact."""
-    scene = bodies.scene
-    if expected_cells(bodies) >= LEAST[kind(bodies)] or scene.accuracy.target is not None:
+    if expected_cells(bodies) >= LEAST[kind(bodies)] or bodies.scene.accuracy.target is not None:
         return ()  # a target chooses its own mesh
     return (
         f"The contact, about {contact_radius(bodies) * 1e3:.2g} mm in radius, may be too narrow for elements "

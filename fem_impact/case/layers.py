@@ -7,11 +7,10 @@ from math import ceil, inf
 import numpy as np
 
 from fem_impact.arrays import Array
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.plates import rows_through
 from fem_impact.case.zones import Corners, Zones, zones_of
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import ContactBodies, contact_estimate
-from fem_impact.scene.types import Scene
 from meshes import drawn_depths
 
 FLATTEST = 0.5  # least height of the cells of a layer over their height without it
@@ -22,12 +21,12 @@ UNDER = 2.0  # rows of the base's cells under the last layer, at least
 WIDE = 2.0  # estimated radii of the contact, under which a layer is told to be thin
 
 
-def interfaces(scene: Scene) -> Array:
+def interfaces(bodies: Bodies) -> Array:
     """Return the depths (k,), m, at which the layers end."""
-    return np.array([depth for depth, _ in scene.barrier.strata if depth < inf])
+    return np.array([depth for depth, _ in bodies.barrier.strata if depth < inf])
 
 
-def block_of(scene: Scene, zones: Zones) -> Corners:
+def block_of(bodies: Bodies, zones: Zones) -> Corners:
     """Return the corners of the barrier's block, before its rows are moved.
 
     It holds all layers, is `AROUND` times as much wider than its fine zone, and has rows as high as wide. A
@@ -35,39 +34,38 @@ def block_of(scene: Scene, zones: Zones) -> Corners:
     """
     if zones.edges:
         low, high = zones.block(zones.edges)
-        return np.array([*low[:2], -rows_through(scene, zones.base) * zones.base]), high
-    ends = interfaces(scene)
-    low, high = zones.block(max(scene.accuracy.block_margin, AROUND * ends.max(initial=0.0)))
+        return np.array([*low[:2], -rows_through(bodies, zones.base) * zones.base]), high
+    ends = interfaces(bodies)
+    low, high = zones.block(max(bodies.scene.accuracy.block_margin, AROUND * ends.max(initial=0.0)))
     if len(ends):
         deep = max(-float(low[2]), float(ends[-1]) + UNDER * zones.base + zones.rise)
         low = np.array([low[0], low[1], -ceil(deep / zones.base) * zones.base])
     return low, high
 
 
-def moved_rows(scene: Scene, zones: Zones) -> tuple[Array, Array]:
+def moved_rows(bodies: Bodies, zones: Zones) -> tuple[Array, Array]:
     """Return depths (k,), m, of rows of whole cells before and after they are moved to the interfaces.
 
     The first is the surface, the last the bottom, which moves to the underside of a plate that is meshed
     through its thickness; between two of them depths are stretched evenly.
     """
-    low, _ = block_of(scene, zones)
+    low, _ = block_of(bodies, zones)
     count = max(1, round(-float(low[2]) / zones.base))
     rows = drawn_depths(np.linspace(0.0, -float(low[2]), count + 1), zones.barrier_size, zones.skin_rows)
     chosen, done = [0], 0.0
-    for depth in interfaces(scene):
+    for depth in interfaces(bodies):
         stretch = (depth - done) / (rows[chosen[-1] + 1 : -1] - rows[chosen[-1]])
         if not len(stretch):
-            raise _too_thin(scene, zones, 0.0)
+            raise _too_thin(bodies, zones, 0.0)
         chosen.append(chosen[-1] + 1 + int(np.argmin(np.abs(np.log(stretch)))))
         done = float(depth)
-    bottom = scene.barrier.thickness if zones.edges else rows[-1]
-    return rows[[*chosen, -1]], np.array([0.0, *interfaces(scene), bottom])
+    bottom = bodies.barrier.thickness if zones.edges else rows[-1]
+    return rows[[*chosen, -1]], np.array([0.0, *interfaces(bodies), bottom])
 
 
-def require_layers(bodies: ContactBodies, fidelity: str) -> None:
+def require_layers(bodies: Bodies, fidelity: str) -> None:
     """Refuse layers that no row of cells fits, and any in the reduced model (SceneError)."""
-    scene = bodies.scene
-    if not scene.barrier.layers:
+    if not bodies.barrier.layers:
         return
     if fidelity == "modal":
         raise SceneError(
@@ -75,30 +73,30 @@ def require_layers(bodies: ContactBodies, fidelity: str) -> None:
             key="barrier.layers",
             remedy="Use --fidelity solid, or leave the layers out.",
         )
-    if fidelity == "solid" and bodies.compliant:
+    if fidelity == "solid" and bodies.contact.compliant:
         zones = zones_of(bodies)
-        before, after = moved_rows(scene, zones)
+        before, after = moved_rows(bodies, zones)
         share = float((np.diff(after) / np.diff(before)).min())
         if share < FLATTEST:
-            raise _too_thin(scene, zones, share)
+            raise _too_thin(bodies, zones, share)
 
 
-def _too_thin(scene: Scene, zones: Zones, share: float) -> SceneError:
-    thin = int(np.argmin([layer.thickness for layer in scene.barrier.layers]))
-    thickness = scene.barrier.layers[thin].thickness
-    across = 2 * ceil(0.5 * scene.across * zones.base * FLATTEST / thickness * 1.5)
+def _too_thin(bodies: Bodies, zones: Zones, share: float) -> SceneError:
+    thin = int(np.argmin([layer.thickness for layer in bodies.barrier.layers]))
+    thickness = bodies.barrier.layers[thin].thickness
+    across = 2 * ceil(0.5 * bodies.scene.across * zones.base * FLATTEST / thickness * 1.5)
     told = f"their height would be {share:.2g} of their width" if share else "no row is left for it"
     return SceneError(
         f"fits no row of the barrier's cells, {zones.base * 1e3:.3g} mm wide: {told}.",
         key=f"barrier.layers[{thin + 1}].thickness",
         value=f"{thickness * 1e3:.3g} mm",
-        remedy=f"Give accuracy.across = {max(across, scene.across + 2)}, or a thicker layer.",
+        remedy=f"Give accuracy.across = {max(across, bodies.scene.across + 2)}, or a thicker layer.",
     )
 
 
-def layer_warning(bodies: ContactBodies) -> tuple[str, ...]:
+def layer_warning(bodies: Bodies) -> tuple[str, ...]:
     """Return a sentence where the first layer is thin for the contact, whose estimates know it alone."""
-    barrier, size = bodies.scene.barrier, contact_estimate(bodies)
+    barrier, size = bodies.barrier, bodies.estimate
     if not barrier.layers or barrier.layers[0].thickness > WIDE * max(size.a_t, size.a_b):
         return ()
     return (

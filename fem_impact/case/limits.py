@@ -6,21 +6,14 @@ import math
 from collections.abc import Collection
 from dataclasses import replace
 
-from fem_impact.case.choose import resolved
-from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.plates import is_wider, thin_plate
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import (
-    FLAT,
-    ContactBodies,
-    contact_estimate,
-    lands_flat,
-    projectile,
-    round_contact,
-    touch_point,
-)
+from fem_impact.physics.contact import FLAT
 from fem_impact.scene import library
+from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.impact import BESIDE
+from fem_impact.scene.projectile import ProjectileSpec
 from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from rigid import Faceted, Projectile
@@ -35,12 +28,12 @@ ANGLES = (math.radians(17.0), math.radians(60.0))
 TIPS = {("A", 0.007), ("B", 0.003)}
 
 
-def validity(bodies: ContactBodies, active: Collection[str], meshed_through: bool = False) -> tuple[str, ...]:
+def validity(bodies: Bodies, meshed_through: bool) -> tuple[str, ...]:
     """Return one sentence for each way in which the scene lies outside the measured range.
 
     ``meshed_through`` says whether a plate that bends is meshed through its thickness.
     """
-    scene = bodies.scene
+    scene, active = bodies.scene, bodies.effects
     speed = round(math.hypot(scene.relative.v_n, scene.relative.v_t), 3)
     sentences = (
         _outside(scene.projectile.length, LENGTHS, "length", "length"),
@@ -153,10 +146,10 @@ def _idealised(active: Collection[str]) -> str:
     return f"idealised: without {', '.join(missing)}; no test corresponds to it" if missing else ""
 
 
-def require_shallow(bodies: ContactBodies) -> None:
+def require_shallow(bodies: Bodies) -> None:
     """Refuse an indentation as deep as the rod's radius (SceneError): no local contact, no small strains."""
     scene = bodies.scene
-    depth, radius = contact_estimate(bodies).depth, scene.projectile.diameter / 2
+    depth, radius = bodies.estimate.depth, scene.projectile.diameter / 2
     if depth > radius:
         raise SceneError(
             f"would press the tip {depth * 1e3:.2g} mm deep, more than the rod's radius "
@@ -167,23 +160,23 @@ def require_shallow(bodies: ContactBodies) -> None:
         )
 
 
-def require_still(scene: Scene, fidelity: str) -> None:
+def require_still(barrier: Barrier, fidelity: str) -> None:
     """Refuse a barrier that turns where a fidelity has none (SceneError)."""
-    if scene.barrier.inertia is not None and fidelity == "rigid":
+    if barrier.inertia is not None and fidelity == "rigid":
         raise SceneError(
             "lets the barrier turn, which the rigid fidelity does not hold.",
             key="barrier.inertia",
-            value=f"{scene.barrier.inertia:.3g} kg m2",
+            value=f"{barrier.inertia:.3g} kg m2",
             remedy="Use the fidelity modal or solid, or leave out inertia and centre_depth.",
         )
 
 
-def require_point(bodies: ContactBodies) -> None:
+def require_point(bodies: Bodies) -> None:
     """Refuse a straight flank that comes down flat on the barrier, or a later segment (SceneError)."""
-    scene, body = bodies.scene, projectile(bodies.scene)
+    scene, body = bodies.scene, bodies.body
     if isinstance(body, Projectile):
         return
-    segments, (rho, touch) = scene.projectile.segments, touch_point(scene)
+    segments, (rho, touch) = scene.projectile.segments, bodies.contact.touch_point
     if segments and touch > segments[0].to:
         raise SceneError(
             f"ends before the place that touches first, {touch * 1e3:.3g} mm from the tip.",
@@ -194,7 +187,7 @@ def require_point(bodies: ContactBodies) -> None:
     if isinstance(body, Faceted):
         _require_tip(bodies, body)
         return
-    size, (length, height) = round_contact(bodies), body.flank(scene.impact.angle)
+    size, (length, height) = bodies.contact.round_contact, body.flank(scene.impact.angle)
     flat = FLAT * size.depth
     if length <= 2 * size.a_t or height >= flat:
         return
@@ -216,11 +209,11 @@ def require_point(bodies: ContactBodies) -> None:
     )
 
 
-def require_round(scene: Scene, fidelity: str) -> None:
+def require_round(bodies: Bodies, fidelity: str) -> None:
     """Refuse a face that lands flat where e would follow from the law of a round contact (SceneError)."""
-    if fidelity == "solid" or (fidelity == "rigid" and scene.restitution is not None):
+    if fidelity == "solid" or (fidelity == "rigid" and bodies.scene.restitution is not None):
         return
-    if lands_flat(scene):
+    if bodies.contact.lands_flat:
         stated = ", or state restitution" if fidelity == "rigid" else ""
         raise SceneError(
             f"is that of {FLAT_FACE}, but {fidelity} takes the contact law of a round tip.",
@@ -230,51 +223,52 @@ def require_round(scene: Scene, fidelity: str) -> None:
         )
 
 
-def require_turned(scene: Scene, asked: str) -> None:
+def require_turned(rod: ProjectileSpec, asked: str) -> None:
     """Refuse what is not offered for a user's mesh as the projectile, which is fixed (SceneError)."""
-    if scene.projectile.own_mesh is not None:
+    if rod.own_mesh is not None:
         raise SceneError(
             f"is fixed, but {asked} rests on meshes of the program's own.",
             key="projectile.mesh",
-            value=scene.projectile.own_mesh.path,
+            value=rod.own_mesh.path,
             remedy="Run it on two meshes of your own, or with two values of accuracy.tip_size.",
         )
 
 
-def not_reduced(scene: Scene) -> str:
+def not_reduced(bodies: Bodies) -> str:
     """Return what the reduced model has no answer for, empty where it has one."""
     found = {
-        "a projectile with a mesh of its own": scene.projectile.own_mesh,
-        "a barrier of layers": scene.barrier.layers,
-        FLAT_FACE: lands_flat(scene),
-        "a plate thinner than its contact is wide": is_wider(bodies_of(resolved(scene))),
+        "a projectile with a mesh of its own": bodies.rod.own_mesh,
+        "a barrier of layers": bodies.barrier.layers,
+        FLAT_FACE: bodies.contact.lands_flat,
+        "a plate thinner than its contact is wide": is_wider(bodies),
     }
     return next((what for what, there in found.items() if there), "")
 
 
-def require_own_mesh(scene: Scene, active: Collection[str], fidelity: str) -> None:
+def require_own_mesh(bodies: Bodies, fidelity: str) -> None:
     """Refuse what the model cannot do with a user's mesh as the projectile (SceneError)."""
-    if scene.projectile.own_mesh is None:
+    mesh, scene = bodies.rod.own_mesh, bodies.scene
+    if mesh is None:
         return
-    value: object = list(scene.effects)
     if scene.accuracy.target is not None:
-        require_turned(scene, "accuracy.target")
+        require_turned(bodies.rod, "accuracy.target")
     if fidelity == "modal":
         problem = (
             "has no radii of a smooth tip and no outline, on which the reduced model's contact law rests."
         )
         remedy = "Use --fidelity solid or rigid, or state the shape as a profile."
-        raise SceneError(problem, key="projectile.mesh", value=scene.projectile.own_mesh.path, remedy=remedy)
-    if fidelity == "solid" and "machined-skin" in active:
+        raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=remedy)
+    if fidelity == "solid" and "machined-skin" in bodies.effects:
         problem = (
             "has the effect machined-skin, but how deep a node lies under a mesh's facets is not computed."
         )
-        raise SceneError(problem, key="effects", value=value, remedy='Add "-machined-skin" to effects.')
+        remedy = 'Add "-machined-skin" to effects.'
+        raise SceneError(problem, key="effects", value=list(scene.effects), remedy=remedy)
 
 
-def _require_tip(bodies: ContactBodies, body: Faceted) -> None:
+def _require_tip(bodies: Bodies, body: Faceted) -> None:
     """Refuse a mesh that lays its side along the barrier, or stands upright on a tip beside its axis."""
-    scene, size = bodies.scene, round_contact(bodies)
+    scene, size = bodies.scene, bodies.contact.round_contact
     value, remedy = f"{math.degrees(scene.impact.angle):.4g} deg", "Give another angle, or change the mesh."
     if scene.impact.angle == 0 and body.off_axis() > BESIDE_AXIS * body.diameter:
         problem = f"stands the body on a tip {body.off_axis() * 1e3:.3g} mm beside its mass centre's axis."

@@ -39,19 +39,6 @@ def _added() -> Mapping[str, float]:
 
 
 @cache
-def estimate_errors() -> Mapping[str, tuple[int, float, float]]:
-    """Return, by effect, what the quick estimates of its size were held to, and how far they were off.
-
-    Number of measured sets with finite elements without the effect, and the largest errors of the change of e
-    and of E_vib over E_0 (``tests/benchmarks/estimate_error.py``).
-    """
-    rows = csv.DictReader(_data("estimate-error.csv").splitlines())
-    return {
-        row["effect"]: (int(row["scenes"]), float(row["e"]), float(row["E_vib_over_E_0"])) for row in rows
-    }
-
-
-@cache
 def summary() -> dict[str, Any]:
     """Return the costs that ship with the package, as `fem-impact cost paper` stored them."""
     return dict(json.loads(_data("summary.json")))

@@ -11,7 +11,6 @@ import numpy as np
 import meshes
 from fem_impact.errors import SceneError
 from fem_impact.scene.projectile import ProjectileSpec
-from fem_impact.scene.types import Scene
 from rigid import Turned
 
 FINER = (8, 10, 12, 16, 20)  # cells over the diameter that are tried for a remedy
@@ -20,10 +19,10 @@ NO_MESH = "--fidelity rigid needs no mesh; the modes of modal are those of a mes
 FARTHER = "Let the bore end farther from the end of the projectile, or be open there."
 
 
-def require_mesh(scene: Scene) -> None:
+def require_mesh(rod: ProjectileSpec, across: int) -> None:
     """Refuse a turned projectile of which no mesh can be made (SceneError), with remedies that were tried."""
-    if not scene.projectile.is_rod and scene.projectile.own_mesh is None:
-        _require_mesh(scene.projectile, scene.across)
+    if not rod.is_rod and rod.own_mesh is None:
+        _require_mesh(rod, across)
 
 
 @lru_cache(maxsize=256)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 
 from fem_impact.arrays import Array
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.barrier import compliance_share
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import ContactBodies, contact_estimate
 from fem_impact.physics.plate import contact_time, least_span, zener_number
 from fem_impact.scene.fields import ACCURACY
-from fem_impact.scene.types import Scene
 
 # of e, by a half-space under the contact: above it that is told, and finite elements mesh the plate through
 THIN = 0.02
@@ -22,7 +21,7 @@ LEAST_ACROSS = next(key.low for key in ACCURACY if key.key == "across")
 NONE = "No accuracy.across does: give a thicker plate or a blunter projectile."
 
 
-def half_space_error(bodies: ContactBodies) -> float:
+def half_space_error(bodies: Bodies) -> float:
     """Return how far e may be off, of itself, where a plate that bends is a half-space under the contact.
 
     Under a force P a half-space has u = (1 + nu)(3 - 2 nu) P / (2 pi E h) of its give deeper than h on the
@@ -30,37 +29,36 @@ def half_space_error(bodies: ContactBodies) -> float:
     Contact Mechanics, sections 3.2 and 4.2, doi:10.1017/CBO9781139171731). e changes by half of the share of
     the compliance that is wrong (Thornton 1997, doi:10.1115/1.2787319). It is 0 for other barriers.
     """
-    return 0.5 * _deeper(bodies) * compliance_share(bodies.scene) if bodies.compliant else 0.0
+    return 0.5 * _deeper(bodies) * compliance_share(bodies) if bodies.contact.compliant else 0.0
 
 
-def _deeper(bodies: ContactBodies) -> float:
-    barrier = bodies.scene.barrier
+def _deeper(bodies: Bodies) -> float:
+    barrier = bodies.barrier
     if not barrier.bends or barrier.thickness is None:
         return 0.0
     nu = barrier.material.nu
     return 2 * (3 - 2 * nu) / (3 * math.pi * (1 - nu)) * 0.5 * contact_width(bodies) / barrier.thickness
 
 
-def contact_width(bodies: ContactBodies) -> float:
+def contact_width(bodies: Bodies) -> float:
     """Return the estimated width of the contact, m: twice the geometric mean of its semi-axes."""
-    size = contact_estimate(bodies)
-    return 2 * math.sqrt(size.a_t * size.a_b)
+    return 2 * bodies.estimate.radius
 
 
-def is_thin(bodies: ContactBodies) -> bool:
+def is_thin(bodies: Bodies) -> bool:
     """Return whether finite elements mesh a plate through its thickness, as it is thin beside the contact."""
-    return "plate-bending" in bodies.scene.effects and half_space_error(bodies) > THIN
+    return "plate-bending" in bodies.effects and half_space_error(bodies) > THIN
 
 
-def is_wider(bodies: ContactBodies) -> bool:
+def is_wider(bodies: Bodies) -> bool:
     """Return whether the contact is wider than a plate that bends is thick, so that it is no local one."""
-    barrier, size = bodies.scene.barrier, contact_estimate(bodies)
+    barrier, size = bodies.barrier, bodies.estimate
     return barrier.bends and 2 * max(size.a_t, size.a_b) > (barrier.thickness or math.inf)
 
 
-def thin_plate(bodies: ContactBodies, meshed_through: bool) -> str:
+def thin_plate(bodies: Bodies, meshed_through: bool) -> str:
     """Tell where a plate that bends is thin beside the contact, and what that means for e."""
-    error, h = half_space_error(bodies), bodies.scene.barrier.thickness
+    error, h = half_space_error(bodies), bodies.barrier.thickness
     if h is None or error <= THIN:
         return ""
     width = contact_width(bodies)
@@ -76,9 +74,9 @@ def thin_plate(bodies: ContactBodies, meshed_through: bool) -> str:
     )
 
 
-def _hardly_left(bodies: ContactBodies, thickness: float) -> str:
+def _hardly_left(bodies: Bodies, thickness: float) -> str:
     """Tell where a plate takes nearly all the energy, so that the contact lasts until the time is up."""
-    number = zener_number(bodies)
+    number = zener_number(bodies.contact)
     if number <= MOST_ZENER:
         return ""
     enough = 1e3 * thickness * math.sqrt(number / MOST_ZENER)  # the impedance grows as its square
@@ -89,15 +87,15 @@ def _hardly_left(bodies: ContactBodies, thickness: float) -> str:
     )
 
 
-def rows_through(scene: Scene, base: float) -> int:
+def rows_through(bodies: Bodies, base: float) -> int:
     """Return how many rows of cells of width ``base``, m, lie through a plate."""
-    assert scene.barrier.thickness is not None, "a plate that bends has a thickness"
-    return max(ROWS, round(scene.barrier.thickness / base))
+    assert bodies.barrier.thickness is not None, "a plate that bends has a thickness"
+    return max(ROWS, round(bodies.barrier.thickness / base))
 
 
-def require_plate(bodies: ContactBodies, meshed_through: bool) -> None:
+def require_plate(bodies: Bodies, meshed_through: bool) -> None:
     """Refuse a plate too thin for a local contact, or too narrow for its bending waves (SceneError)."""
-    barrier, estimate = bodies.scene.barrier, contact_estimate(bodies)
+    barrier, estimate = bodies.barrier, bodies.estimate
     if not barrier.bends or barrier.thickness is None:
         return
     if is_wider(bodies) and not meshed_through:
@@ -109,26 +107,26 @@ def require_plate(bodies: ContactBodies, meshed_through: bool) -> None:
             value=f"{barrier.thickness * 1e3:.3g} mm",
             remedy=f"Give a thicker plate or a lower speed{_by_mesh(bodies)}.",
         )
-    if barrier.span is not None and barrier.span < (least := least_span(bodies)):
+    if barrier.span is not None and barrier.span < (least := least_span(bodies.contact)):
         raise SceneError(
             f"is so short that bending waves are back after less than the contact of about "
-            f"{contact_time(bodies) * 1e6:.2g} us.",
+            f"{contact_time(bodies.contact) * 1e6:.2g} us.",
             key="barrier.span",
             value=f"{barrier.span * 1e3:.3g} mm",
             remedy=f"Give at least {least * 1e3:.3g} mm.",
         )
 
 
-def _by_mesh(bodies: ContactBodies) -> str:
+def _by_mesh(bodies: Bodies) -> str:
     return ", or use --fidelity solid, which meshes the plate through its thickness" * is_thin(bodies)
 
 
-def require_plate_mesh(scene: Scene, base: float, block: tuple[Array, Array]) -> None:
+def require_plate_mesh(bodies: Bodies, base: float, block: tuple[Array, Array]) -> None:
     """Refuse a plate whose rows would be too flat, or whose mesh has too many cells (SceneError).
 
     ``base``, m, is the width of its cells, ``block`` its lowest and highest corner before rows are moved.
     """
-    h, across = scene.barrier.thickness, scene.across
+    h, across = bodies.barrier.thickness, bodies.scene.across
     assert h is not None, "a plate that bends has a thickness"
     flat = h / (ROWS * base)
     least = 2 * math.ceil(0.5 * across * FLATTEST / flat)

@@ -17,16 +17,14 @@ from pathlib import Path
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.cells import posture
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.effects.slots import ModelSpec
 from fem_impact.case.layers import block_of, moved_rows
-from fem_impact.case.zones import BUFFER, Zones, lowest_point, zones_of
+from fem_impact.case.zones import BUFFER, Zones, zones_of
 from fem_impact.errors import SceneError
-from fem_impact.physics.beam import bending_period, max_time
-from fem_impact.physics.contact import ContactBodies, contact_estimate, pressure_speed, projectile
+from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
 from fem_impact.scene.own_mesh import OwnMesh
-from fem_impact.scene.types import Scene
 from fem_impact.scene.units import format_quantity
 from meshes import cell_moments, thin_skin_rise
 from meshes.refine import reach
@@ -76,22 +74,21 @@ class RunSize:
     most_time: float
 
 
-def run_size(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> RunSize:
+def run_size(slots: ModelSpec, bodies: Bodies, zones: Zones) -> RunSize:
     """Return about what a run of these bodies takes with these fine zones."""
-    scene = bodies.scene
-    rod = _rod_elements(scene, zones, slots.vibrating)
-    barrier = _block_elements(scene, zones) if slots.meshed_barrier else 0.0
-    yielding = _yielding_rod(scene, zones) if slots.rod_law else 0.0
+    rod = _rod_elements(bodies, zones, slots.vibrating)
+    barrier = _block_elements(bodies, zones) if slots.meshed_barrier else 0.0
+    yielding = _yielding_rod(bodies, zones) if slots.rod_law else 0.0
     yielding += _yielding_block(zones) if any(slots.barrier_laws) else 0.0
-    step, latest = _step(scene, zones, slots), max_time(bodies)
+    step, latest = _step(bodies, zones, slots), bodies.max_time
     touch, swing = UNTIL_APART
-    apart = touch * contact_estimate(bodies).duration + swing * bending_period(scene)
+    apart = touch * bodies.estimate.duration + swing * bodies.bending_period
     elements = rod + barrier
     each = ELASTIC * max(elements - yielding, 0.0) + YIELDING * yielding
     steps, most = min(apart, latest) / step, latest / step
     return RunSize(
         *(round(rod), round(barrier), round(yielding), step, round(steps), round(most)),
-        memory=_memory(scene, slots.vibrating, rod, barrier),
+        memory=_memory(bodies, slots.vibrating, rod, barrier),
         time=SETUP * elements + each * steps,
         most_time=SETUP * elements + each * most,
     )
@@ -111,18 +108,18 @@ def machine_memory() -> float:
         return whole
 
 
-def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> None:
+def require_memory(slots: ModelSpec, bodies: Bodies, zones: Zones) -> None:
     """Refuse a mesh that needs more memory than the machine has, or too large a factor (SceneError)."""
     size, there = run_size(slots, bodies, zones), machine_memory()
     if slots.vibrating:
-        _require_factor(bodies.scene, size.rod)
+        _require_factor(bodies, size.rod)
     if size.memory <= there:
         return
     problem = (
         f"makes about {about(size.rod + size.barrier)} elements, which take some {about(size.memory / 1e9)} "
         f"GB of memory; this machine has {about(there / 1e9)} GB."
     )
-    finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.scene.projectile.own_mesh
+    finest, mesh = _finest_that_fits(slots, bodies, zones, there), bodies.rod.own_mesh
     if mesh is not None and not finest:
         raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
     none = "No tip size fits: give a smaller rod, accuracy.across or accuracy.block_margin."
@@ -130,9 +127,9 @@ def require_memory(slots: ModelSpec, bodies: ContactBodies, zones: Zones) -> Non
     raise SceneError(problem, key="accuracy.tip_size", value=value, remedy=finest or none)
 
 
-def _require_factor(scene: Scene, rod: int) -> None:
+def _require_factor(bodies: Bodies, rod: int) -> None:
     """Refuse a user's mesh of so many elements that vibrate that the solver cannot number their factor."""
-    mesh = scene.projectile.own_mesh
+    mesh = bodies.rod.own_mesh
     if mesh is None or (entries := _own_factor(mesh, rod) / ENTRY) <= MOST_ENTRIES:
         return
     problem = (
@@ -142,12 +139,12 @@ def _require_factor(scene: Scene, rod: int) -> None:
     raise SceneError(problem, key="projectile.mesh", value=mesh.path, remedy=LARGER)
 
 
-def _memory(scene: Scene, vibrates: bool, rod: float, barrier: float) -> float:
+def _memory(bodies: Bodies, vibrates: bool, rod: float, barrier: float) -> float:
     """Return the bytes that elements of ``rod`` and ``barrier`` take, and the modes of one that vibrates."""
-    if scene.projectile.own_mesh is None:
+    if bodies.rod.own_mesh is None:
         return float(BASE + PER_ELEMENT * (rod + barrier) + FILL * rod ** (4 / 3))
     elements = OWN_ELEMENT * rod + PER_ELEMENT * barrier
-    return OWN_BASE + elements + (_own_factor(scene.projectile.own_mesh, rod) if vibrates else 0.0)
+    return OWN_BASE + elements + (_own_factor(bodies.rod.own_mesh, rod) if vibrates else 0.0)
 
 
 def _own_factor(mesh: OwnMesh, rod: float) -> float:
@@ -158,12 +155,12 @@ def _own_factor(mesh: OwnMesh, rod: float) -> float:
     return float(OWN_FILL * (stated * sqrt(min(stated, piece)) + max(rod - stated, 0.0) ** 1.5))
 
 
-def require_rest(scene: Scene, zones: Zones) -> None:
+def require_rest(bodies: Bodies, zones: Zones) -> None:
     """Refuse a user's mesh that cannot vibrate and is all nose (SceneError)."""
-    body = scene.projectile.body()
+    body = bodies.rod.body()
     if (
         isinstance(body, Faceted)
-        and not (body.parts[:, 0] >= _body_start(scene, zones, zones.rod_boxes)).any()
+        and not (body.parts[:, 0] >= _body_start(bodies, zones, zones.rod_boxes)).any()
     ):
         raise no_rest()
 
@@ -177,32 +174,32 @@ def no_rest() -> SceneError:
     )
 
 
-def _finest_that_fits(slots: ModelSpec, bodies: ContactBodies, zones: Zones, there: float) -> str:
+def _finest_that_fits(slots: ModelSpec, bodies: Bodies, zones: Zones, there: float) -> str:
     """Return the remedy by a larger tip size, nothing where none fits."""
     for levels in range(len(zones.rod) - 1, 0, -1):
         size = float(f"{zones.rod_base / 2**levels:.2g}")
         accuracy = replace(bodies.scene.accuracy, tip_size=size)
-        coarser = replace(bodies, scene=replace(bodies.scene, accuracy=accuracy))
+        coarser = Bodies(replace(bodies.scene, accuracy=accuracy), bodies.effects)
         if run_size(slots, coarser, zones_of(coarser)).memory <= there:
             return f"Give at least {format_quantity(size, 'length')}."
     return ""
 
 
-def _step(scene: Scene, zones: Zones, slots: ModelSpec) -> float:
+def _step(bodies: Bodies, zones: Zones, slots: ModelSpec) -> float:
     """Return about the stable step, s, with the scene's safety factor."""
-    shares = {"rod": scene.projectile.material}
+    shares = {"rod": bodies.rod.material}
     if slots.meshed_barrier:
-        shares["barrier"] = max((m for _, m in scene.barrier.strata), key=_wave_speed)
-    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size * _flat(scene, zones)}
+        shares["barrier"] = max((m for _, m in bodies.barrier.strata), key=_wave_speed)
+    sizes = {"rod": zones.tip_size, "barrier": zones.barrier_size * _flat(bodies, zones)}
     crossing = (SMALLEST[body] * sizes[body] / _wave_speed(steel) for body, steel in shares.items())
-    return scene.accuracy.step / 0.9 * sqrt(scene.accuracy.mass_scaling) * min(crossing)
+    return bodies.scene.accuracy.step / 0.9 * sqrt(bodies.scene.accuracy.mass_scaling) * min(crossing)
 
 
-def _flat(scene: Scene, zones: Zones) -> float:
+def _flat(bodies: Bodies, zones: Zones) -> float:
     """Return the height of the cells of a plate that is meshed through over their width, at most 1."""
     if not zones.edges:
         return 1.0
-    before, after = moved_rows(scene, zones)
+    before, after = moved_rows(bodies, zones)
     return min(1.0, float(after[-1] / before[-1]))
 
 
@@ -227,18 +224,18 @@ def _split_boxes(base: float, boxes: list[tuple[Array, Array]]) -> Iterator[tupl
         yield edge, low, np.max([corner + margin for (_, corner), margin in pairs], axis=0)
 
 
-def _rod_elements(scene: Scene, zones: Zones, vibrating: bool) -> float:
+def _rod_elements(bodies: Bodies, zones: Zones, vibrating: bool) -> float:
     """Return the elements of half the rod, without slices if it cannot vibrate."""
-    boxes, end = zones.rod_boxes, scene.projectile.length
-    count = _coarse_elements(scene, end if vibrating else min(_body_start(scene, zones, boxes), end))
+    boxes, end = zones.rod_boxes, bodies.rod.length
+    count = _coarse_elements(bodies, end if vibrating else min(_body_start(bodies, zones, boxes), end))
     for edge, lowest, highest in _split_boxes(zones.rod_base, boxes):
-        count += SPLIT * _inside_rod(scene, lowest, highest)[1] / edge**3
+        count += SPLIT * _inside_rod(bodies, lowest, highest)[1] / edge**3
     return count
 
 
-def _coarse_elements(scene: Scene, end: float) -> float:
+def _coarse_elements(bodies: Bodies, end: float) -> float:
     """Return the elements of half the coarse body from its tip up to a height, m."""
-    rod, across = scene.projectile, scene.across
+    rod, across = bodies.rod, bodies.scene.across
     if rod.own_mesh is not None:
         return float((cell_moments(rod.own_mesh.half()).low < end).sum())
     z = (np.arange(SAMPLES) + 0.5) / SAMPLES * end
@@ -254,16 +251,16 @@ def _coarse_elements(scene: Scene, end: float) -> float:
     return float(end * np.mean(cells * across / (2 * radius)))
 
 
-def _body_start(scene: Scene, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
+def _body_start(bodies: Bodies, zones: Zones, boxes: list[tuple[Array, Array]]) -> float:
     """Return about the height, m, at which the slices begin: a cell above all that is split."""
-    alpha, foot = posture(scene), float(lowest_point(scene)[2])
+    alpha, foot = bodies.mesh_inclination, float(bodies.lowest_point[2])
     tops = (
         high[2] * cos(alpha)
         + max(-low[0], high[0]) * sin(alpha)
         + float(reach(1.4 * zones.base, 1, level, BUFFER))
         for level, (low, high) in enumerate(boxes, 1)
     )
-    return max(foot + max(tops, default=0.0) + 1.5 * zones.base, scene.projectile.diameter / 3)
+    return max(foot + max(tops, default=0.0) + 1.5 * zones.base, bodies.rod.diameter / 3)
 
 
 def _grid(low: Array, high: Array) -> Array:
@@ -273,21 +270,21 @@ def _grid(low: Array, high: Array) -> Array:
     return np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 3)
 
 
-def _inside_rod(scene: Scene, low: Array, high: Array) -> tuple[Array, float]:
+def _inside_rod(bodies: Bodies, low: Array, high: Array) -> tuple[Array, float]:
     """Return points (k, 3), m, of a box that lie in the half rod b >= 0, and the volume there, m3."""
     low = np.array([low[0], 0.0, low[2]])
-    points, alpha, body = _grid(low, high), posture(scene), projectile(scene)
+    points, alpha, body = _grid(low, high), bodies.mesh_inclination, bodies.body
     t, b, n = points.T
     x, z = cos(alpha) * t - sin(alpha) * n, sin(alpha) * t + cos(alpha) * n
-    rho_0, _, z_0 = lowest_point(scene)
+    rho_0, _, z_0 = bodies.lowest_point
     rho, z = np.hypot(x + rho_0, b), z + z_0
     inside = points[body.holds(rho, z)]
     return inside, float(np.prod(high - low)) * len(inside) / len(points)
 
 
-def _block_elements(scene: Scene, zones: Zones) -> float:
+def _block_elements(bodies: Bodies, zones: Zones) -> float:
     """Return the elements of the half block: boxes about the fine zone, cut off at the block's sides."""
-    boxes, (bottom, top) = zones.barrier_boxes, block_of(scene, zones)
+    boxes, (bottom, top) = zones.barrier_boxes, block_of(bodies, zones)
     count = float(np.maximum(1.0, np.rint((top - bottom) / zones.base)).prod())
     for edge, lowest, highest in _split_boxes(zones.base, boxes):
         sides = np.minimum(highest, top) - np.maximum(lowest, bottom)
@@ -295,10 +292,10 @@ def _block_elements(scene: Scene, zones: Zones) -> float:
     return count
 
 
-def _yielding_rod(scene: Scene, zones: Zones) -> float:
+def _yielding_rod(bodies: Bodies, zones: Zones) -> float:
     """Return the split cells of half the rod that reach into the ellipsoid whose cells may yield."""
     radii = _radii(zones, zones.tip_size)
-    points, volume = _inside_rod(scene, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
+    points, volume = _inside_rod(bodies, np.array([-radii[0] - zones.reach, 0.0, -radii[2]]), radii)
     return _yielding(
         points, volume / max(len(points), 1), zones.reach, radii, zones.rod_base, zones.rod_boxes
     )

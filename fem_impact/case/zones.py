@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, cos, floor, log2, sqrt
+from math import ceil, cos, floor, log2
 
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.cells import body_cell, contact_radius, levels_of, posture, rod_cell
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import body_cell, contact_radius, levels_of, rod_cell
 from fem_impact.case.plates import is_thin
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import (
-    FLAT,
-    ContactBodies,
-    ContactEstimate,
-    approach,
-    barrier_conforms,
-    contact_estimate,
-    nearly_flat,
-    projectile,
-    sliding,
-)
+from fem_impact.physics.contact import FLAT, ContactEstimate, ContactPair
 from fem_impact.physics.hardening import Skin
 from fem_impact.physics.plate import plate_waves
-from fem_impact.scene.types import Scene
+from fem_impact.scene.barrier import Barrier
 from meshes import thin_skin_rise
 from rigid import Faceted
 
@@ -124,15 +115,15 @@ class Zones:
         return np.array([-t - self.along, 0.0, -n - self.rise]), np.array([t, b, 0.0])
 
 
-def zones_of(bodies: ContactBodies) -> Zones:
+def zones_of(bodies: Bodies) -> Zones:
     """Return the fine zones of two bodies that touch, wide enough for each material of a layered barrier."""
-    scene, size = bodies.scene, widest_contact(bodies)
-    base, rod_base = body_cell(scene), rod_cell(scene)
+    size, pair = widest_contact(bodies.contact, bodies.barrier), bodies.contact
+    base, rod_base = body_cell(bodies), rod_cell(bodies)
     levels, below = levels_of(bodies)
     reach, wide = face_reach(bodies)
-    conforming = barrier_conforms(bodies)
-    rows = skin_rows(bodies, base / 2**below) if conforming and bodies.f > 0 else 0
-    graded = scene.accuracy.fine_zone == "graded"
+    conforming = pair.barrier_conforms
+    rows = skin_rows(bodies, base / 2**below) if conforming and pair.f > 0 else 0
+    graded = bodies.scene.accuracy.fine_zone == "graded"
 
     def extents(h: float, shares: Shares) -> Extents:
         t, b, n = half_widths(size, h, share_of(contact_radius(bodies) / h, shares if graded else ()))
@@ -148,31 +139,15 @@ def zones_of(bodies: ContactBodies) -> Zones:
         along=reach + slide(bodies, half_widths(size, base / 2**below)[0]),
         conforming=conforming,
         skin_rows=rows,
-        edges=plate_waves(bodies)[1] if is_thin(bodies) else 0.0,
+        edges=plate_waves(pair)[1] if is_thin(bodies) else 0.0,
     )
 
 
-def widest_contact(bodies: ContactBodies) -> ContactEstimate:
+def widest_contact(pair: ContactPair, barrier: Barrier) -> ContactEstimate:
     """Return the largest extents of the contact estimated with each material of a layered barrier alone."""
-    first = contact_estimate(bodies)
-    others = [
-        contact_estimate(_alone(bodies, number)) for number in range(1, len(bodies.scene.barrier.strata))
-    ]
-    sizes = [first, *others]
-    return replace(
-        first, **{key: max(getattr(size, key) for size in sizes) for key in ("depth", "a_t", "a_b")}
-    )
-
-
-def _alone(bodies: ContactBodies, number: int) -> ContactBodies:
-    barrier = replace(bodies.scene.barrier, layers=(), material=bodies.scene.barrier.strata[number][1])
-    return replace(bodies, scene=replace(bodies.scene, barrier=barrier))
-
-
-def lowest_point(scene: Scene) -> Array:
-    """Return the rod's lowest point (3,) in the frame of its mesh, m."""
-    rho, z = projectile(scene).contact_point(posture(scene))
-    return np.array([float(rho), 0.0, float(z)])
+    sizes = [pair.estimate, *(replace(pair, barrier=metal).estimate for _, metal in barrier.strata[1:])]
+    widest = {key: max(getattr(size, key) for size in sizes) for key in ("depth", "a_t", "a_b")}
+    return replace(pair.estimate, **widest)
 
 
 def share_of(cells: float, shares: Shares) -> Extents:
@@ -183,43 +158,43 @@ def share_of(cells: float, shares: Shares) -> Extents:
 def half_widths(size: ContactEstimate, h: float, share: Extents = (1.0, 1.0, 1.0)) -> Extents:
     """Return a zone's extents along t (each side), b and n, m; ``h``, m, is the edge of its cells."""
     along = ALONG * min(size.wider, EDGE)
-    whole = along * size.a_t, AROUND * size.a_b, DEPTH * sqrt(size.a_t * size.a_b)
+    whole = along * size.a_t, AROUND * size.a_b, DEPTH * size.radius
     t, b, n = (max(part * length, FEWEST * h) for part, length in zip(share, whole, strict=True))
     return t, b, n
 
 
-def skin_rows(bodies: ContactBodies, h: float) -> int:
+def skin_rows(bodies: Bodies, h: float) -> int:
     """Return how many rows of cells ``h`` m high are drawn together at the skin of a plate that may stick.
 
     A hardened layer in force may ask for more of them, until the first row is no higher than it.
     """
-    halvings = floor(log2(h / (LOW * contact_estimate(bodies).depth)))
-    layer = bodies.scene.surface.skin_depth if "machined-skin" in bodies.scene.effects else None
+    halvings = floor(log2(h / (LOW * bodies.estimate.depth)))
+    layer = bodies.scene.surface.skin_depth if "machined-skin" in bodies.effects else None
     most = SKIN_ROWS if layer is None else max(SKIN_ROWS, ceil(log2(h / layer)))
     return min(max(halvings, 0), most)
 
 
-def face_reach(bodies: ContactBodies) -> tuple[float, float]:
+def face_reach(bodies: Bodies) -> tuple[float, float]:
     """Return how far the fine zone must follow a face that is pressed in, along -t and to the side, m.
 
     Of a turned body's face all may touch where it nearly lies flat, else as much as is pressed in. Of a body
     with facets, all nodes no higher than `FLAT` depths of the estimated indentation may that lie further out
     than those of the round surface of the estimate.
     """
-    size, alpha = contact_estimate(bodies), posture(bodies.scene)
-    body, rho = projectile(bodies.scene), float(lowest_point(bodies.scene)[0])
+    size, alpha = bodies.estimate, bodies.mesh_inclination
+    body, rho = bodies.body, float(bodies.lowest_point[0])
     if isinstance(body, Faceted):
         reach, _, side = body.spread(alpha, FLAT * size.depth, (size.R1, size.R2))
         return reach, side + AROUND * size.a_b if side > 0 else 0.0
-    return (2 * rho * cos(alpha), rho) if nearly_flat(bodies.scene, size.depth) else (2 * size.shift, 0.0)
+    return (2 * rho * cos(alpha), rho) if bodies.contact.nearly_flat(size.depth) else (2 * size.shift, 0.0)
 
 
-def slide(bodies: ContactBodies, t: float) -> float:
+def slide(bodies: Bodies, t: float) -> float:
     """Return how far the fine zone of a barrier goes on down the slope, m, ``t`` m its half-width there."""
-    down = -sliding(bodies.scene)
+    down = -bodies.contact.sliding
     if down <= 0:
         return 0.0
-    way = SLIDE * contact_estimate(bodies).depth * down / max(approach(bodies.scene), 1e-6)
+    way = SLIDE * bodies.estimate.depth * down / max(bodies.contact.approach, 1e-6)
     return max(way, DRAG * t)
 
 
@@ -237,15 +212,15 @@ def require_layer(skin: Skin, zones: Zones) -> None:
         )
 
 
-def require_fine_zone(bodies: ContactBodies) -> None:
+def require_fine_zone(bodies: Bodies) -> None:
     """Refuse a tip without a fine zone where one is needed (SceneError)."""
-    scene, (levels, below) = bodies.scene, levels_of(bodies)
-    split = below if scene.projectile.own_mesh else levels  # a mesh of its own is as fine as the user made it
-    if split == 0 and (bodies.compliant or bodies.rod_yields):
-        base = body_cell(scene)
+    levels, below = levels_of(bodies)
+    split = below if bodies.rod.own_mesh else levels  # a mesh of its own is as fine as the user made it
+    if split == 0 and (bodies.contact.compliant or bodies.contact.rod_yields):
+        base = body_cell(bodies)
         raise SceneError(
             "leaves the tip as coarse as the rod: nothing could yield, and the barrier has no fine zone.",
             key="accuracy.tip_size",
-            value=f"{(scene.accuracy.tip_size or base) * 1e3:.3g} mm",
+            value=f"{(bodies.scene.accuracy.tip_size or base) * 1e3:.3g} mm",
             remedy=f"Give at most {0.7 * base * 1e3:.2g} mm, or the barrier-rigid effect on an elastic rod.",
         )

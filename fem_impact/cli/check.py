@@ -23,7 +23,8 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import plain, wrapped
 
 if TYPE_CHECKING:
-    from fem_impact.case.plan import Plan
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.case.case import Case
     from fem_impact.case.size import RunSize
     from fem_impact.outcome.groups import EffectChoice
 
@@ -49,20 +50,20 @@ def add_options(parser: CommandParser) -> None:
 
 def check(options: Options) -> int:
     """Print what a scene comes to; its full statement, with every value and source, on demand."""
-    from fem_impact.case.plan import plan
+    from fem_impact.case.case import Case
 
     drawing = _drawing_path(options)
-    planned = plan(changed_scene(options.scene, options.changes))
-    tests = _tests_lines(planned.scene)  # before the rest: a file of tests that cannot be read is refused
-    say_kept(planned.scene, options)
+    case = Case.of(changed_scene(options.scene, options.changes))
+    tests = _tests_lines(case.scene)  # before the rest: a file of tests that cannot be read is refused
+    say_kept(case.scene, options)
     if drawing:
-        _draw(planned.scene, drawing)
-    statement = _statement(planned)
+        _draw(case, drawing)
+    statement = _statement(case)
     if options.json:
         print_json(statement)
     else:
         place = Path(options.scene).parent
-        sys.stdout.write(_long(planned, statement, place) if options.long else _short(planned, statement))
+        sys.stdout.write(_long(case, statement, place) if options.long else _short(case, statement))
         sys.stdout.write("".join(f"{line}\n" for line in tests))
         sys.stdout.write(f"drawing: {drawing}\n" if drawing else "")
     return 0
@@ -88,40 +89,35 @@ def _drawing_path(options: Options) -> Path | None:
     return path
 
 
-def _draw(scene: Scene, path: Path) -> None:
+def _draw(case: Case, path: Path) -> None:
     from fem_impact.figures.outline import draw
-    from fem_impact.physics.contact import projectile, touch_point
 
-    body, segments = projectile(scene), scene.projectile.segments
+    body, segments = case.bodies.body, case.scene.projectile.segments
     parts = [(part.to, part.material.name) for part in segments]
-    draw(body, touch_point(scene), parts or [(body.length, scene.projectile.material.name)], path)
+    draw(body, case.contact.touch_point, parts or [(body.length, case.scene.projectile.material.name)], path)
 
 
-def _statement(planned: Plan) -> dict[str, Any]:
-    scene = planned.scene
+def _statement(case: Case) -> dict[str, Any]:
+    scene = case.scene
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
-        "body": _body_entry(scene),
+        "body": _body_entry(case.bodies),
         "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
         "intervals": _intervals(scene),
-        "flow_stress_Pa": _flow_stresses(planned),
+        "flow_stress_Pa": _flow_stresses(case),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [_flat(choice.told(choice.share)) for choice in planned.choices],
-        "validity": list(planned.validity),
-        "warnings": list(planned.warnings),
-        "size": None if scene.accuracy.target else _size_entry(planned.size),
+        "effects": [_flat(choice) for choice in case.choices],
+        "validity": list(case.outside),
+        "warnings": list(case.warnings),
+        "size": None if scene.accuracy.target else _size_entry(case.size),
     }
 
 
-def _body_entry(scene: Scene) -> dict[str, float]:
+def _body_entry(bodies: Bodies) -> dict[str, float]:
     """Return what the theories need of the projectile, SI."""
-    from fem_impact.physics.beam import bending_period, stretching_period
-    from fem_impact.physics.contact import arms, principal_radii, projectile, touch_point
-    from fem_impact.physics.wall import ovalling_period
-
-    body, (d_c, d_d), (rho, z) = projectile(scene), arms(scene), touch_point(scene)
-    R1, R2 = principal_radii(scene)
+    body, (d_c, d_d), (rho, z) = bodies.body, bodies.contact.arms, bodies.contact.touch_point
+    R1, R2 = bodies.contact.principal_radii
     return {
         "mass_kg": body.mass,
         "centre_m": body.z_c,
@@ -136,9 +132,9 @@ def _body_entry(scene: Scene) -> dict[str, float]:
         "R2_m": R2,
         "d_c_m": d_c,
         "d_d_m": d_d,
-        "bending_period_s": bending_period(scene),
-        "stretching_period_s": stretching_period(scene),
-        "ovalling_period_s": ovalling_period(scene.projectile),
+        "bending_period_s": bodies.bending_period,
+        "stretching_period_s": bodies.stretching_period,
+        "ovalling_period_s": bodies.ovalling_period,
     }
 
 
@@ -162,12 +158,11 @@ def _ovalling(period: float) -> str:
     return f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
 
 
-def _drawing(scene: Scene) -> list[str]:
+def _drawing(case: Case) -> list[str]:
     from fem_impact.figures.outline import drawn
-    from fem_impact.physics.contact import projectile, touch_point
 
-    joints = [part.to for part in scene.projectile.segments[:-1]]
-    return drawn(projectile(scene), touch_point(scene), joints)
+    joints = [part.to for part in case.scene.projectile.segments[:-1]]
+    return drawn(case.bodies.body, case.contact.touch_point, joints)
 
 
 def _size_entry(size: RunSize) -> dict[str, float]:
@@ -199,11 +194,11 @@ def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
     }
 
 
-def _flow_stresses(planned: Plan) -> dict[str, dict[str, float]]:
+def _flow_stresses(case: Case) -> dict[str, dict[str, float]]:
     """Return the flow stress, Pa, of each body that yields, at rest and at strain rates, 1/s."""
     from fem_impact.case.metals import RATES, flow_stresses
 
-    by_body = flow_stresses(planned.scene, planned.active)
+    by_body = flow_stresses(case.bodies)
     rates = ["0", *(f"{rate:g}" for rate in RATES)]
     return {body: dict(zip(rates, stresses, strict=True)) for body, stresses in by_body.items()}
 
@@ -219,10 +214,10 @@ def _flow_lines(statement: dict[str, Any]) -> list[str]:
     return ["", heading, *(f"  {line}" for line in table.splitlines())]
 
 
-def _long(planned: Plan, statement: dict[str, Any], place: Path) -> str:
+def _long(case: Case, statement: dict[str, Any], place: Path) -> str:
     """Return every value with its source, files as seen from the ``place`` of the scene's file."""
-    lines = [to_toml(planned.scene, place).rstrip(), "", "Sources"]
-    rows = inputs(planned.scene).rows
+    lines = [to_toml(case.scene, place).rstrip(), "", "Sources"]
+    rows = inputs(case.scene).rows
     lines += _wrapped(f"{key} = {value}: {source}" for key, value, source in rows if source != STATED)
     lines += _wrapped(
         f"{key}: interval {low:g} to {high:g}" for key, (low, high) in statement["intervals"].items()
@@ -230,11 +225,11 @@ def _long(planned: Plan, statement: dict[str, Any], place: Path) -> str:
     lines += _flow_lines(statement)
     lines += ["", "Values used where a scene does not state them"]
     lines += _wrapped(f"{d['key']} = {d['value']}: {d['source']}" for d in statement["defaults"])
-    lines += ["", "Projectile", *_drawing(planned.scene), *_wrapped(_body_lines(statement["body"]))]
+    lines += ["", "Projectile", *_drawing(case), *_wrapped(_body_lines(statement["body"]))]
     lines += ["", "Effects"]
-    lines += [line for choice in planned.choices for line in _effect_lines(choice.told(choice.share))]
+    lines += [line for choice in case.choices for line in _effect_lines(choice)]
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
-    return "\n".join([*lines, *_size_lines(planned), *_end_lines(statement)]) + "\n"
+    return "\n".join([*lines, *_size_lines(case), *_end_lines(statement)]) + "\n"
 
 
 def _end_lines(statement: dict[str, Any]) -> list[str]:
@@ -243,21 +238,21 @@ def _end_lines(statement: dict[str, Any]) -> list[str]:
     return ["", "Validity", *validity, "", "The scene is valid; its digest:", statement["digest"]]
 
 
-def _short(planned: Plan, statement: dict[str, Any]) -> str:
+def _short(case: Case, statement: dict[str, Any]) -> str:
     """Return projectile, barrier and contact, effects with their numbers, size, warnings and validity."""
-    scene = planned.scene
-    lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(scene)]
+    scene = case.scene
+    lines = [headed(scene.id, scene.title), "", "Projectile", *_drawing(case)]
     lines += _wrapped([_material_line(scene), *_body_lines(statement["body"])])
-    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(planned)), "", "Effects"]
+    lines += ["", "Barrier and contact", *_wrapped(_contact_lines(case)), "", "Effects"]
     lines += _wrapped(
-        f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one.told(one.share))}"
-        for one in planned.choices
+        f"on  {one.name}{' (forced)' if one.forced else ''}: {_decided(one)}"
+        for one in case.choices
         if one.on
     )
-    off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in planned.choices if not one.on]
+    off = [f"{one.name}{' (forced)' if one.forced else ''}" for one in case.choices if not one.on]
     lines += _wrapped([f"off {', '.join(off)}: not called for, or left out by the scene"])
     lines += _wrapped(f"warning: {sentence}" for sentence in statement["warnings"])
-    lines += [*_size_lines(planned), *_end_lines(statement), ""]
+    lines += [*_size_lines(case), *_end_lines(statement), ""]
     return "\n".join([*lines, *wrapped(LONG)]) + "\n"
 
 
@@ -268,12 +263,11 @@ def _material_line(scene: Scene) -> str:
     return f"{size} of {', '.join(parts) or rod.material.name}"
 
 
-def _contact_lines(planned: Plan) -> Iterator[str]:
+def _contact_lines(case: Case) -> Iterator[str]:
     """Return barrier, motion, friction and the estimated contact, and what they say of vibration."""
     from fem_impact.answers.verdict.screening import screening
-    from fem_impact.physics.contact import contact_estimate
 
-    scene, size = planned.scene, contact_estimate(planned.bodies)
+    scene, size = case.scene, case.estimate
     tables, layers = to_dict(scene), scene.barrier.layers
     stated = tables["barrier"].items()
     more = [f"{key} {value}" for key, value in stated if key not in ("material", "layers")]
@@ -296,14 +290,14 @@ def _contact_lines(planned: Plan) -> Iterator[str]:
     yield f"{screening(scene).sentence}. The verdict: `fem-impact assess`"
 
 
-def _size_lines(planned: Plan) -> list[str]:
-    if planned.scene.accuracy.target:
+def _size_lines(case: Case) -> list[str]:
+    if case.scene.accuracy.target:
         return []
     from fem_impact.case.size import about
 
-    size = planned.size
+    size = case.size
     sentences = (
-        _cells_line(planned),
+        _cells_line(case),
         f"about {size_text(size)} of {plain(size.step * 1e9, 2)} ns ({about(size.most_steps)} if it lasts "
         f"until max_time), {about(size.memory / 1e6)} MB of memory",
         f"about {clock_text(size.time)} of computing ({clock_text(size.most_time)} until max_time) on the "
@@ -319,11 +313,11 @@ WHICH_FLOWS = (
 )
 
 
-def _cells_line(planned: Plan) -> str:
+def _cells_line(case: Case) -> str:
     """Return how fine the mesh is at the contact, and the tip size that the program advises."""
     from fem_impact.case.cells import ADVISED, ERROR, advice, contact_radius, expected_cells, kind
 
-    bodies = planned.bodies
+    bodies = case.bodies
     cells, error, advised = expected_cells(bodies), ERROR[kind(bodies)], ADVISED[kind(bodies)]
     line = (
         f"about {cells:.2g} cells over the radius of the contact, {contact_radius(bodies) * 1e3:.2g} mm: "
@@ -331,7 +325,7 @@ def _cells_line(planned: Plan) -> str:
     )
     if cells < advised:
         line += f". {advice(bodies)} for {100 * error / advised:.2g} %"
-    return f"{line}. {WHICH_FLOWS}" if len(bodies.yielding) == 2 else line
+    return f"{line}. {WHICH_FLOWS}" if len(bodies.contact.yielding) == 2 else line
 
 
 def _wrapped(sentences: Iterable[str]) -> list[str]:
@@ -340,7 +334,7 @@ def _wrapped(sentences: Iterable[str]) -> list[str]:
 
 def _effect_lines(effect: EffectChoice) -> list[str]:
     verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
-    clauses = [_decided(effect), _harm(effect), _time(effect)]
+    clauses = [_decided(effect), _time(effect)]
     decision = wrapped("; ".join(clause for clause in clauses if clause), " " * 8, "")
     return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
 
@@ -348,30 +342,6 @@ def _effect_lines(effect: EffectChoice) -> list[str]:
 def _decided(effect: EffectChoice) -> str:
     number = "not finite" if effect.number is None else f"{effect.number:.2g}"
     return f"{effect.measure}: {number}, threshold {effect.threshold:g}"
-
-
-def _harm(effect: EffectChoice) -> str:
-    """Return the estimated changes of e and E_vib without the effect, and what the estimate is worth.
-
-    Empty for a barrier that is not in use. Of vibration the verdict says it, by models that resolve it.
-    """
-    from fem_impact.case.choose import UNFELT
-    from fem_impact.case.effects.registry import BARRIERS
-    from fem_impact.case.measured import estimate_errors
-
-    if effect.name in BARRIERS and not effect.on:
-        return ""
-    if effect.name in UNFELT:
-        return "it does not change the motion"
-    if effect.name == "vibration":
-        return "what leaving it out changes: `fem-impact assess`"
-    scenes, e, E_vib = estimate_errors().get(effect.name, (0, 0.0, 0.0))
-    worth = f"was off by up to {e:.1g} and {E_vib:.1g} on {scenes} measured sets"
-    return (
-        f"leaving it out changes e by about {effect.change_of_e:.1g}, E_vib by "
-        f"{effect.change_of_vibration:.1g} of E_0 (quick estimate, "
-        f"{worth if scenes else 'not compared with finite elements'})"
-    )
 
 
 def _time(effect: EffectChoice) -> str:

@@ -40,12 +40,11 @@ def coefficients(options: Options) -> int:
     """Work out the coefficients of the user's own tests."""
     from fem_impact.answers.verdict.text import own_text
     from fem_impact.evidence.paper.own_data import own_coefficients
-    from fem_impact.physics import contact
     from fem_impact.scene.camera import read_camera
     from rigid import RigidError
 
     if scene := named_scene(options, TESTED):
-        rod, alpha = contact.projectile(scene), scene.impact.angle
+        rod, alpha = scene.projectile.rigid_body, scene.impact.angle
         tip = scene.projectile.tip, scene.projectile.tip_radius
     else:
         rod, alpha = rod_of(options), angle_of(options)

@@ -64,7 +64,7 @@ def cost(options: Options) -> int:
     if options.scene == PAPER:
         return _paper(options, chosen(asked))
     scene = changed_scene(options.scene, options.changes)
-    require_turned(scene, "a ladder of costs")
+    require_turned(scene.projectile, "a ladder of costs")
     names, meshes = chosen(asked, scene), _meshes(scene, options.finest)
     if options.page:
         raise UsageError("shows all sets.", key="--page", remedy="Leave it out, or run `cost paper`.")

@@ -168,9 +168,9 @@ def _say_plan(scene: Scene, chosen: str, options: Options) -> None:
 
 
 def _long_run(scene: Scene) -> str:
-    from fem_impact.case.plan import plan
+    from fem_impact.case.case import Case
 
-    size = plan(scene).size
+    size = Case.of(scene).size
     if size.time <= LONG:
         return ""
     return f"This run takes about {clock_text(size.time)} ({size_text(size)}); a larger tip_size is quicker."

@@ -15,7 +15,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from fem_impact.arrays import Array, Bools, Ints
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
 from fem_impact.fem.eigen import MassStiffness, RodModes, rod_modes
 from fem_impact.fem.elements import Kind, element_stiffness, lame_constants, lumped_mass
 from fem_impact.fem.geometry import POINTS, Geometry, build_geometry
@@ -25,7 +25,7 @@ from fem_impact.fem.mass_scaling import crossing_times, mass_factors, reference_
 from fem_impact.fem.rest import RestOfBarrier, rest_of
 from fem_impact.fem.slices import SliceOperator
 from fem_impact.fem.sparse import assemble, assemble_mass, tie_operator
-from fem_impact.physics.contact import pressure_speed, projectile
+from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.material import Material
 from fem_impact.scene.projectile import Segment
 from meshes import OUTER, HexMesh, RodMesh
@@ -176,16 +176,16 @@ def invert(mass: Array, bodies: list[MeshedBody]) -> Array:
 
 
 class MeshedBodies:
-    """Meshes, numbering and masses of a plan's bodies; each part is made at its first use and cached."""
+    """Meshes, numbering and masses of a case's bodies; each part is made at its first use and cached."""
 
-    def __init__(self, plan: Plan) -> None:
-        self.plan, self.scene, self.spec = plan, plan.scene, plan.slots
+    def __init__(self, case: Case) -> None:
+        self.case, self.scene, self.spec = case, case.scene, case.slots
 
     @cached_property
     def geometry(self) -> Geometry:
         """Return the meshes."""
         return build_geometry(
-            self.scene, self.plan.zones, HEIGHT, self.spec.meshed_barrier, self.spec.vibrating
+            self.case.bodies, self.case.zones, HEIGHT, self.spec.meshed_barrier, self.spec.vibrating
         )
 
     @cached_property
@@ -200,7 +200,7 @@ class MeshedBodies:
         """Return the mass, kg, of half the rigid body behind the nose; 0 where the rod vibrates."""
         if self.spec.vibrating:
             return 0.0
-        return projectile(self.scene).moments_behind(self.geometry.rod.body_start)[0] / 2
+        return self.case.bodies.body.moments_behind(self.geometry.rod.body_start)[0] / 2
 
     @cached_property
     def materials(self) -> dict[str, Material]:
@@ -213,7 +213,7 @@ class MeshedBodies:
         """Return the time, s, in which a wave crosses the finest cells, of the fastest material."""
         fastest = max((m for _, m in self.scene.barrier.strata), key=pressure_speed)
         barrier = {"barrier": fastest} if self.spec.meshed_barrier else {}
-        return reference_time(self.plan.zones, {"rod": self.materials["rod"], **barrier})
+        return reference_time(self.case.zones, {"rod": self.materials["rod"], **barrier})
 
     @cached_property
     def nose(self) -> Bools:
@@ -244,7 +244,7 @@ class MeshedBodies:
         z = g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1)
         rod = of_materials(rod, z, tuple((part.to, part.material) for part in parts))
         rod, cut = replace(rod, touching=g.touching), self.cut_off
-        missing = projectile(self.scene).mass / 2 - rod.mass.sum() - self.rest_mass
+        missing = self.case.bodies.body.mass / 2 - rod.mass.sum() - self.rest_mass
         if cut.any():
             rod.mass[cut] *= 1 + missing / rod.mass[cut].sum()
         return rod
@@ -329,7 +329,7 @@ class MeshedBodies:
     @cached_property
     def drawn(self) -> MassPoints:
         """Return the mass points of the rod's slices."""
-        rod, body = self.scene.projectile, projectile(self.scene)
+        rod, body = self.scene.projectile, self.case.bodies.body
         tail = rod.segments[-1].material if rod.segments else rod.material
         bore = float(body.inner_radius(np.array(rod.length))) if isinstance(body, Turned) else 0.0
         return MassPoints.of_rod(self.geometry.rod, self.rod.mass, tail.rho, bore=bore)

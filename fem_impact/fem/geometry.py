@@ -5,24 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from math import cos, sin, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 import meshes
 from fem_impact.arrays import Array, Bools
-from fem_impact.case.cells import posture
+from fem_impact.case.bodies import Bodies
 from fem_impact.case.layers import block_of, moved_rows
 from fem_impact.case.size import no_rest
-from fem_impact.case.zones import BUFFER, Corners, Zones, lowest_point
+from fem_impact.case.zones import BUFFER, Corners, Zones
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import projectile
 from meshes import HexMesh, RodMesh, Zone
 from rigid import Projectile, Turned
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 POINTS = 2  # mass points that replace the cylinder behind the nose of a rigid rod
 _OTHERWISE = "Give a longer rod, another accuracy.tip_size or a larger accuracy.across."
@@ -68,40 +62,40 @@ def to_barrier_frame(alpha: float) -> Array:
     return np.array([[cos(alpha), 0, sin(alpha)], [0, 1, 0], [-sin(alpha), 0, cos(alpha)]])
 
 
-def tail_corners(scene: Scene) -> Array:
+def tail_corners(bodies: Bodies) -> Array:
     """Return both corners (2, 3), m, of the rod's tail in the symmetry plane at the start; gap 0."""
-    body = projectile(scene)
+    body = bodies.body
     radius = float(body.radius(np.array(body.length)))
     corners = np.array([[x * radius, 0.0, body.length] for x in (-1, 1)])
-    return np.asarray((corners - lowest_point(scene)) @ to_barrier_frame(posture(scene)).T)
+    return np.asarray((corners - bodies.lowest_point) @ to_barrier_frame(bodies.mesh_inclination).T)
 
 
 def build_geometry(
-    scene: Scene, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
+    bodies: Bodies, zones: Zones, gap: float, meshed_barrier: bool, vibrating: bool = True
 ) -> Geometry:
     """Mesh the rod (its nose alone if it cannot vibrate) and, if wanted, the barrier block under it."""
-    turn, lowest = to_barrier_frame(posture(scene)), lowest_point(scene)
-    rod = _rod(scene, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
+    turn, lowest = to_barrier_frame(bodies.mesh_inclination), bodies.lowest_point
+    rod = _rod(bodies, lowest, [Zone(lowest, turn, *box) for box in zones.rod_boxes])
     if not vibrating:
-        if scene.projectile.own_mesh:
+        if bodies.rod.own_mesh:
             place = (rod.mesh.points - lowest) @ turn.T
             near = rod.mesh.cells[_round(rod.mesh, place, zones.reach, zones.half)]
             end = float(rod.mesh.points[near, 2].max())  # past all that may yield
-            rod = RodMesh.cut(rod.mesh, max(end, scene.projectile.diameter / 3))
+            rod = RodMesh.cut(rod.mesh, max(end, bodies.rod.diameter / 3))
         if not len(rod.rest_cells):
             raise no_rest()
-        rod = meshes.without_slices(rod, rest_points(scene, rod.body_start))
+        rod = meshes.without_slices(rod, rest_points(bodies, rod.body_start))
     points = (rod.mesh.points - lowest) @ turn.T
-    if posture(scene) > 0:  # an upright body has no side that could strike
+    if bodies.mesh_inclination > 0:  # an upright body has no side that could strike
         _require_tip_first(points, zones.base)
     points[:, 2] += gap if zones.conforming else gap - points[:, 2].min()
     touching, fine = _touching(rod.mesh, points, zones)
     may_yield = {
-        "rod": fine & _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(scene, rod.mesh)
+        "rod": fine & _round(rod.mesh, points, zones.reach, zones.half) & _first_segment(bodies, rod.mesh)
     }
     barrier = None
     if meshed_barrier:
-        barrier = _block(scene, zones)
+        barrier = _block(bodies, zones)
         split = barrier.level > 0
         may_yield["barrier"] = split & _round(barrier, barrier.points, zones.along, zones.half)
     sizes = zones.tip_size, zones.barrier_size
@@ -111,20 +105,20 @@ def build_geometry(
     )
 
 
-def rest_points(scene: Scene, start: float) -> Array:
+def rest_points(bodies: Bodies, start: float) -> Array:
     """Return the two points (2, 3), m, that replace what lies behind ``start``, m from the tip.
 
     They lie at its radius of gyration on either side of its centre.
     """
-    _, x, z, k2 = projectile(scene).moments_behind(start)
+    _, x, z, k2 = bodies.body.moments_behind(start)
     return np.array([[x, 0.0, z - sqrt(k2)], [x, 0.0, z + sqrt(k2)]])
 
 
-def _rod(scene: Scene, lowest: Array, zones: list[Zone]) -> RodMesh:
+def _rod(bodies: Bodies, lowest: Array, zones: list[Zone]) -> RodMesh:
     """Return the mesh of the rod; raise SceneError where it is too short or thin for its cells."""
-    body, across = projectile(scene), scene.across
+    body, across = bodies.body, bodies.scene.across
     try:
-        if own := scene.projectile.own_mesh:
+        if own := bodies.rod.own_mesh:
             half = own.half()
             return RodMesh.plain(meshes.refine(half, zones, buffer=BUFFER) if zones else half)
         if isinstance(body, Turned):
@@ -155,9 +149,9 @@ def _require_tip_first(points: Array, base: float) -> None:
         )
 
 
-def _first_segment(scene: Scene, mesh: HexMesh) -> Bools:
+def _first_segment(bodies: Bodies, mesh: HexMesh) -> Bools:
     """Return the mask (m,) of the rod's cells in the segment that touches; the others stay elastic."""
-    segments = scene.projectile.segments
+    segments = bodies.rod.segments
     end = segments[0].to if segments else np.inf
     return np.asarray(mesh.points[mesh.cells, 2].mean(axis=1) < end)
 
@@ -183,12 +177,12 @@ def _round(mesh: HexMesh, points: Array, along: float, radii: tuple[float, float
     return np.asarray(away < ROUND)
 
 
-def _block(scene: Scene, zones: Zones) -> HexMesh:
+def _block(bodies: Bodies, zones: Zones) -> HexMesh:
     """Return the barrier block, rows of its cells at the interfaces of its layers and at its underside."""
     h, base = zones.barrier_size, zones.base
-    margin = scene.accuracy.block_margin  # springs replace the half-space beyond
-    low, high = block_of(scene, zones)
-    rows, depths = moved_rows(scene, zones)
+    margin = bodies.scene.accuracy.block_margin  # springs replace the half-space beyond
+    low, high = block_of(bodies, zones)
+    rows, depths = moved_rows(bodies, zones)
     boxes = [_before_moving(box, zones, rows, depths) for box in zones.barrier_boxes]
     count = float(np.prod((high - low) / base))
     if count > MOST_CELLS:
@@ -202,9 +196,9 @@ def _block(scene: Scene, zones: Zones) -> HexMesh:
     if zones.edges:
         coarse = meshes.with_free_bottom(coarse)
     block = meshes.with_thin_skin(coarse, h, zones.skin_rows)
-    if scene.barrier.layers or zones.edges:
+    if bodies.barrier.layers or zones.edges:
         block = meshes.with_rows_at(block, rows, depths)
-    return replace(block, points=block.points + np.array([scene.accuracy.grid_shift * h, 0.0, 0.0]))
+    return replace(block, points=block.points + np.array([bodies.scene.accuracy.grid_shift * h, 0.0, 0.0]))
 
 
 def _before_moving(box: Corners, zones: Zones, rows: Array, depths: Array) -> Zone:

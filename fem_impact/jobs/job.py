@@ -9,7 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import FemImpactError, ResultError, SceneError
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import or_none
@@ -156,7 +156,7 @@ class Job:
 def _planned(scene: Scene) -> tuple[float, float]:
     """Return planned tip size, m, and processor time, s; where no mesh is possible, 0 and `REFUSED`."""
     try:
-        planned = plan(scene)
+        planned = Case.of(scene)
     except SceneError:
         return 0.0, REFUSED
     return planned.zones.tip_size, planned.size.time

@@ -10,7 +10,7 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.modal.march import drop
 from fem_impact.modal.motion import (
@@ -35,7 +35,7 @@ from fem_impact.modal.motion import (
 )
 from fem_impact.modal.rod import ModalRod, modal_rod
 from fem_impact.physics.beam import horizon
-from fem_impact.physics.contact import contact_estimate, fall
+from fem_impact.physics.contact import fall
 from fem_impact.physics.contact_law import ContactLaw, contact_law
 from fem_impact.physics.flow_law import FlowLaw, flow_law
 from fem_impact.progress import Progress, compiling, setting_up
@@ -105,7 +105,7 @@ class ModalResult:
 
 
 def solve(
-    plan: Plan,
+    case: Case,
     progress: Callable[[Progress], None] | None = None,
     recorded: bool = False,
     step: float = 1.0,
@@ -114,31 +114,30 @@ def solve(
 
     Where it is ``recorded``, the result holds what moved over time. ``step`` is the time step over the usual.
     """
-    scene = plan.scene
     if progress is not None:
-        progress(setting_up(plan.max_time, scene.id))
+        progress(setting_up(case.max_time, case.scene.id))
         if not compiled_before("march.drop"):
-            progress(compiling(plan.max_time, COMPILE))
-    rod, law = modal_rod(scene, plan.slots.vibrating), contact_law(plan.bodies)
-    flow = flow_law(plan.bodies, plan.slots.rod_law, plan.slots.barrier_law)
+            progress(compiling(case.max_time, COMPILE))
+    rod, law = modal_rod(case.bodies, case.slots.vibrating), contact_law(case.contact)
+    flow = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
     contacts = np.zeros((MOST_CONTACTS, 4))
-    start, modes = _start(plan, rod), Modes(rod.omega, rod.along_t, rod.along_n)
+    start, modes = _start(case, rod), Modes(rod.omega, rod.along_t, rod.along_n)
     E_0 = _kinetic(rod, start.v_n, start.v_t, start.omega)
     widest = reach(law, flow, E_0)
     fastest = max([*rod.omega, contact_rate(law, flow, start, modes, widest)])
-    dt = step * min(contact_estimate(plan.bodies).duration / STEPS, FASTEST / fastest)
-    bounds = Bounds(dt, horizon(scene), plan.max_time, widest)
+    dt = step * min(case.estimate.duration / STEPS, FASTEST / fastest)
+    bounds = Bounds(dt, horizon(case.scene.projectile), case.max_time, widest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     record = np.zeros((MOST_ROWS if recorded else 0, 15))
     drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
     wall, cpu = time.perf_counter(), time.process_time()
     end = drop(start, law, flow, modes, rod.others, bounds, contacts, record)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
-    return _result(plan, rod, end, E_0, contacts, bounds, record, (wall, cpu))
+    return _result(case, rod, end, E_0, contacts, bounds, record, (wall, cpu))
 
 
 def _result(
-    plan: Plan,
+    case: Case,
     rod: ModalRod,
     end: ModalEnd,
     E_0: float,
@@ -148,7 +147,7 @@ def _result(
     took: tuple[float, float],
 ) -> ModalResult:
     """Return the result of a march that ``took`` wall and processor time, s."""
-    scene, motion, tally = plan.scene, end.motion.rigid[:3], end.tally
+    scene, motion, tally = case.scene, end.motion.rigid[:3], end.tally
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
     skin, friction = tally[SHEARED] + tally[RUBBED], tally[RUBBED]
     plastic = tally[FLOWED] + tally[SHEARED]
@@ -157,7 +156,7 @@ def _result(
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
     given = barrier + tally[WORK_P]
     spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held) + given
-    fell = fall(plan.slots.gravity, end.time, contacts[: end.touches, :2])
+    fell = fall(case.slots.gravity, end.time, contacts[: end.touches, :2])
     V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
     kinetic = _kinetic(rod, V_n, V_t, motion[2])
     return ModalResult(
@@ -230,9 +229,9 @@ def contact_rate(law: ContactLaw, flow: FlowLaw, start: Start, modes: Modes, wid
     return sqrt(stiffness * light)
 
 
-def _start(plan: Plan, rod: ModalRod) -> Start:
-    g, impact = plan.slots.gravity or 0.0, plan.scene.relative
-    struck = plan.scene.barrier
+def _start(case: Case, rod: ModalRod) -> Start:
+    g, impact = case.slots.gravity or 0.0, case.scene.relative
+    struck = case.scene.barrier
     return Start(
         rod.mass,
         rod.k2,
@@ -245,7 +244,7 @@ def _start(plan: Plan, rod: ModalRod) -> Start:
         -g * sin(impact.angle),
         -g * cos(impact.angle),
         1 / struck.mass if struck.mass else 0.0,
-        1 / plan.slots.plate if plan.slots.plate else 0.0,
+        1 / case.slots.plate if case.slots.plate else 0.0,
         1 / struck.inertia if struck.inertia else 0.0,
         struck.centre_depth or 0.0,
         struck.centre_offset,

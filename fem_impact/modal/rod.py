@@ -9,10 +9,11 @@ from math import cos, sin, sqrt
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.plan import plan
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.case import Case
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.modal.motion import Others
-from fem_impact.physics.contact import arms, principal_radii, projectile, section_frequency, touch_point
+from fem_impact.physics.contact import section_frequency
 from fem_impact.scene.barrier import Barrier
 from fem_impact.scene.fields import ACCURACY
 from fem_impact.scene.impact import Impact
@@ -51,15 +52,15 @@ class ModalRod:
     names: tuple[str, ...]
 
 
-def modal_rod(scene: Scene, vibrating: bool = True) -> ModalRod:
+def modal_rod(bodies: Bodies, vibrating: bool = True) -> ModalRod:
     """Return the rod of a scene; the modes of rods of one shape and material are computed once."""
-    body, alpha = projectile(scene), scene.impact.angle
-    assert not isinstance(body, Faceted), "the plan refuses the modal fidelity of a mesh of its own"
-    d_c, d_d = arms(scene)
-    radius = principal_radii(scene)[0]
+    pair, body, alpha = bodies.contact, bodies.body, bodies.contact.angle
+    assert not isinstance(body, Faceted), "the case refuses the modal fidelity of a mesh of its own"
+    d_c, d_d = pair.arms
+    radius = pair.principal_radii[0]
     edges = body.other_edges(alpha)
-    places = np.array([touch_point(scene), *((x, z) for _, x, z, _ in edges)])
-    omega, moved = _moved(scene, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
+    places = np.array([pair.touch_point, *((x, z) for _, x, z, _ in edges)])
+    omega, moved = _moved(bodies, places) if vibrating else (np.zeros(0), np.zeros((len(places), 2, 0)))
     along_t, along_n = _turned(alpha, moved[:, 0], moved[:, 1])
     t, n = _turned(alpha, places[1:, 0], places[1:, 1] - body.z_c)
     others = Others(t, n, np.array([edge[3] for edge in edges]), along_t[1:], along_n[1:])
@@ -74,17 +75,21 @@ def _turned(alpha: float, x: Array, z: Array) -> tuple[Array, Array]:
     return cos(alpha) * x + sin(alpha) * z, cos(alpha) * z - sin(alpha) * x
 
 
-def _moved(scene: Scene, places: Array) -> tuple[Array, Array]:
+def _moved(bodies: Bodies, places: Array) -> tuple[Array, Array]:
     """Return omega (k,), and what each mode moves places (m, 2) by, (m, 2, k), kg^-1/2; all (x, z)."""
-    points, shape, omega = _modes(_elastic(scene.projectile), scene.across)
-    kept = omega < section_frequency(scene)
-    return omega[kept], np.array([_moved_place(scene, points, shape[:, :, kept], *place) for place in places])
+    points, shape, omega = _modes(_elastic(bodies.rod), bodies.scene.across)
+    near = AROUND * bodies.rod.diameter
+    kept = omega < section_frequency(bodies.rod.material, bodies.rod.diameter)
+    return omega[kept], np.array([_moved_place(points, shape[:, :, kept], near, *place) for place in places])
 
 
-def _moved_place(scene: Scene, points: Array, shape: Array, x: float, z: float) -> Array:
-    """Return what modes (n, 3, k) with nodes at points (n, 3) move a place of the rod by, (2, k)."""
+def _moved_place(points: Array, shape: Array, around: float, x: float, z: float) -> Array:
+    """Return what modes (n, 3, k) with nodes at points (n, 3) move a place by, (2, k).
+
+    They are taken as affine ``around`` it, m.
+    """
     away = points - np.array([x, 0.0, z])
-    near = np.linalg.norm(away, axis=1) < AROUND * scene.projectile.diameter
+    near = np.linalg.norm(away, axis=1) < around
     affine = np.column_stack([np.ones(near.sum()), away[near][:, [0, 2]]])
     moved = np.einsum("n,ncm->cm", np.linalg.pinv(affine)[0], shape[near])
     return np.asarray(moved[[0, 2]])
@@ -113,7 +118,7 @@ def _modes(rod: ProjectileSpec, across: int) -> tuple[Array, Array, Array]:
         effects=("vibration", "barrier-rigid"),
         accuracy=Accuracy(tip_size=min(rod.diameter / 4, COARSEST), across=across, mass_scaling=1.0),
     )
-    meshed = MeshedBodies(plan(scene))
+    meshed = MeshedBodies(Case.of(scene))
     modes, mesh = meshed.rod_modes(), meshed.geometry.rod.mesh
     # modes are normalised with the mass of the half rod
     shape = modes.shape[meshed.free_nodes] / sqrt(2)

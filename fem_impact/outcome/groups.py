@@ -14,7 +14,7 @@ SHARE = ", as a fraction of E_0."
 
 @group
 class EffectChoice:
-    """What was decided about one effect; the changes are those of leaving it out."""
+    """What was decided about one effect."""
 
     name: str = key("name", "", "The effect.")
     on: bool = key("on", "", "It is in the model.")
@@ -24,8 +24,6 @@ class EffectChoice:
     number: float | None = key("number", "-", "That number; null where it is not finite.")
     threshold: float = key("threshold", "-", "Above it the effect is needed.")
     source: str = key("source", "", "Where the threshold comes from.")
-    change_of_e: float = key("change_of_e", "-", "Of e, about.")
-    change_of_vibration: float = key("change_of_E_vib_over_E_0", "-", "Of E_vib over E_0, about.")
     sentence: str = key("sentence", "", "What the effect is, or what is left out with it.")
     share: float | None = key("share", "-", "Share of the run time; null where it is off.")
 

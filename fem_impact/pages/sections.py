@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from fem_impact.answers.compare import compare
-from fem_impact.case.effects.registry import BARRIERS
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.figures.runs import comparison_picture, force_picture, ledger_picture, waves_picture
 from fem_impact.figures.style import percent
@@ -216,18 +215,15 @@ def _runs(runs: Sequence[str], count: int) -> str:
     return "all runs" if len(runs) == count else ", ".join(runs)
 
 
-EFFECTS = (
-    *("effect", "in the model", "decided by", "number", "threshold"),
-    *("change of e", "change of E_vib/E₀", "run time"),
-)
+EFFECTS = ("effect", "in the model", "decided by", "number", "threshold", "run time")
 
 
 def effects_section(outcome: Outcome) -> Markup:
     """Return the table of effects, nothing where a fidelity has none."""
     rows = [_row(choice) for choice in or_none(outcome.provenance.effect_choices) or ()]
     caption = (
-        "An effect is needed when its number is above its threshold. The changes are about what leaving it "
-        "out does. The run time is the share of its own parts; that of friction and rates is estimated."
+        "An effect is needed when its number is above its threshold. The run time is the share of its own "
+        "parts; that of friction and rates is estimated."
     )
     shown = html.table(Table.of(EFFECTS, rows, left=range(3)), caption)
     folded = html.details("What the model has, and why", shown)
@@ -241,16 +237,8 @@ def _row(choice: EffectChoice) -> list[Cell]:
         choice.measure,
         choice.number,
         choice.threshold,
-        *_changes(choice),
         None if choice.share is None else percent(choice.share),
     ]
-
-
-def _changes(choice: EffectChoice) -> list[Cell]:
-    """Return the changes of e and E_vib/E_0 without the effect; none for a barrier that is not in use."""
-    if choice.name in BARRIERS and not choice.on:
-        return [None, None]
-    return [f"± {c:.1g}".replace("-", "−") for c in (choice.change_of_e, choice.change_of_vibration)]
 
 
 COMPARED = ("model", "measured", "95 % interval of the mean", "n", "verdict")

@@ -13,15 +13,15 @@ depth d than R1 says, as behind a sharp edge, R1 is that of the parabola as wide
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import inf, pi, sin, sqrt
 from typing import TYPE_CHECKING, NamedTuple
+
+from rigid import Body, Faceted
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
     from fem_impact.scene.material import Material
-    from fem_impact.scene.projectile import ProjectileSpec
-    from fem_impact.scene.types import Scene
-    from rigid import Body, Projectile
 
 
 LIMIT_PRESSURE = 2.8  # mean pressure of a fully plastic indentation over the yield stress
@@ -31,33 +31,13 @@ ROUNDS = 12  # of depth and width, each of which moves the depth a quarter of th
 FLATTEST = 0.2  # m, upper limit of R2, which is infinite for a contact on a flat face
 
 
-@dataclass(frozen=True, slots=True)
-class ContactBodies:
-    """Rod and barrier at the contact: a scene, and which of its properties the effects in force use.
+class Plate(NamedTuple):
+    """A barrier that bends: Pa, -, kg/m3, and its thickness, m."""
 
-    Attributes
-    ----------
-    rod_yields, barrier_yields : whether the material may yield
-    compliant : whether the barrier deforms
-    f : Coulomb coefficient in force, 0 without friction
-    """
-
-    scene: Scene
-    rod_yields: bool
-    barrier_yields: bool
-    compliant: bool
-    f: float
-
-    @property
-    def yielding(self) -> list[Material]:
-        """Return the materials that may yield and have a yield stress."""
-        rod, barrier = self.scene.projectile.material, self.scene.barrier.struck
-        return [m for m in [rod] * self.rod_yields + [barrier] * self.barrier_yields if m.yields]
-
-    @property
-    def elastic(self) -> list[Material]:
-        """Return the materials that deform: a rigid barrier has no share in the contact's compliance."""
-        return [self.scene.projectile.material] + [self.scene.barrier.struck] * self.compliant
+    E: float
+    nu: float
+    rho: float
+    thickness: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,59 +58,182 @@ class ContactEstimate:
     shift: float = 0.0
     wider: float = 1.0
 
-
-def principal_radii(scene: Scene) -> tuple[float, float]:
-    """Return (R1, R2), m, of the tip at its lowest point."""
-    from rigid import Faceted
-
-    rod, alpha = projectile(scene), scene.impact.angle
-    rho, _ = rod.contact_point(alpha)
-    R1 = rod.tip_curvature(alpha) or rod.diameter / 200
-    if isinstance(rod, Faceted):
-        return R1, min(max(rod.curvature_around(alpha), R1), FLATTEST)
-    at_pole = FLATTEST if rod.face > 0 else R1
-    around = float(rho) / sin(alpha) if alpha > 0 else at_pole
-    return R1, min(max(around, R1), FLATTEST)
+    @property
+    def radius(self) -> float:
+        """The radius, m, of the circle as large as the contact: the geometric mean of its semi-axes."""
+        return sqrt(self.a_t * self.a_b)
 
 
-def projectile(scene: Scene) -> Body:
-    """Return the rigid projectile of a scene."""
-    rod = scene.projectile
-    return plain_rod(rod) if rod.is_rod else rod.body()
+@dataclass(frozen=True, eq=False)
+class ContactPair:
+    """Projectile and barrier at their first contact, in numbers, and which of their properties are in force.
 
+    What follows from these numbers is worked out when it is first asked for, and kept.
 
-def plain_rod(rod: ProjectileSpec) -> Projectile:
-    """Return the rigid rod of one material with one of the tips."""
-    from rigid import Projectile
+    Attributes
+    ----------
+    body : the rigid projectile; angle : of its axis to the barrier's normal, rad
+    v_n, v_t, omega : velocities of its mass centre, m/s, and its spin, rad/s, as seen from the barrier
+    rod, barrier : materials that touch
+    rod_yields, barrier_yields : whether the material may yield
+    compliant : whether the barrier deforms
+    f : Coulomb coefficient in force, 0 without friction
+    barrier_mass, barrier_inertia : of a free barrier, kg, kg m2; None of one that does not move or turn
+    centre_offset : of the barrier's mass centre from the struck point along t, m
+    plate : the barrier, if it bends
+    """
 
-    return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
+    body: Body
+    angle: float
+    v_n: float
+    v_t: float
+    omega: float
+    rod: Material
+    barrier: Material
+    rod_yields: bool
+    barrier_yields: bool
+    compliant: bool
+    f: float
+    barrier_mass: float | None = None
+    barrier_inertia: float | None = None
+    centre_offset: float = 0.0
+    plate: Plate | None = None
 
+    @cached_property
+    def elastic(self) -> ContactPair:
+        """The same bodies, none of which yields."""
+        return replace(self, rod_yields=False, barrier_yields=False)
 
-def arms(scene: Scene) -> tuple[float, float]:
-    """Return (d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
-    d_c, d_d = projectile(scene).arms(scene.impact.angle)
-    return float(d_c) if scene.impact.angle > 0 else 0.0, float(d_d)
+    @property
+    def yielding(self) -> list[Material]:
+        """The materials that may yield and have a yield stress."""
+        both = [self.rod] * self.rod_yields + [self.barrier] * self.barrier_yields
+        return [metal for metal in both if metal.yields]
 
+    @property
+    def softer(self) -> Material | None:
+        """The material that yields first, None where nothing may yield."""
+        return min(self.yielding, key=lambda metal: metal.yield_stress, default=None)
 
-def touch_point(scene: Scene) -> tuple[float, float]:
-    """Return (rho, z), m, of the contact in the rod; that of a whole face is its centre."""
-    rho, z = projectile(scene).contact_point(scene.impact.angle)
-    return float(rho) if scene.impact.angle > 0 else 0.0, float(z)
+    @property
+    def deforming(self) -> list[Material]:
+        """The materials that deform: a rigid barrier has no share in the contact's compliance."""
+        return [self.rod] + [self.barrier] * self.compliant
 
+    @cached_property
+    def arms(self) -> tuple[float, float]:
+        """(d_c, d_d), m; an upright rod strikes with its whole face, so d_c is 0."""
+        d_c, d_d = self.body.arms(self.angle)
+        return float(d_c) if self.angle > 0 else 0.0, float(d_d)
 
-def lands_flat(scene: Scene) -> bool:
-    """Say whether a flat face touches all at once: estimates and laws of a round contact do not hold then."""
-    return scene.impact.angle == 0 and projectile(scene).face > 0
+    @cached_property
+    def touch_point(self) -> tuple[float, float]:
+        """(rho, z), m, of the contact in the rod; that of a whole face is its centre."""
+        rho, z = self.body.contact_point(self.angle)
+        return float(rho) if self.angle > 0 else 0.0, float(z)
 
+    @property
+    def lands_flat(self) -> bool:
+        """Whether a flat face touches all at once: estimates and laws of a round contact do not hold then."""
+        return self.angle == 0 and self.body.face > 0
 
-def approach(scene: Scene) -> float:
-    """Return the speed, m/s, at which the contact point comes towards the barrier, spin included."""
-    return -scene.relative.v_n - arms(scene)[0] * scene.impact.omega
+    @property
+    def approach(self) -> float:
+        """The speed, m/s, at which the contact point comes towards the barrier, spin included."""
+        return -self.v_n - self.arms[0] * self.omega
 
+    @property
+    def sliding(self) -> float:
+        """The velocity, m/s, of the contact point up the slope before the impact, spin included."""
+        return self.v_t - self.arms[1] * self.omega
 
-def sliding(scene: Scene) -> float:
-    """Return the velocity, m/s, of the contact point up the slope before the impact, spin included."""
-    return scene.relative.v_t - arms(scene)[1] * scene.impact.omega
+    @cached_property
+    def principal_radii(self) -> tuple[float, float]:
+        """(R1, R2), m, of the tip at its lowest point."""
+        R1 = self.body.tip_curvature(self.angle) or self.body.diameter / 200
+        if isinstance(self.body, Faceted):
+            return R1, min(max(self.body.curvature_around(self.angle), R1), FLATTEST)
+        rho, _ = self.body.contact_point(self.angle)
+        at_pole = FLATTEST if self.body.face > 0 else R1
+        around = float(rho) / sin(self.angle) if self.angle > 0 else at_pole
+        return R1, min(max(around, R1), FLATTEST)
+
+    @property
+    def reduced(self) -> tuple[float, float]:
+        """Mass, kg, and k^2, m2, of the relative motion of rod and barrier.
+
+        A free barrier of mass M that does not turn leaves the relative motion of mass centre and barrier the
+        same equations, with m M / (m + M) for m and unchanged m k^2.
+        """
+        share = 1.0 if self.barrier_mass is None else 1 / (1 + self.body.mass / self.barrier_mass)
+        return self.body.mass * share, self.body.k2 / share
+
+    @cached_property
+    def effective_mass(self) -> float:
+        """m*, kg, at least that of a frictionless contact."""
+        (mass, k2), (d_c, d_d) = self.reduced, self.arms
+        frictionless = 1 + d_c**2 / k2
+        turning = mass * self.centre_offset**2 / self.barrier_inertia if self.barrier_inertia else 0.0
+        return float(mass / (min(frictionless, max(1.0, 1 + d_c * (d_c - self.f * d_d) / k2)) + turning))
+
+    @property
+    def modulus(self) -> float:
+        """E*, Pa."""
+        return 1 / sum((1 - metal.nu**2) / metal.E for metal in self.deforming)
+
+    @property
+    def shear_stiffness(self) -> float:
+        """8 G*, Pa, 1/G* = sum of (2 - nu)/G: no slip under a constant normal force (Mindlin 1949)."""
+        return 8 / sum((2 - metal.nu) * 2 * (1 + metal.nu) / metal.E for metal in self.deforming)
+
+    @cached_property
+    def round_contact(self) -> ContactEstimate:
+        """The size of the first contact of a tip that is round everywhere as where it touches first."""
+        return self._pressed_in(*self.principal_radii)
+
+    @cached_property
+    def estimate(self) -> ContactEstimate:
+        """The size of the first contact."""
+        R1, R2 = self.principal_radii
+        size = self.round_contact
+        for _ in range(ROUNDS):
+            down, up = self.body.reaches(self.angle, size.depth)
+            wide = (down + up) ** 2 / (8 * size.depth)
+            if wide <= R1:
+                break
+            size = self._pressed_in(wide, max(R2, wide))
+            size = replace(size, shift=max(0.0, 0.5 * (down - up)), wider=wide / R1)
+        # of a face nearly flat all may touch, whatever the depth
+        return self.round_contact if self.body.face > 0 and self.nearly_flat(size.depth) else size
+
+    def nearly_flat(self, depth: float) -> bool:
+        """Return whether the middle of the face stands so low that all of it may touch at a depth, m."""
+        rho, _ = self.body.contact_point(self.angle)
+        return float(rho) * sin(self.angle) <= FLAT * depth
+
+    @property
+    def barrier_conforms(self) -> bool:
+        """Whether the barrier yields under the whole contact, so that it takes the rod's shape."""
+        flows = self.estimate.pressure >= LIMIT_PRESSURE * self.barrier.yield_stress
+        return flows and self.barrier_yields
+
+    @cached_property
+    def _energy(self) -> float:
+        """What presses the tip in, J."""
+        return 0.5 * self.effective_mass * max(self.approach, 1e-6) ** 2
+
+    def _pressed_in(self, R1: float, R2: float) -> ContactEstimate:
+        """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
+        R, E_star, speed = sqrt(R1 * R2), self.modulus, max(self.approach, 1e-6)
+        limit = LIMIT_PRESSURE * min((metal.yield_stress for metal in self.yielding), default=inf)
+        depth = (self._energy / (8 / 15 * E_star * sqrt(R))) ** 0.4
+        pressure = 4 / (3 * pi) * E_star * sqrt(depth / R)
+        if pressure <= limit:
+            duration = 2.94 * depth / speed
+            return ContactEstimate(depth, sqrt(R1 * depth), sqrt(R2 * depth), duration, pressure, R1, R2)
+        depth = sqrt(self._energy / (pi * limit * R))
+        duration = 0.5 * pi * depth / speed * 1.3
+        return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), duration, limit, R1, R2)
 
 
 def fall(gravity: float | None, time: float, intervals: Array) -> float:
@@ -149,116 +252,19 @@ def between(intervals: Array) -> float:
     return float((intervals[1:, 0] - intervals[:-1, 1]).sum())
 
 
-def pressure_speed(steel: Material) -> float:
+def pressure_speed(metal: Material) -> float:
     """Return the speed of pressure waves in an unbounded body of a material, m/s."""
-    return sqrt(steel.E * (1 - steel.nu) / ((1 + steel.nu) * (1 - 2 * steel.nu) * steel.rho))
+    return sqrt(metal.E * (1 - metal.nu) / ((1 + metal.nu) * (1 - 2 * metal.nu) * metal.rho))
 
 
-def shear_speed(scene: Scene) -> float:
-    """Return the speed of shear waves in the rod, m/s."""
-    steel = scene.projectile.material
-    return sqrt(steel.E / (2 * (1 + steel.nu) * steel.rho))
+def shear_speed(metal: Material) -> float:
+    """Return the speed of shear waves in a material, m/s."""
+    return sqrt(metal.E / (2 * (1 + metal.nu) * metal.rho))
 
 
-def section_frequency(scene: Scene) -> float:
-    """Return the circular frequency, rad/s, above which the rod's modes deform the section.
+def section_frequency(metal: Material, diameter: float) -> float:
+    """Return the circular frequency, rad/s, above which the modes of a rod, m, deform its section.
 
     Such modes are local; their compliance under a point load is part of the contact law.
     """
-    return SECTION * shear_speed(scene) / (scene.projectile.diameter / 2)
-
-
-def reduced(scene: Scene) -> tuple[float, float]:
-    """Return mass, kg, and k^2, m2, of the relative motion of rod and barrier.
-
-    A free barrier of mass M that does not turn leaves the relative motion of mass centre and barrier the same
-    equations, with m M / (m + M) for m and unchanged m k^2.
-    """
-    rod, M = projectile(scene), scene.barrier.mass
-    share = 1.0 if M is None else 1 / (1 + rod.mass / M)
-    return rod.mass * share, rod.k2 / share
-
-
-def effective_mass(bodies: ContactBodies) -> float:
-    """Return m*, kg, at least that of a frictionless contact."""
-    (mass, k2), (d_c, d_d) = reduced(bodies.scene), arms(bodies.scene)
-    barrier, frictionless = bodies.scene.barrier, 1 + d_c**2 / k2
-    turning = mass * barrier.centre_offset**2 / barrier.inertia if barrier.inertia else 0.0
-    return float(mass / (min(frictionless, max(1.0, 1 + d_c * (d_c - bodies.f * d_d) / k2)) + turning))
-
-
-def start_energy(scene: Scene) -> float:
-    """Return E_0, J."""
-    rod, impact = projectile(scene), scene.relative
-    return float(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2 + rod.k2 * impact.omega**2))
-
-
-def normal_share(bodies: ContactBodies) -> float:
-    """Return the share of E_0 that the normal impact can take, m* / 2 times the approach squared over E_0."""
-    return 0.5 * effective_mass(bodies) * approach(bodies.scene) ** 2 / start_energy(bodies.scene)
-
-
-def contact_modulus(bodies: ContactBodies) -> float:
-    """Return E*, Pa."""
-    return 1 / sum((1 - m.nu**2) / m.E for m in bodies.elastic)
-
-
-class _Blow(NamedTuple):
-    """What presses a tip in: energy, J, speed, m/s, E*, Pa, and the limiting pressure, Pa."""
-
-    energy: float
-    speed: float
-    E_star: float
-    limit: float
-
-
-def contact_estimate(bodies: ContactBodies) -> ContactEstimate:
-    """Return the size of the first contact."""
-    blow, (R1, R2) = _blow(bodies), principal_radii(bodies.scene)
-    size = as_round = _pressed_in(blow, R1, R2)
-    body, alpha = projectile(bodies.scene), bodies.scene.impact.angle
-    for _ in range(ROUNDS):
-        down, up = body.reaches(alpha, size.depth)
-        wide = (down + up) ** 2 / (8 * size.depth)
-        if wide <= R1:
-            break
-        size = _pressed_in(blow, wide, max(R2, wide))
-        size = replace(size, shift=max(0.0, 0.5 * (down - up)), wider=wide / R1)
-    # of a face nearly flat all may touch, whatever the depth
-    return as_round if body.face > 0 and nearly_flat(bodies.scene, size.depth) else size
-
-
-def round_contact(bodies: ContactBodies) -> ContactEstimate:
-    """Return the size of the first contact of a tip that is round everywhere as where it touches first."""
-    return _pressed_in(_blow(bodies), *principal_radii(bodies.scene))
-
-
-def _blow(bodies: ContactBodies) -> _Blow:
-    speed = max(approach(bodies.scene), 1e-6)
-    limit = LIMIT_PRESSURE * min((m.yield_stress for m in bodies.yielding), default=inf)
-    return _Blow(0.5 * effective_mass(bodies) * speed**2, speed, contact_modulus(bodies), limit)
-
-
-def _pressed_in(blow: _Blow, R1: float, R2: float) -> ContactEstimate:
-    """Return the size of the contact of a tip of radii ``R1`` and ``R2``, m."""
-    R = sqrt(R1 * R2)
-    depth = (blow.energy / (8 / 15 * blow.E_star * sqrt(R))) ** 0.4
-    pressure = 4 / (3 * pi) * blow.E_star * sqrt(depth / R)
-    if pressure <= blow.limit:
-        duration = 2.94 * depth / blow.speed
-        return ContactEstimate(depth, sqrt(R1 * depth), sqrt(R2 * depth), duration, pressure, R1, R2)
-    depth = sqrt(blow.energy / (pi * blow.limit * R))
-    duration = 0.5 * pi * depth / blow.speed * 1.3
-    return ContactEstimate(depth, sqrt(2 * R1 * depth), sqrt(2 * R2 * depth), duration, blow.limit, R1, R2)
-
-
-def nearly_flat(scene: Scene, depth: float) -> bool:
-    """Return whether the middle of the face stands so low that all of it may touch at a depth, m."""
-    rho, _ = projectile(scene).contact_point(scene.impact.angle)
-    return float(rho) * sin(scene.impact.angle) <= FLAT * depth
-
-
-def barrier_conforms(bodies: ContactBodies) -> bool:
-    """Return whether the barrier yields under the whole contact, so that it takes the rod's shape."""
-    flows = contact_estimate(bodies).pressure >= LIMIT_PRESSURE * bodies.scene.barrier.struck.yield_stress
-    return flows and bodies.barrier_yields
+    return SECTION * shear_speed(metal) / (diameter / 2)

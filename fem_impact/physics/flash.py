@@ -17,18 +17,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi, sqrt
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from fem_impact.arrays import Array
-from fem_impact.errors import SceneError
-from fem_impact.physics.contact import ContactBodies, approach, contact_estimate, sliding
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
+from fem_impact.physics.contact import ContactPair
 
 HARDNESS = 3.0  # hardness over ultimate stress: largest mean pressure on an asperity of the softer body
 ASSUMPTIONS = (
@@ -109,75 +103,39 @@ def _least(t: Array, q: Array, a: Array, V: Array, body: Half) -> Array:
     return np.asarray(np.minimum(short_rise(t, q, body), np.concatenate([[0.0], steady])))
 
 
-def thermal(scene: Scene) -> dict[str, float | None]:
-    """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
-    bodies = {"rod": scene.projectile.material, "barrier": scene.barrier.struck}
-    own = {
-        f"{body}_{key}": getattr(metal, key)
-        for body, metal in bodies.items()
-        for key in ("conductivity", "heat_capacity")
-    }
-    stated = {key: getattr(scene.heating, key) for key in own}
-    return {key: own[key] if value is None else value for key, value in stated.items()}
+Halves = tuple[Half, Half]
+"""The thermal half-spaces of rod and barrier."""
 
 
-def halves(scene: Scene) -> tuple[Half, Half]:
-    """Return the thermal half-spaces of rod and barrier.
-
-    Raises
-    ------
-    SceneError
-        If neither the material nor [heating] states a property.
-    """
-    known = {key: value for key, value in thermal(scene).items() if value is not None}
-    for key in thermal(scene):
-        if key not in known:
-            remedy = "State it, or leave contact-heating out of effects."
-            raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
-    return (
-        Half(known["rod_conductivity"], scene.projectile.material.rho * known["rod_heat_capacity"]),
-        Half(known["barrier_conductivity"], scene.barrier.struck.rho * known["barrier_heat_capacity"]),
-    )
-
-
-def sliding_speed(scene: Scene) -> float:
-    """Return the tangential speed of the tip at first contact, m/s."""
-    return abs(sliding(scene))
-
-
-def expected_rise(bodies: ContactBodies) -> float:
+def expected_rise(pair: ContactPair, friction: float, halves: Halves) -> float:
     """Return the rise, K, of the estimated contact at its mean pressure and half its first sliding speed."""
-    size, f = contact_estimate(bodies), bodies.scene.surface.friction
-    q = f * size.pressure * 0.5 * sliding_speed(bodies.scene)
-    return steady_flash(bodies, q).peak
+    q = friction * pair.estimate.pressure * 0.5 * abs(pair.sliding)
+    return steady_flash(pair, q, halves).peak
 
 
-def steady_flash(bodies: ContactBodies, q: float) -> Flash:
+def steady_flash(pair: ContactPair, q: float, halves: Halves) -> Flash:
     """Return the flash of the estimated contact under an even flux, W/m2, at half its first speed."""
-    size = contact_estimate(bodies)
+    size = pair.estimate
     t, one = np.linspace(0.0, size.duration, 101), np.ones(100)
-    a, V = sqrt(size.a_t * size.a_b), 0.5 * sliding_speed(bodies.scene)
-    return flash(t, q * one, a * one, V * one, *halves(bodies.scene))
+    return flash(t, q * one, size.radius * one, 0.5 * abs(pair.sliding) * one, *halves)
 
 
-def closed_form(bodies: ContactBodies, friction_work: float) -> tuple[Flash, float, float, float]:
+def closed_form(pair: ContactPair, friction_work: float, halves: Halves) -> tuple[Flash, float, float, float]:
     """Return flash, power, W, flux, W/m2, and patch, m2, of the estimated contact.
 
     The friction work, J, is spread evenly over its patch and its time.
     """
-    size = contact_estimate(bodies)
+    size = pair.estimate
     patch, power = pi * size.a_t * size.a_b, friction_work / size.duration
-    return steady_flash(bodies, power / patch), power, power / patch, patch
+    return steady_flash(pair, power / patch, halves), power, power / patch, patch
 
 
-def flash_bound(bodies: ContactBodies) -> float:
+def flash_bound(pair: ContactPair, friction: float, halves: Halves) -> float:
     """Return a rise, K, that no spot of the contact exceeds under the ``ASSUMPTIONS``.
 
     It is infinite between two bodies that never yield: no hardness limits the pressure of a spot.
     """
-    scene, size = bodies.scene, contact_estimate(bodies)
-    f = scene.surface.friction
-    softer = min(m.ultimate_stress for m in (scene.projectile.material, scene.barrier.struck))
-    speed = sliding_speed(scene) + approach(scene)
-    q, t = f * HARDNESS * softer * speed, 3 * size.duration
-    return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves(scene))
+    softer = min(metal.ultimate_stress for metal in (pair.rod, pair.barrier))
+    speed = abs(pair.sliding) + pair.approach
+    q, t = friction * HARDNESS * softer * speed, 3 * pair.estimate.duration
+    return max(float(short_rise([0.0, t], [q], body)[-1]) for body in halves)

@@ -18,14 +18,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from fem_impact.physics.contact import (
-    LIMIT_PRESSURE,
-    ContactBodies,
-    barrier_conforms,
-    contact_estimate,
-    contact_modulus,
-)
-from fem_impact.physics.contact_law import shear_stiffness, softer
+from fem_impact.physics.contact import LIMIT_PRESSURE, ContactPair
 from fem_impact.physics.hardening import Hardening, strain_rate
 
 FULLY_PLASTIC = 3.0  # H over the flow stress (Tabor)
@@ -66,31 +59,31 @@ class FlowLaw(NamedTuple):
     yields: bool
 
 
-def flow_law(bodies: ContactBodies, rod: Hardening | None, barrier: Hardening | None) -> FlowLaw:
+def flow_law(pair: ContactPair, rod: Hardening | None, barrier: Hardening | None) -> FlowLaw:
     """Return the law of two bodies and their flow curves, None of one that does not yield.
 
     The softer body flows, at the strain rate of the indentation, if the first contact reaches its hardness.
     """
-    size, soft, E_star = contact_estimate(bodies), softer(bodies), contact_modulus(bodies)
+    size, soft, E_star = pair.estimate, pair.softer, pair.modulus
     R1, R2 = size.R1, size.R2
     flows = soft is not None and size.pressure >= LIMIT_PRESSURE * soft.yield_stress
-    of_soft = [(barrier, bodies.scene.barrier.struck), (rod, bodies.scene.projectile.material)]
+    of_soft = [(barrier, pair.barrier), (rod, pair.rod)]
     curve = next((law for law, metal in of_soft if law and metal == soft), Hardening(inf, 0.0, 0.0))
-    faster = curve.rate.factor(strain_rate(bodies)) if curve.rate else 1.0
+    faster = curve.rate.factor(strain_rate(size)) if curve.rate else 1.0
     over_length = (R2 / R1) ** 0.25  # an ellipse is shorter along t than the circle of its area
     return FlowLaw(
         R1=R1,
         R2=R2,
         R=sqrt(R1 * R2),
         E_star=E_star,
-        nu=(soft or bodies.scene.projectile.material).nu,
+        nu=(soft or pair.rod).nu,
         normal=E_star * over_length,
-        shear=0.5 * shear_stiffness(bodies) * over_length,
+        shear=0.5 * pair.shear_stiffness * over_length,
         yield_stress=faster * curve.yield_stress,
         slope=curve.slope,
         exponent=curve.exponent,
         skin=faster * float(curve.flow_stress(SKIN_STRAIN)) / sqrt(3),
-        friction=bodies.f,
-        ploughs=barrier_conforms(bodies),
+        friction=pair.f,
+        ploughs=pair.barrier_conforms,
         yields=flows,
     )

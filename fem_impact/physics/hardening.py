@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_impact.physics.contact import ContactBodies, contact_estimate
+from fem_impact.physics.contact import ContactEstimate
 from fem_impact.scene.material import JohnsonCookRate
 
 if TYPE_CHECKING:
@@ -178,9 +178,8 @@ def _necking_strain(stiffness: float, ratio: float, high: float) -> float:
     return n
 
 
-def strain_rate(bodies: ContactBodies) -> float:
-    """Return the strain rate of the indentation, 1/s: 0.2 a/R (Tabor 1951) gained in half the contact."""
-    size = contact_estimate(bodies)
+def strain_rate(size: ContactEstimate) -> float:
+    """Return the strain rate of an indentation, 1/s: 0.2 a/R (Tabor 1951) gained in half the contact."""
     return 0.2 * sqrt(size.a_t * size.a_b / (size.R1 * size.R2)) / (0.5 * size.duration)
 
 

@@ -11,13 +11,9 @@ its energy goes that way (Zener 1941, doi:10.1103/PhysRev.59.669; derived in the
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import TYPE_CHECKING
 
-from fem_impact.physics.contact import ContactBodies, approach, contact_estimate, effective_mass
+from fem_impact.physics.contact import ContactPair
 from fem_impact.physics.contact_law import contact_law
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
 
 LOSS = 1.73  # 1 - e over lambda for small lambda, from s'' + (1 + lambda d/dt) s^1.5 = 0
 MAIN_LOBE = 1.5  # highest frequency of a half-sine pulse over 1 / its duration: the end of its main lobe
@@ -45,39 +41,32 @@ def plate_impedance(E: float, nu: float, rho: float, thickness: float) -> float:
     return 8 * sqrt(bending_stiffness(E, nu, thickness) * rho * thickness)
 
 
-def impedance_of(scene: Scene) -> float:
-    """Return Z, N s/m, of a scene's plate, which must have a thickness."""
-    m, h = scene.barrier.material, scene.barrier.thickness
-    assert h is not None, "a plate that bends has a thickness"
-    return plate_impedance(m.E, m.nu, m.rho, h)
-
-
-def zener_number(bodies: ContactBodies) -> float:
+def zener_number(pair: ContactPair) -> float:
     """Return lambda = m / (Z T) with the effective mass of the rod, 0 for a barrier that does not bend."""
-    if not bodies.scene.barrier.bends:
+    if pair.plate is None:
         return 0.0
-    m, v = effective_mass(bodies), max(approach(bodies.scene), 1e-6)
-    T = (m / (contact_law(bodies).stiffness * sqrt(v))) ** 0.4
-    return float(m / (impedance_of(bodies.scene) * T))
+    m, v = pair.effective_mass, max(pair.approach, 1e-6)
+    T = (m / (contact_law(pair).stiffness * sqrt(v))) ** 0.4
+    return float(m / (plate_impedance(*pair.plate) * T))
 
 
-def contact_time(bodies: ContactBodies) -> float:
+def contact_time(pair: ContactPair) -> float:
     """Return about how long a plate that bends is touched, s.
 
     That of a massive barrier times 1 + lambda, which is no less than Zener's equation gives up to lambda = 2.
     """
-    return contact_estimate(bodies).duration * (1 + zener_number(bodies))
+    return pair.estimate.duration * (1 + zener_number(pair))
 
 
-def least_span(bodies: ContactBodies) -> float:
+def least_span(pair: ContactPair) -> float:
     """Return the width, m, of a plate from whose edges no wave of the pulse comes back while it lasts.
 
     The fastest bending waves of a pulse of duration tau are those of the frequency at the end of its main
     lobe, omega = 3 pi / tau. They travel at their group speed from the middle to the edge and back.
     """
-    m, h, tau = bodies.scene.barrier.material, bodies.scene.barrier.thickness, contact_time(bodies)
-    assert h is not None, "a plate that bends has a thickness"
-    return 2 * bending_speed(m.E, m.nu, m.rho, h, 2 * pi * MAIN_LOBE / tau) * tau
+    assert pair.plate is not None, "a plate that bends has a thickness"
+    tau = contact_time(pair)
+    return 2 * bending_speed(*pair.plate, 2 * pi * MAIN_LOBE / tau) * tau
 
 
 def bending_speed(E: float, nu: float, rho: float, thickness: float, omega: float) -> float:
@@ -102,8 +91,7 @@ def pulse_wave(E: float, nu: float, rho: float, thickness: float, time: float) -
     return min(middle, shear), 0.5 * min(2 * fastest, shear) * time
 
 
-def plate_waves(bodies: ContactBodies) -> tuple[float, float]:
+def plate_waves(pair: ContactPair) -> tuple[float, float]:
     """Return the `pulse_wave` of the contact of two bodies, of which the barrier is a plate that bends."""
-    m, h = bodies.scene.barrier.material, bodies.scene.barrier.thickness
-    assert h is not None, "a plate that bends has a thickness"
-    return pulse_wave(m.E, m.nu, m.rho, h, contact_time(bodies))
+    assert pair.plate is not None, "a plate that bends has a thickness"
+    return pulse_wave(*pair.plate, contact_time(pair))

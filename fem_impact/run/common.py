@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 from math import cos, hypot, inf, sin
-from typing import TYPE_CHECKING
 
 import rigid
 from fem_impact.arrays import Array
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
+from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import (
     ArmCoefficients,
     BarrierMotion,
@@ -22,16 +22,11 @@ from fem_impact.outcome.groups import (
 )
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import installed_versions, utc_now
-from fem_impact.physics.contact import ContactBodies, approach, arms, fall, projectile
-from fem_impact.physics.contact_law import softer
+from fem_impact.physics.contact import fall
 from fem_impact.physics.flash import Flash, flash_bound
 from fem_impact.run.tests import tests_of
 from fem_impact.scene.inputs import melting
 from fem_impact.scene.write import digest
-
-if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
-
 
 NO_TARGET = Unknown("the scene gives a mesh, not the error it allows")
 NO_TABLE = "the scene repeats no measured set, so no table gives its arms"
@@ -52,26 +47,25 @@ ROUND_OFF = 1e-6  # a moment impulse over that of the normal impulse at arm d_d:
 
 
 def provenance(
-    plan: Plan,
+    case: Case,
     effect_choices: tuple[EffectChoice, ...] | Unknown,
     without: Iterable[str] = (),
 ) -> Provenance:
     """Return where a record comes from; ``without`` are effects that the fidelity does not know."""
-    scene = plan.scene
     return Provenance(
-        fidelity=plan.fidelity,
-        scene_id=scene.id,
-        scene_title=scene.title,
-        scene_digest=digest(scene),
+        fidelity=case.fidelity,
+        scene_id=case.scene.id,
+        scene_title=case.scene.title,
+        scene_digest=digest(case.scene),
         created_utc=utc_now(),
         versions=installed_versions(),
-        effects=tuple(name for name in plan.active if name not in without),
+        effects=tuple(name for name in case.active if name not in without),
         effect_choices=effect_choices,
     )
 
 
 def validity(
-    plan: Plan,
+    case: Case,
     finished: bool,
     stopped_because: str,
     V_n: float,
@@ -87,7 +81,7 @@ def validity(
         finished=finished,
         stopped_because=stopped_because + (strikes_again(V_n) if finished else ""),
         assumptions=tuple(assumptions),
-        outside=plan.validity,
+        outside=case.outside,
         warnings=tuple(warnings),
         accuracy_target=NO_TARGET,
         accuracy_setting=NO_TARGET,
@@ -120,26 +114,26 @@ def open_ledger(share: float) -> str:
     return f"The energy ledger misses {abs(share):.1e} of E_0, {limit}"
 
 
-def gravity_warning(plan: Plan, intervals: Array) -> list[str]:
+def gravity_warning(case: Case, intervals: Array) -> list[str]:
     """Warn where gravity acts on the rod for so long while it touches that the result moves."""
-    speed, share = _borne(plan, intervals)
+    speed, share = _borne(case, intervals)
     if not GRAVITY_TOLD < share <= GRAVITY_RULES:
         return []
     why = "The contact bears that too, so that V_n, e and E_r come out higher by about as much."
     return [f"{_gained(speed, share)}. {why}"]
 
 
-def too_slow(plan: Plan, intervals: Array) -> str:
+def too_slow(case: Case, intervals: Array) -> str:
     """Return why an impact in which gravity rules failed, nothing where it does not."""
-    speed, share = _borne(plan, intervals)
+    speed, share = _borne(case, intervals)
     remedy = "it is no impact any more. Give a higher speed, or leave out the gravity effect."
     return f"{_gained(speed, share)}: {remedy}" if share > GRAVITY_RULES else ""
 
 
-def _borne(plan: Plan, intervals: Array) -> tuple[float, float]:
+def _borne(case: Case, intervals: Array) -> tuple[float, float]:
     """Return the speed, m/s, that gravity gives the rod in contact, and its normal part over the approach."""
-    speed = fall(plan.slots.gravity, intervals[-1, 1], intervals)
-    return speed, speed * cos(plan.scene.impact.angle) / approach(plan.scene)
+    speed = fall(case.slots.gravity, intervals[-1, 1], intervals)
+    return speed, speed * cos(case.scene.impact.angle) / case.contact.approach
 
 
 def _gained(speed: float, share: float) -> str:
@@ -148,22 +142,21 @@ def _gained(speed: float, share: float) -> str:
     )
 
 
-def motion(plan: Plan, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
+def motion(case: Case, V_n: float, V_t: float, Omega: float, mass: float, k2: float) -> RodMotion:
     """Return motion before and after (m/s, rad/s, gravity removed) and the rod's constants (kg, m2).
 
     ``V_n`` and ``V_t`` are those seen from the barrier as it was before the impact.
     """
-    scene = plan.scene
     return RodMotion(
-        friction=plan.bodies.f,
-        alpha=scene.impact.angle,
+        friction=case.contact.f,
+        alpha=case.scene.impact.angle,
         mass=mass,
         k_squared=k2,
-        gamma=projectile(scene).gamma,
-        v_n=scene.impact.v_n,
-        v_t=scene.impact.v_t,
-        V_n=float(V_n) + scene.barrier.v_n,
-        V_t=float(V_t) + scene.barrier.v_t,
+        gamma=case.bodies.body.gamma,
+        v_n=case.scene.impact.v_n,
+        v_t=case.scene.impact.v_t,
+        V_n=float(V_n) + case.scene.barrier.v_n,
+        V_t=float(V_t) + case.scene.barrier.v_t,
         Omega=float(Omega),
     )
 
@@ -179,18 +172,18 @@ def relative(motion: RodMotion, barrier: BarrierMotion) -> tuple[float, float, f
     return V_n - known(barrier.V_bn), V_t - known(barrier.V_bt), Omega
 
 
-def apart(scene: Scene) -> tuple[float, float]:
+def apart(case: Case) -> tuple[float, float]:
     """Return the rod's mass centre from that of a barrier that turns at first contact (n, t), m.
 
     The mass centre of the rod lies d_d above and d_c up the slope from the struck point.
     """
-    d_c, d_d = arms(scene)
-    return d_d + (scene.barrier.centre_depth or 0.0), d_c - scene.barrier.centre_offset
+    d_c, d_d = case.contact.arms
+    return d_d + (case.scene.barrier.centre_depth or 0.0), d_c - case.scene.barrier.centre_offset
 
 
-def barrier_motion(scene: Scene, base_n: float, base_t: float, error: Num) -> BarrierMotion:
+def barrier_motion(case: Case, base_n: float, base_t: float, error: Num) -> BarrierMotion:
     """Return the motion of the barrier; ``base_n`` and ``base_t``, m/s, are what the impact added to it."""
-    barrier = scene.barrier
+    barrier = case.scene.barrier
     return BarrierMotion(
         mass=MASSIVE if barrier.mass is None else barrier.mass,
         v_bn=barrier.v_n,
@@ -203,14 +196,12 @@ def barrier_motion(scene: Scene, base_n: float, base_t: float, error: Num) -> Ba
     )
 
 
-def momentum_error(
-    scene: Scene, motion: RodMotion, base_n: float, base_t: float, fallen: float = 0.0
-) -> float:
+def momentum_error(case: Case, motion: RodMotion, base_n: float, base_t: float, fallen: float = 0.0) -> float:
     """Return the change of the momentum of rod and free barrier over that of the rod before.
 
     ``fallen``, m/s, is what gravity gave the rod in flights between contacts, which is taken out.
     """
-    before, alpha, M = scene.relative, scene.impact.angle, scene.barrier.mass or 0.0
+    before, alpha, M = case.scene.relative, case.scene.impact.angle, case.scene.barrier.mass or 0.0
     V_n, V_t, _ = after(motion)
     gained_n = motion.mass * (V_n - motion.v_n + fallen * cos(alpha)) + M * base_n
     gained_t = motion.mass * (V_t - motion.v_t + fallen * sin(alpha)) + M * base_t
@@ -218,7 +209,7 @@ def momentum_error(
 
 
 def angular_momentum_error(
-    scene: Scene,
+    case: Case,
     motion: RodMotion,
     barrier: BarrierMotion,
     Omega_b: float,
@@ -230,7 +221,7 @@ def angular_momentum_error(
     It is over the rod's momentum as seen from the barrier times the distance of the mass centres before.
     ``start`` and ``away`` (n, t), m, are the rod's mass centre from the barrier's before and after.
     """
-    before, struck, (start_n, start_t) = scene.relative, scene.barrier, start
+    before, struck, (start_n, start_t) = case.scene.relative, case.scene.barrier, start
     inertia, M = struck.inertia or 0.0, struck.mass or 0.0
     reduced_mass = motion.mass * M / (motion.mass + M)
     V_n, V_t, Omega = relative(motion, barrier)
@@ -240,9 +231,9 @@ def angular_momentum_error(
     return abs(orbit + spun) / scale
 
 
-def as_on_massive(scene: Scene, motion: RodMotion, barrier: BarrierMotion) -> RodMotion:
+def as_on_massive(case: Case, motion: RodMotion, barrier: BarrierMotion) -> RodMotion:
     """Return the motion relative to the barrier, of the mass and k^2 that a massive one would have met so."""
-    share = 1.0 if scene.barrier.mass is None else 1 / (1 + motion.mass / scene.barrier.mass)
+    share = 1.0 if case.scene.barrier.mass is None else 1 / (1 + motion.mass / case.scene.barrier.mass)
     V_n, V_t, _ = relative(motion, barrier)
     return replace(
         motion,
@@ -255,7 +246,7 @@ def as_on_massive(scene: Scene, motion: RodMotion, barrier: BarrierMotion) -> Ro
     )
 
 
-def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen: float = 0.0) -> Restitution:
+def restitution(case: Case, motion: RodMotion, barrier: BarrierMotion, fallen: float = 0.0) -> Restitution:
     """Return impulse ratios, and the coefficients with the three sets of arms, of the relative motion.
 
     ``fallen`` is the speed, m/s, that gravity gave the rod in flights between contacts: a part of the motion,
@@ -264,16 +255,16 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
     impulse vanishes: d_c = (k^2 (Omega - omega) + d_d (V_t - v_t)) / (V_n - v_n), so e_m = -1.
     """
     if not isinstance(barrier.Omega_b, Unknown):
-        return _on_turning(scene, motion, barrier, barrier.Omega_b)
-    (d_c, d_d), omega, m = arms(scene), scene.impact.omega, as_on_massive(scene, motion, barrier)
+        return _on_turning(case, motion, barrier, barrier.Omega_b)
+    (d_c, d_d), omega, m = case.contact.arms, case.scene.impact.omega, as_on_massive(case, motion, barrier)
     before, (V_n, V_t, Omega) = (m.v_n, m.v_t), after(m)
     if V_n <= m.v_n:
         none = unknown(ArmCoefficients, NO_PUSH.reason)
         return Restitution(mu=NO_PUSH, mu_c=NO_PUSH, paper=none, edge=none, impulse=none)
     e = float(rigid.restitution(m.v_n, V_n, Omega, d_c, omega))
-    spin, alpha = m.k_squared * (Omega - omega), scene.impact.angle
+    spin, alpha = m.k_squared * (Omega - omega), case.scene.impact.angle
     centre = (spin + d_d * (V_t - m.v_t)) / (V_n - m.v_n)
-    tests = tests_of(scene)
+    tests = tests_of(case.scene)
     table = tests.arms if tests else None
     E_0 = float(rigid.kinetic_energy(m.v_n, m.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     return Restitution(
@@ -287,12 +278,12 @@ def restitution(scene: Scene, motion: RodMotion, barrier: BarrierMotion, fallen:
     )
 
 
-def _on_turning(scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b: float) -> Restitution:
+def _on_turning(case: Case, motion: RodMotion, barrier: BarrierMotion, Omega_b: float) -> Restitution:
     """Return the coefficients on a barrier that turns: of the velocities of the two points that touch.
 
     The works of the normal and the tangential impulse are those of the mean relative velocity of the points.
     """
-    (d_c, d_d), omega, struck = arms(scene), scene.impact.omega, scene.barrier
+    (d_c, d_d), omega, struck = case.contact.arms, case.scene.impact.omega, case.scene.barrier
     depth, offset = struck.centre_depth or 0.0, struck.centre_offset
     V_n, V_t, Omega = after(motion)
     P_n, P_t = motion.mass * (V_n - motion.v_n), motion.mass * (V_t - motion.v_t)
@@ -300,7 +291,7 @@ def _on_turning(scene: Scene, motion: RodMotion, barrier: BarrierMotion, Omega_b
     before_t = motion.v_t - barrier.v_bt - d_d * omega
     after_n = V_n + d_c * Omega - known(barrier.V_bn) - Omega_b * offset
     after_t = V_t - d_d * Omega - known(barrier.V_bt) - Omega_b * depth
-    seen = scene.relative
+    seen = case.scene.relative
     E_0 = float(rigid.kinetic_energy(seen.v_n, seen.v_t, omega, mass=motion.mass, k2=motion.k_squared))
     edge = ArmCoefficients(
         d_c=d_c,
@@ -332,24 +323,22 @@ def _with_arms(d_c: float, d_d: float, omega: float, m: RodMotion, E_0: float) -
     )
 
 
-def rod_flows(bodies: ContactBodies) -> bool:
+def rod_flows(case: Case) -> bool:
     """Return whether it is the rod that flows at the contact, by the contact law of the softer body."""
-    return bool(bodies.rod_yields and softer(bodies) == bodies.scene.projectile.material)
+    return bool(case.contact.rod_yields and case.contact.softer == case.contact.rod)
 
 
-def plastic_shares(bodies: ContactBodies, share: float) -> tuple[Num, Num]:
+def plastic_shares(case: Case, share: float) -> tuple[Num, Num]:
     """Return the plastic work of rod and barrier; that of a harder body that may yield is not known."""
-    in_rod = rod_flows(bodies)
-    other = HARDER if bodies.rod_yields and bodies.barrier_yields else 0.0
+    in_rod = rod_flows(case)
+    other = HARDER if case.contact.rod_yields and case.contact.barrier_yields else 0.0
     return (share, other) if in_rod else (other, share)
 
 
-def heat(
-    bodies: ContactBodies, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num
-) -> Heat:
+def heat(case: Case, flash: Flash, power: float, flux: float, patch: float, less_vibration: Num) -> Heat:
     """Return the heat of the contact: peaks of power, W, flux, W/m2, and patch, m2, of the whole contact."""
-    ambient, ignition = bodies.scene.heating.ambient, bodies.scene.heating.ignition
-    temperature = below_melting(bodies.scene, ambient + flash.peak)
+    ambient, ignition = case.scene.heating.ambient, case.scene.heating.ignition
+    temperature = below_melting(case, ambient + flash.peak)
     return Heat(
         patch=patch,
         power=power,
@@ -358,14 +347,15 @@ def heat(
         temperature=temperature,
         ignition=ignition,
         time_above_ignition=flash.time_above(ignition - ambient),
-        bound=_bound(bodies, ambient),
+        bound=_bound(case, ambient),
         less_vibration=less_vibration,
     )
 
 
-def _bound(bodies: ContactBodies, ambient: float) -> Num:
+def _bound(case: Case, ambient: float) -> Num:
     """Return the temperature, K, that no spot exceeds; without both melting points none can be told."""
-    rise, known_of = flash_bound(bodies), melting(bodies.scene)
+    rise = flash_bound(case.contact, case.scene.surface.friction, halves(case.bodies))
+    known_of = melting(case.scene)
     unstated = [f"heating.{body}_melting" for body in ("rod", "barrier") if body not in known_of]
     if rise == inf:
         return Unknown(HARD)
@@ -374,12 +364,12 @@ def _bound(bodies: ContactBodies, ambient: float) -> Num:
         return Unknown(
             f"not resolved: conduction of heat alone has no end where a body melts; state {missing}"
         )
-    return below_melting(bodies.scene, ambient + rise)
+    return below_melting(case, ambient + rise)
 
 
-def below_melting(scene: Scene, temperature: float) -> Num:
+def below_melting(case: Case, temperature: float) -> Num:
     """Return a temperature of the contact, K; it is not known where a body melts: latent heat is left out."""
-    lowest, name = min(((limit, name) for name, limit in melting(scene).values()), default=(inf, ""))
+    lowest, name = min(((limit, name) for name, limit in melting(case.scene).values()), default=(inf, ""))
     if temperature < lowest:
         return temperature
     return Unknown(

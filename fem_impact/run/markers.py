@@ -34,12 +34,12 @@ def replay(result: SolidResult, V_n: float, V_t: float) -> Markers:
 
     ``V_n`` and ``V_t`` are the velocities of the mass centre, m/s, without gravity, as is the result.
     """
-    alpha, turn = result.plan.scene.impact.angle, result.motion.Omega * WINDOW
+    alpha, turn = result.case.scene.impact.angle, result.motion.Omega * WINDOW
     axis, across = (
         np.array([np.sin(alpha), 0.0, np.cos(alpha)]),
         np.array([np.cos(alpha), 0.0, -np.sin(alpha)]),
     )
-    arm = -lever_of(result.plan.scene.projectile.length) * axis
+    arm = -lever_of(result.case.scene.projectile.length) * axis
     points = result.model.geometry.rod_points[~result.model.geometry.rod.mesh.is_hanging]
     centre = result.view.mass @ points / result.view.mass.sum() * [1.0, 0.0, 1.0]
     rows = np.stack([_nearest(centre, result), _nearest(centre + arm, result)])

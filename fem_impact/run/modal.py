@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from fem_impact.case.case import Case
 from fem_impact.case.measured import reduced_table
-from fem_impact.case.plan import Plan
 from fem_impact.modal.impact import ModalResult, solve
 from fem_impact.outcome.groups import Contact, ContactInterval, Energy, Heat, Markers, RunCost
 from fem_impact.outcome.keys import Num, Unknown, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import ContactBodies, between
+from fem_impact.physics.contact import between
 from fem_impact.progress import Progress
 from fem_impact.run.common import (
     CUT_OFF,
@@ -38,7 +38,6 @@ from fem_impact.run.common import (
 )
 from fem_impact.run.doubts import doubts
 from fem_impact.run.resolution import without_end
-from fem_impact.scene.types import Scene
 
 HALVINGS = 2  # of the time step
 WITHOUT = ("rate-hardening", "machined-skin", "radiation", "material-damping", "contact-heating")
@@ -53,52 +52,52 @@ KEPT = Unknown("the modes of a rod are computed once and kept")
 
 
 def closed(
-    plan: Plan, progress: Callable[[Progress], None] | None = None, recorded: bool = False
+    case: Case, progress: Callable[[Progress], None] | None = None, recorded: bool = False
 ) -> ModalResult:
     """Compute an impact as `solve` does, with half the time step, and half of that, while the ledger is open.
 
     Of 57 random scenes one missed 1.1e-4 of E_0, and half of it with half the step.
     """
     for halved in range(HALVINGS + 1):
-        result = solve(plan, progress, recorded, 0.5**halved)
+        result = solve(case, progress, recorded, 0.5**halved)
         if not open_ledger(result.residual / result.E_0):
             break
     return result
 
 
-def reduce(plan: Plan, result: ModalResult) -> Outcome:
+def reduce(case: Case, result: ModalResult) -> Outcome:
     """Return the Outcome of a modal impact."""
-    rod, scene, contacts = result.rod, plan.scene, result.contacts[:, :2]
-    moved = motion(plan, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
-    fallen = (plan.slots.gravity or 0.0) * between(contacts)
+    rod, contacts = result.rod, result.contacts[:, :2]
+    moved = motion(case, result.V_n, result.V_t, result.Omega, rod.mass, rod.k2)
+    fallen = (case.slots.gravity or 0.0) * between(contacts)
     base = result.V_bn, result.V_bt
-    struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base, fallen))
-    if scene.barrier.inertia is not None:
-        error = angular_momentum_error(scene, moved, struck, result.Omega_b, apart(scene), result.away)
+    struck = barrier_motion(case, *base, momentum_error(case, moved, *base, fallen))
+    if case.scene.barrier.inertia is not None:
+        error = angular_momentum_error(case, moved, struck, result.Omega_b, apart(case), result.away)
         struck = replace(struck, Omega_b=result.Omega_b, angular_momentum_error=error)
-    coefficients, energy = restitution(scene, moved, struck, fallen), _energy(plan, result)
-    origin = provenance(plan, CHOICES, WITHOUT)
-    failed = open_ledger(result.residual / result.E_0) or too_slow(plan, contacts)
+    coefficients, energy = restitution(case, moved, struck, fallen), _energy(case, result)
+    origin = provenance(case, CHOICES, WITHOUT)
+    failed = open_ledger(result.residual / result.E_0) or too_slow(case, contacts)
     cut = failed or ("" if result.separated else result.reason)
     outcome = Outcome(
         provenance=origin,
         validity=validity(
-            plan,
+            case,
             result.finished and not failed,
             failed or result.reason,
             result.V_n - result.V_bn,
             "the reduced model has no second mesh",
             (
                 *ASSUMPTIONS,
-                *_dent(plan.bodies),
-                *([LEVEL] if scene.barrier.inertia else []),
-                *beside_solid(scene),
+                *_dent(case),
+                *([LEVEL] if case.scene.barrier.inertia else []),
+                *beside_solid(case),
             ),
             [
                 *([] if cut else doubts(origin, moved, coefficients, energy)),
-                *gravity_warning(plan, contacts),
+                *gravity_warning(case, contacts),
                 *_tilted(result),
-                *plan.unknown,
+                *case.unknown,
             ],
         ),
         motion=moved,
@@ -120,11 +119,11 @@ def _tilted(result: ModalResult) -> list[str]:
     return [f"The barrier turns by up to {turned:.2g} rad in contact, but its surface is taken as level."]
 
 
-def _energy(plan: Plan, result: ModalResult) -> Energy:
+def _energy(case: Case, result: ModalResult) -> Energy:
     E_0, vibration = result.E_0, result.vibration / result.E_0
     floor = abs(result.residual) / E_0
-    plastic_rod, plastic_barrier = plastic_shares(plan.bodies, result.plastic / E_0)
-    skin, skin_rod, skin_barrier = _skins(plan.bodies, result.skin / E_0, result.friction / E_0)
+    plastic_rod, plastic_barrier = plastic_shares(case, result.plastic / E_0)
+    skin, skin_rod, skin_barrier = _skins(case, result.skin / E_0, result.friction / E_0)
     return Energy(
         E_0=E_0,
         rigid=result.kinetic / E_0,
@@ -141,12 +140,12 @@ def _energy(plan: Plan, result: ModalResult) -> Energy:
         locked_rod=NO_STRESS,
         locked_barrier=NO_STRESS,
         radiated=Unknown("a local contact law sends no waves into the barrier"),
-        plate=result.plate / E_0 if plan.slots.plate else UNBENT,
-        barrier=result.barrier / E_0 if plan.scene.barrier.mass else MASSIVE,
+        plate=result.plate / E_0 if case.slots.plate else UNBENT,
+        barrier=result.barrier / E_0 if case.scene.barrier.mass else MASSIVE,
         closing=Unknown("the reduced model has no contact nodes"),
         damping=Unknown("the reduced model has no material damping"),
         contact=result.stored / E_0 if result.stored else Unknown("nothing touches at the end"),
-        gravity=result.fallen / E_0 if plan.slots.gravity else Unknown("the gravity effect is off"),
+        gravity=result.fallen / E_0 if case.slots.gravity else Unknown("the gravity effect is off"),
         residual=result.residual / E_0,
         added_mass=NOT_MESHED,
     )
@@ -191,22 +190,22 @@ ASSUMPTIONS = (
 )
 
 
-def _dent(bodies: ContactBodies) -> list[str]:
+def _dent(case: Case) -> list[str]:
     """Return which body keeps the dent; none where neither yields."""
-    if not (bodies.rod_yields or bodies.barrier_yields):
+    if not (case.contact.rod_yields or case.contact.barrier_yields):
         return []
-    where = "tip" if rod_flows(bodies) else "barrier"
+    where = "tip" if rod_flows(case) else "barrier"
     return [f"A later contact meets the dent that the first one left in the {where}."]
 
 
-def _skins(bodies: ContactBodies, sheared: float, friction: float) -> tuple[Num, Num, Num]:
+def _skins(case: Case, sheared: float, friction: float) -> tuple[Num, Num, Num]:
     """Return friction and plastic work of the surface, and that work of rod and barrier alone."""
-    if rod_flows(bodies):
-        return SOFT_ROD, SOFT_ROD, HARDER if bodies.barrier_yields else 0.0
-    return sheared, HARDER if bodies.rod_yields else 0.0, sheared - friction
+    if rod_flows(case):
+        return SOFT_ROD, SOFT_ROD, HARDER if case.contact.barrier_yields else 0.0
+    return sheared, HARDER if case.contact.rod_yields else 0.0, sheared - friction
 
 
-def beside_solid(scene: Scene) -> tuple[str, ...]:
+def beside_solid(case: Case) -> tuple[str, ...]:
     """Return how far the reduced model is from the finite elements, over the stored scenes and on a set."""
     rows = reduced_table()
     parts = [error_text(rows, key, name, unit) for key, name, unit in COMPARED]
@@ -216,14 +215,14 @@ def beside_solid(scene: Scene) -> tuple[str, ...]:
         "drawn at random on coarser meshes), as the values that half of the scenes and nine tenths of them "
         f"stay below: {', '.join(parts)}.",
     ]
-    own = next((row for row in rows if row["name"] == scene.measured), None)
+    own = next((row for row in rows if row["name"] == case.scene.measured), None)
     if own:
         values = ", ".join(
             f"{name} {own[f'{key}_modal']:.3g} beside {own[f'{key}_solid']:.3g}{unit}"
             for key, name, unit in COMPARED
             if own[f"{key}_solid"] is not None
         )
-        sentences.append(f"On {scene.measured}: {values}.")
+        sentences.append(f"On {case.scene.measured}: {values}.")
     return tuple(sentences)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
 from fem_impact.files.atomic import write_text
 from fem_impact.modal.impact import ModalResult
 from fem_impact.modal.motion import (
@@ -32,16 +32,16 @@ CONTACT = "E_contact_J"
 """What Hertz' contact and its tangential springs hold: of both bodies, so an account of its own."""
 
 
-def write_history(plan: Plan, result: ModalResult, path: Path) -> None:
+def write_history(case: Case, result: ModalResult, path: Path) -> None:
     """Write one row every few steps, with the columns of finite elements; velocities are the scene's.
 
     Accounts that the reduced model does not have are 0. The residual is what a row's energies lack of the
     first row's.
     """
-    record, barrier = result.record, plan.scene.barrier
+    record, barrier = result.record, case.scene.barrier
     zero = 0.0 * record[:, T_ROW]
     plastic = record[:, FLOW_ROW]
-    in_rod = rod_flows(plan.bodies)
+    in_rod = rod_flows(case)
     columns = dict.fromkeys(HISTORY, zero) | {
         "time_s": record[:, T_ROW],
         "force_n_N": record[:, F_N_ROW],
@@ -59,7 +59,7 @@ def write_history(plan: Plan, result: ModalResult, path: Path) -> None:
         "Omega_rad_per_s": record[:, SPIN_ROW],
         CONTACT: record[:, HELD_ROW],
     }
-    if plan.slots.plate:
+    if case.slots.plate:
         columns["W_plate_J"] = record[:, PLATE_ROW]
     total = sum((column for name, column in columns.items() if name.endswith("_J")), zero)
     columns["residual_J"] = total[:1] - total

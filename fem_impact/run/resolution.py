@@ -12,8 +12,8 @@ from fem_impact.outcome.keys import Unknown, unknown
 from fem_impact.outcome.record import Outcome
 
 if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
     from fem_impact.outcome.groups import ArmCoefficients, Energy
-    from fem_impact.physics.contact import ContactBodies
     from fem_impact.solid.run import SolidResult
 
 
@@ -29,7 +29,7 @@ LEDGER = ("E_0", "vibration_floor", "below_floor", "residual")  # valid without 
 
 def unresolved(result: SolidResult) -> str:
     """Return why the contact was not resolved and what resolves it, an empty string where it was."""
-    if result.peak_nodes < least_nodes(result.plan.bodies):
+    if result.peak_nodes < least_nodes(result.case.bodies):
         return f'{NOT_RESOLVED} {_too_narrow(result)}, or accuracy.unresolved = "report"'
     lost = result.accounts["closing"] / result.E_0
     if lost > LOST:
@@ -42,14 +42,14 @@ def unresolved(result: SolidResult) -> str:
     return ""
 
 
-def least_nodes(bodies: ContactBodies) -> int:
+def least_nodes(bodies: Bodies) -> int:
     """Return the nodes of the half model that a resolved contact presses at once: half a disc of cells."""
     return round(pi / 2 * LEAST[kind(bodies)] ** 2)
 
 
 def _too_narrow(result: SolidResult) -> str:
     """Return how narrow the contact was when the force was largest, and what resolves it."""
-    bodies = result.plan.bodies
+    bodies = result.case.bodies
     h = contact_edge(bodies)
     radius = h * sqrt(2 * max(result.peak_nodes, 1) / pi)
     return (

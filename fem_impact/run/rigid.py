@@ -9,10 +9,10 @@ from math import isinf
 from typing import TYPE_CHECKING
 
 import rigid
+from fem_impact.case.effects.heating import halves
 from fem_impact.outcome.groups import Contact, Energy, Heat, Markers, RodMotion, RunCost
 from fem_impact.outcome.keys import Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import ContactBodies, approach, arms, effective_mass, projectile, reduced
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.contact_law import restitution as thornton
 from fem_impact.physics.flash import closed_form
@@ -32,8 +32,8 @@ from fem_impact.run.common import (
 from fem_impact.run.doubts import doubts
 
 if TYPE_CHECKING:
-    from fem_impact.case.plan import Plan
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.case import Case
+    from fem_impact.physics.contact import ContactPair
 
 
 STIFF_PLATE = "Bending of the plate, which takes energy and lowers e, is left out."
@@ -53,22 +53,22 @@ ASSUMPTIONS = (
 )
 
 
-def rigid_outcome(plan: Plan) -> Outcome:
+def rigid_outcome(case: Case) -> Outcome:
     """Return the outcome by rigid impulse-momentum theory; what the theory does not give is unknown."""
-    scene, rod = plan.scene, projectile(plan.scene)
-    e, source = _normal_restitution(plan.bodies)
-    path, wall, cpu = _timed_path(plan.bodies, e)
+    rod = case.bodies.body
+    e, source = _normal_restitution(case)
+    path, wall, cpu = _timed_path(case.contact, e)
     V_n, V_t, Omega = (float(velocity) for velocity in path.motion)
-    base = _barrier_gain(scene, V_n, V_t)
-    moved = motion(plan, V_n + base[0], V_t + base[1], Omega, rod.mass, rod.k2)
-    struck = barrier_motion(scene, *base, momentum_error(scene, moved, *base))
-    energy = _energy(plan.bodies, path, moved, base)
-    origin, coefficients = provenance(plan, Unknown(UNKNOWN), WITHOUT), restitution(scene, moved, struck)
-    warnings = (*doubts(origin, moved, coefficients, energy), *plan.unknown)
+    base = _barrier_gain(case, V_n, V_t)
+    moved = motion(case, V_n + base[0], V_t + base[1], Omega, rod.mass, rod.k2)
+    struck = barrier_motion(case, *base, momentum_error(case, moved, *base))
+    energy = _energy(case, path, moved, base)
+    origin, coefficients = provenance(case, Unknown(UNKNOWN), WITHOUT), restitution(case, moved, struck)
+    warnings = (*doubts(origin, moved, coefficients, energy), *case.unknown)
     return Outcome(
         provenance=origin,
         validity=validity(
-            plan,
+            case,
             True,
             "A rigid impact is over at once.",
             V_n,
@@ -76,8 +76,8 @@ def rigid_outcome(plan: Plan) -> Outcome:
             assumptions=(
                 source,
                 *ASSUMPTIONS,
-                *([STIFF_PLATE] if plan.slots.plate else []),
-                *([MEAN_HEAT] if plan.slots.heat else []),
+                *([STIFF_PLATE] if case.slots.plate else []),
+                *([MEAN_HEAT] if case.slots.heat else []),
             ),
             warnings=warnings,
         ),
@@ -91,61 +91,59 @@ def rigid_outcome(plan: Plan) -> Outcome:
             peak_force=Unknown(UNKNOWN),
             markers=unknown(Markers, UNKNOWN),
         ),
-        heat=_heat(plan, known(energy.friction) * energy.E_0),
+        heat=_heat(case, known(energy.friction) * energy.E_0),
         cost=replace(unknown(RunCost, UNKNOWN), wall=wall, cpu=cpu),
     )
 
 
-def _barrier_gain(scene: Scene, V_n: float, V_t: float) -> tuple[float, float]:
+def _barrier_gain(case: Case, V_n: float, V_t: float) -> tuple[float, float]:
     """Return the velocity, m/s, that a free barrier gains where V_n, V_t is the rod's relative to it."""
-    mass, before = projectile(scene).mass, scene.relative
-    share = 0.0 if scene.barrier.mass is None else mass / (mass + scene.barrier.mass)
+    mass, before = case.bodies.body.mass, case.scene.relative
+    share = 0.0 if case.scene.barrier.mass is None else mass / (mass + case.scene.barrier.mass)
     return -share * (V_n - before.v_n), -share * (V_t - before.v_t)
 
 
-def _timed_path(bodies: ContactBodies, e: float) -> tuple[rigid.SlidingPath, float, float]:
+def _timed_path(pair: ContactPair, e: float) -> tuple[rigid.SlidingPath, float, float]:
     """Return the relative motion in an impact of energetic restitution e; wall and processor time, s."""
-    k2, impact, (d_c, d_d) = reduced(bodies.scene)[1], bodies.scene.relative, arms(bodies.scene)
-    moving = partial(rigid.sliding_path, impact.v_n, impact.v_t, omega=impact.omega)
-    impulse = partial(moving, e=e, f=bodies.f, d_c=d_c, d_d=d_d, k2=k2)
+    k2, (d_c, d_d) = pair.reduced[1], pair.arms
+    moving = partial(rigid.sliding_path, pair.v_n, pair.v_t, omega=pair.omega)
+    impulse = partial(moving, e=e, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
     impulse()  # a first call is slow: the second is timed
     wall, cpu = time.perf_counter(), time.process_time()
     path = impulse()
     return path, time.perf_counter() - wall, time.process_time() - cpu
 
 
-def _heat(plan: Plan, friction_work: float) -> Heat:
-    if not plan.slots.heat:
+def _heat(case: Case, friction_work: float) -> Heat:
+    if not case.slots.heat:
         return unknown(Heat, UNKNOWN)
-    return heat(plan.bodies, *closed_form(plan.bodies, friction_work), Unknown(UNKNOWN))
+    closed = closed_form(case.contact, friction_work, halves(case.bodies))
+    return heat(case, *closed, Unknown(UNKNOWN))
 
 
-def _normal_restitution(bodies: ContactBodies) -> tuple[float, str]:
+def _normal_restitution(case: Case) -> tuple[float, str]:
     """Return the energetic restitution and the sentence that names its source."""
-    scene = bodies.scene
-    if scene.restitution is not None:
-        return scene.restitution, f"Restitution {scene.restitution:g} (energetic) is the scene's own."
-    law = contact_law(bodies)
+    stated, law = case.scene.restitution, contact_law(case.contact)
+    if stated is not None:
+        return stated, f"Restitution {stated:g} (energetic) is the scene's own."
     if isinf(law.limit):
         return 1.0, "Restitution 1: no body of the scene may yield, and Hertz' contact loses nothing."
-    e = thornton(law, effective_mass(bodies), approach(scene))
+    e = thornton(law, case.contact.effective_mass, case.contact.approach)
     return e, (
         f"Restitution {e:.3f} (energetic) by Thornton's law (1997, doi:10.1115/1.2787319) with the limiting "
         f"pressure {law.limit / 1e6:.0f} MPa, 2.8 times the softer yield stress."
     )
 
 
-def _energy(
-    bodies: ContactBodies, path: rigid.SlidingPath, m: RodMotion, base: tuple[float, float]
-) -> Energy:
-    scene, before, body = bodies.scene, bodies.scene.relative, {"mass": m.mass, "k2": m.k_squared}
+def _energy(case: Case, path: rigid.SlidingPath, m: RodMotion, base: tuple[float, float]) -> Energy:
+    before, body = case.scene.relative, {"mass": m.mass, "k2": m.k_squared}
     start = rigid.kinetic_energy(before.v_n, before.v_t, before.omega, **body)
     V_n, V_t, Omega = after(m)
-    end = rigid.kinetic_energy(V_n - scene.barrier.v_n, V_t - scene.barrier.v_t, Omega, **body)
-    pushed = 0.5 * (scene.barrier.mass or 0.0) * (base[0] ** 2 + base[1] ** 2)
-    mass = reduced(scene)[0]
+    end = rigid.kinetic_energy(V_n - case.scene.barrier.v_n, V_t - case.scene.barrier.v_t, Omega, **body)
+    pushed = 0.5 * (case.scene.barrier.mass or 0.0) * (base[0] ** 2 + base[1] ** 2)
+    mass = case.contact.reduced[0]
     normal, tangential = (mass * sum(w) for w in (path.normal_work, path.tangential_work))
-    plastic_rod, plastic_barrier = plastic_shares(bodies, float(-normal / start))
+    plastic_rod, plastic_barrier = plastic_shares(case, float(-normal / start))
     return replace(
         unknown(Energy, UNKNOWN),
         E_0=float(start),
@@ -153,6 +151,6 @@ def _energy(
         friction=float(-tangential / start),
         plastic_rod=plastic_rod,
         plastic_barrier=plastic_barrier,
-        barrier=MASSIVE if scene.barrier.mass is None else float(pushed / start),
+        barrier=MASSIVE if case.scene.barrier.mass is None else float(pushed / start),
         residual=float((start + normal + tangential - end - pushed) / start),
     )

@@ -11,7 +11,7 @@ from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
 
 if TYPE_CHECKING:
-    from fem_impact.case.plan import Plan
+    from fem_impact.case.case import Case
     from fem_impact.outcome.record import Outcome
     from fem_impact.scene.types import Scene
 
@@ -44,7 +44,7 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
     RunError
         If the run cannot go on; what was computed stays in ``options.out``.
     """
-    from fem_impact.case.plan import plan
+    from fem_impact.case.case import Case
     from fem_impact.run.tests import tests_of
 
     if scene.accuracy.target is not None:
@@ -52,25 +52,25 @@ def simulate(scene: Scene, fidelity: str = "solid", options: RunOptions = RunOpt
         raise SceneError(
             "is an error, not a mesh.", key="accuracy", value=scene.accuracy.target, remedy=remedy
         )
-    planned = plan(scene, fidelity)
+    case = Case.of(scene, fidelity)
     tests_of(scene)  # own tests that cannot be read are refused before any work
     if options.out is None:
-        return _compute(planned, replace(options, resume=False))
-    return _compute_in(options.out, planned, options)
+        return _compute(case, replace(options, resume=False))
+    return _compute_in(options.out, case, options)
 
 
-def _compute_in(out: Path, plan: Plan, options: RunOptions) -> Outcome:
+def _compute_in(out: Path, case: Case, options: RunOptions) -> Outcome:
     """Compute and write the files of the run to a directory, locked meanwhile."""
     from fem_impact.files.lock import directory_lock
     from fem_impact.files.run_directory import remove_drafts, remove_scene_alone
 
     with directory_lock(out):
         remove_drafts(out)
-        resume = plan.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
+        resume = case.fidelity == "solid" and options.resume and (out / CHECKPOINT).exists()
         if not resume:
-            _begin(plan.scene, out)
+            _begin(case.scene, out)
         try:
-            outcome = _compute(plan, replace(options, resume=resume))
+            outcome = _compute(case, replace(options, resume=resume))
         except BaseException:
             remove_scene_alone(out)
             raise
@@ -90,21 +90,21 @@ def _begin(scene: Scene, out: Path) -> None:
     write_text(path, text)
 
 
-def _compute(plan: Plan, options: RunOptions) -> Outcome:
+def _compute(case: Case, options: RunOptions) -> Outcome:
     """Run the model of the plan's fidelity, whose modules are imported only here."""
-    if plan.fidelity == "rigid":
+    if case.fidelity == "rigid":
         from fem_impact.run.rigid import rigid_outcome
 
-        return rigid_outcome(plan)
-    if plan.fidelity == "modal":
+        return rigid_outcome(case)
+    if case.fidelity == "modal":
         from fem_impact.run.modal import closed
         from fem_impact.run.modal import reduce as reduce_modal
         from fem_impact.run.modal_history import write_history
 
-        result = closed(plan, options.progress, recorded=options.out is not None)
+        result = closed(case, options.progress, recorded=options.out is not None)
         if options.out is not None:
-            write_history(plan, result, options.out / "history.csv")
-        return reduce_modal(plan, result)
+            write_history(case, result, options.out / "history.csv")
+        return reduce_modal(case, result)
     from threadpoolctl import threadpool_limits
 
     from fem_impact.run.program import stamp
@@ -114,7 +114,7 @@ def _compute(plan: Plan, options: RunOptions) -> Outcome:
     # as the command does: on a busy machine further threads of the linear algebra wait for each other, and a
     # run takes four times the processor time
     with threadpool_limits(1, "blas"):
-        return reduce(solve(plan, replace(options, stamp=stamp(plan.scene))))
+        return reduce(solve(case, replace(options, stamp=stamp(case.scene))))
 
 
 def _write(outcome: Outcome, out: Path) -> None:

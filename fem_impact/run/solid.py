@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import rigid
+from fem_impact.case.effects.heating import halves
 from fem_impact.errors import RunError
 from fem_impact.outcome.groups import (
     BarrierMotion,
@@ -23,7 +24,7 @@ from fem_impact.outcome.groups import (
 from fem_impact.outcome.keys import Num, Unknown, known, unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.contact import between, fall
-from fem_impact.physics.flash import flash, halves
+from fem_impact.physics.flash import flash
 from fem_impact.run.common import (
     CUT_OFF,
     MASSIVE,
@@ -70,18 +71,18 @@ def reduce(result: SolidResult) -> Outcome:
     if not result.model.book.intervals:
         past = f"{result.time * 1e6:.3g} us, {result.steps} steps"
         raise RunError(f"There was no contact in {past}. {result.reason}")
-    plan, moved = result.plan, _motion(result)
-    fallen = (plan.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
-    error = momentum_error(plan.scene, moved, *result.base, fallen)
-    struck = barrier_motion(plan.scene, *result.base, error)
+    case, moved = result.case, _motion(result)
+    fallen = (case.slots.gravity or 0.0) * between(result.model.book.table[:, :2])
+    error = momentum_error(case, moved, *result.base, fallen)
+    struck = barrier_motion(case, *result.base, error)
     if (turn := result.turned) is not None:
-        error = angular_momentum_error(plan.scene, moved, struck, *turn)
+        error = angular_momentum_error(case, moved, struck, *turn)
         struck = replace(struck, Omega_b=turn.spin, angular_momentum_error=error)
-    coefficients, energy = restitution(plan.scene, moved, struck, fallen), _energy(result, moved)
-    origin = provenance(plan, _choices(result))
+    coefficients, energy = restitution(case, moved, struck, fallen), _energy(result, moved)
+    origin = provenance(case, _choices(result))
     reason = unresolved(result)
-    withheld = bool(reason) and plan.scene.accuracy.unresolved == "withhold"
-    failed = open_ledger(result.worst / result.E_0) or too_slow(plan, result.model.book.table[:, :2])
+    withheld = bool(reason) and case.scene.accuracy.unresolved == "withhold"
+    failed = open_ledger(result.worst / result.E_0) or too_slow(case, result.model.book.table[:, :2])
     cut = failed or ("" if result.separated else result.reason)
     doubted = [] if withheld or cut else doubts(origin, moved, coefficients, energy)
     outcome = Outcome(
@@ -101,18 +102,20 @@ def reduce(result: SolidResult) -> Outcome:
 
 def _choices(result: SolidResult) -> tuple[EffectChoice, ...]:
     """Return the choice of effects; measured shares of the run time take the place of expected ones."""
-    return tuple(choice.told(result.shares.get(choice.name, choice.share)) for choice in result.plan.choices)
+    return tuple(
+        replace(choice, share=result.shares.get(choice.name, choice.share)) for choice in result.case.choices
+    )
 
 
 def _validity(result: SolidResult, failed: str, V_n: float, doubts: list[str]) -> Validity:
-    plan, contacts = result.plan, result.model.book.table[:, :2]
+    case, contacts = result.case, result.model.book.table[:, :2]
     return validity(
-        plan,
+        case,
         result.finished and not failed,
         failed or result.reason,
         V_n,
         ONE_MESH,
-        warnings=[*_doubts(result), *doubts, *gravity_warning(plan, contacts), *plan.warnings],
+        warnings=[*_doubts(result), *doubts, *gravity_warning(case, contacts), *case.warnings],
     )
 
 
@@ -147,14 +150,14 @@ def _untimed(result: SolidResult) -> list[str]:
 
 def _motion(result: SolidResult) -> RodMotion:
     """Return velocities before and after; what gravity gave the rod in contact and after it is taken out."""
-    plan, m, alpha = result.plan, result.motion, result.plan.scene.impact.angle
-    fallen = fall(plan.slots.gravity, result.time, result.model.book.table[:, :2])
+    case, m, alpha = result.case, result.motion, result.case.scene.impact.angle
+    fallen = fall(case.slots.gravity, result.time, result.model.book.table[:, :2])
     V_n, V_t = m.V_n + fallen * np.cos(alpha), m.V_t + fallen * np.sin(alpha)
-    return motion(plan, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
+    return motion(case, V_n, V_t, m.Omega, m.mass, m.inertia / m.mass)
 
 
 def _energy(result: SolidResult, moved: RodMotion) -> Energy:
-    a, E_0, barrier = result.accounts, result.E_0, result.plan.scene.barrier
+    a, E_0, barrier = result.accounts, result.E_0, result.case.scene.barrier
     V_n, V_t, Omega = after(moved)
     seen, k2 = (V_n - barrier.v_n, V_t - barrier.v_t), moved.k_squared
     kept = float(rigid.kinetic_energy(*seen, Omega, mass=moved.mass, k2=k2))
@@ -166,7 +169,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
     locked += a["kinetic_rod"] - result.motion.kinetic if stiff else 0.0  # the nose rings a little
     held = a["strain_barrier"] + a["kinetic_barrier"] - given
     sheared = {body: part * a[f"plastic_{body}"] for body, part in result.skin_shares.items()}
-    bending = result.plan.slots.bending is not None  # then what the plate holds are its waves
+    bending = result.case.slots.bending is not None  # then what the plate holds are its waves
 
     def share(energy: float) -> float:
         return float(energy / E_0)
@@ -187,7 +190,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
         locked_rod=share(locked),
         locked_barrier=IN_WAVES if bending else share(held),
         radiated=share(a["radiated"]),
-        plate=share(a["plate"] + held * bending) if result.plan.slots.plate or bending else UNBENT,
+        plate=share(a["plate"] + held * bending) if result.case.slots.plate or bending else UNBENT,
         barrier=share(given) if barrier.mass else MASSIVE,
         closing=share(a["closing"]),
         damping=_if_on("material-damping", result, share(a["damping"])),
@@ -199,7 +202,7 @@ def _energy(result: SolidResult, moved: RodMotion) -> Energy:
 
 
 def _if_on(effect: str, result: SolidResult, share: float) -> Num:
-    return share if effect in result.plan.active else Unknown(f"the {effect} effect is off")
+    return share if effect in result.case.active else Unknown(f"the {effect} effect is off")
 
 
 def _unchecked(result: SolidResult) -> Unknown:
@@ -215,10 +218,10 @@ def _heat(result: SolidResult, E_lt: Num, vibration: Num) -> Heat:
         return unknown(Heat, "the contact-heating effect is off")
     power, patch, speed = (np.array(values) for values in (watch.power, watch.patch, watch.speed))
     flux = np.divide(power, patch, out=np.zeros_like(power), where=patch > 0)
-    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.plan.scene))
+    found = flash(np.array(watch.t), flux, np.sqrt(patch / np.pi), speed, *halves(result.case.bodies))
     peaks = (float(power.max()), float(flux.max()), float(patch.max()))
     less = vibration if isinstance(vibration, Unknown) else known(E_lt) - vibration
-    return heat(result.plan.bodies, found, *peaks, less)
+    return heat(result.case, found, *peaks, less)
 
 
 def _contact(result: SolidResult, moved: RodMotion, struck: BarrierMotion) -> Contact:

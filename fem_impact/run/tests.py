@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.physics.contact import arms, projectile
+from fem_impact.case.bodies import Bodies
 from fem_impact.scene.camera import Camera, read_camera
 from fem_impact.scene.means import Mean, holds_means, read_means
 from fem_impact.scene.types import OWN
@@ -96,7 +96,7 @@ def doubtful_tests(scene: Scene) -> list[str]:
     file = scene.measured or ""
     if not file.endswith(OWN) or holds_means(file):
         return []
-    camera, body, fall = read_camera(file), projectile(scene), scene.relative
+    camera, body, fall = read_camera(file), scene.projectile.rigid_body, scene.relative
     motion, speed, warnings = camera.motion, hypot(fall.v_n, fall.v_t), []
     for name, component in (("v_n", fall.v_n), ("v_t", fall.v_t)):
         far = np.flatnonzero(abs(motion[name] - component) > FAR * speed)
@@ -128,10 +128,10 @@ def _own(scene: Scene, changed: int) -> MeasuredTests:
     if holds_means(file):
         means = read_means(file)
         return MeanTests(_arms(scene, means.arms), means.means)
-    camera, body = read_camera(file), projectile(scene)
+    camera, body = read_camera(file), scene.projectile.rigid_body
     return SingleTests(_arms(scene, camera.arms), camera.motion, body.k2, body.mass)
 
 
 def _arms(scene: Scene, of_file: tuple[float, float] | None) -> Arms:
     """Return the arms of the file, else those of the tip, m."""
-    return Arms(*(of_file or arms(scene)))  # type: ignore[arg-type]
+    return Arms(*(of_file or Bodies(scene, ()).contact.arms))  # type: ignore[arg-type]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from itertools import pairwise
 from math import inf, isclose
 from typing import TYPE_CHECKING
@@ -24,7 +25,7 @@ from fem_impact.scene.shapes import (
 
 if TYPE_CHECKING:
     from fem_impact.arrays import Array
-    from rigid import Faceted, Turned
+    from rigid import Body, Faceted, Turned
 
 SECTIONS = 400  # over the length, at which a wall is looked at
 # Cells over the diameter; of a body whose mean wall is a THIN-th of its mean diameter or less, so many that
@@ -139,6 +140,11 @@ class ProjectileSpec:
         shape = self.shape or RodTip(self.length, self.diameter, self.tip, self.tip_radius)
         return turned_body(shape, self.bore, density)
 
+    @property
+    def rigid_body(self) -> Body:
+        """The rigid body that strikes: of a plain rod the one with the published tips, else `body`."""
+        return _rigid_body(self)
+
     def __post_init__(self) -> None:
         check_numbers(self, fields.PROJECTILE)
         if self.shape is None:
@@ -161,6 +167,15 @@ class ProjectileSpec:
                 value=f"{self.length * 1e3:.3g} mm",
                 remedy="Give a length of at least one diameter.",
             )
+
+
+@lru_cache(maxsize=64)
+def _rigid_body(rod: ProjectileSpec) -> Body:
+    from rigid import Projectile
+
+    if rod.is_rod:
+        return Projectile(rod.length, rod.diameter, rod.tip, rod.tip_radius, rod.material.rho)
+    return rod.body()
 
 
 def _check_tip_name(tip: str) -> None:

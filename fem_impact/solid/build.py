@@ -1,4 +1,4 @@
-"""Build the model of a plan: meshes, operators, masses, items, stable steps.
+"""Build the model of a case: meshes, operators, masses, items, stable steps.
 
 Modules that only some effects need are imported where they are used.
 """
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from fem_impact.arrays import Array, Bools, Ints
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
 from fem_impact.fem.body import (
     Elastic,
     MeshedBodies,
@@ -23,7 +23,6 @@ from fem_impact.fem.geometry import POINTS
 from fem_impact.fem.layout import DofLayout
 from fem_impact.fem.sparse import Hanging, NodeProduct
 from fem_impact.fem.stable import stable_step
-from fem_impact.physics.contact import approach, projectile, sliding
 from fem_impact.physics.hardening import Hardening
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.patch import STEEP, make_patch
@@ -94,10 +93,10 @@ def surface_contact(
 
 
 class Builder:
-    """The parts of a plan's model; each is made at its first use and cached."""
+    """The parts of a case's model; each is made at its first use and cached."""
 
-    def __init__(self, plan: Plan, gap: float) -> None:
-        self.scene, self.spec, self.meshed = plan.scene, plan.slots, MeshedBodies(plan)
+    def __init__(self, case: Case, gap: float) -> None:
+        self.case, self.scene, self.spec, self.meshed = case, case.scene, case.slots, MeshedBodies(case)
         self.meshed.move_rod(*self.way_to(gap))
 
     def way_to(self, gap: float) -> tuple[float, float]:
@@ -106,7 +105,7 @@ class Builder:
         The shift along t is limited to one cell, for rods that come down almost tangentially.
         """
         height, h = self.contact.clearance(self.meshed.x) - gap, self.meshed.geometry.tip_size
-        slid = sliding(self.scene) * height / approach(self.scene)
+        slid = self.case.contact.sliding * height / self.case.contact.approach
         return min(max(slid, -h), h), -height
 
     @cached_property
@@ -234,8 +233,8 @@ class Builder:
 
         under = -body.points[:, 2]
         if body.name == "rod":
-            rod = projectile(self.scene)
-            assert not isinstance(rod, Faceted), "the plan refuses a hardened layer on a mesh of its own"
+            rod = self.case.bodies.body
+            assert not isinstance(rod, Faceted), "the case refuses a hardened layer on a mesh of its own"
             outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
             under = below_outline(self.meshed.geometry.rod.mesh.points, outline)
         return strengths(body.mesh.cells[body.yields & here], under, self.spec.skin)
@@ -327,7 +326,7 @@ class Builder:
         )
 
 
-def build(plan: Plan, gap: float = START_GAP) -> Model:
+def build(case: Case, gap: float = START_GAP) -> Model:
     """Return the model of a scene; parts whose slot is empty are never made.
 
     ``gap`` is the least height of the rod's skin over the barrier's at time 0, m; below 0 bodies overlap.
@@ -337,4 +336,4 @@ def build(plan: Plan, gap: float = START_GAP) -> Model:
     SceneError
         If the tip is so coarse that there is no fine zone to touch or to yield in.
     """
-    return Builder(plan, gap).model()
+    return Builder(case, gap).model()

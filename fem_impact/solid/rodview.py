@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.arrays import Array, Ints
+from fem_impact.case.bodies import Bodies
 from fem_impact.fem.eigen import DEFAULT_COUNT, RodModes, no_modes, rod_modes
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.flight import FreeVibration, RigidMotion, flight, rigid_motion
 from fem_impact.fem.hexmodes import reference_gradients
 from fem_impact.scene.material import Material
-from fem_impact.scene.types import Scene
 from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 
@@ -108,11 +108,11 @@ def centre_gradients(points: Array, cells: Ints) -> Array:
     return np.asarray(np.einsum("ai,mji->maj", centre, np.linalg.inv(J)))
 
 
-def cell_shear(scene: Scene, z: Array, depth: Array) -> Array:
+def cell_shear(bodies: Bodies, z: Array, depth: Array) -> Array:
     """Return the shear moduli, Pa, of the rod's cells at ``z`` (k,), m, then the barrier's at ``depth``."""
-    rod = scene.projectile
+    rod = bodies.rod
     metals = [part.material for part in rod.segments] or [rod.material]
-    strata = scene.barrier.strata
+    strata = bodies.barrier.strata
     return np.concatenate(
         [
             _shear([part.to for part in rod.segments[:-1]], metals, z),
@@ -158,7 +158,7 @@ class FieldSampler:
     gradient: Array
 
     @classmethod
-    def of(cls, model: Model, view: RodState, scene: Scene) -> FieldSampler:
+    def of(cls, model: Model, view: RodState, bodies: Bodies) -> FieldSampler:
         """Prepare."""
         g = model.geometry
         points, cells, places = g.rod_points, g.rod.mesh.cells, model.layout.rod
@@ -169,7 +169,7 @@ class FieldSampler:
             points = np.concatenate([points, g.barrier.points])
             places = np.concatenate([places, model.layout.barrier])
         body = (np.arange(len(cells)) >= len(g.rod.mesh.cells)).astype(np.int8)
-        shear = cell_shear(scene, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), depth)
+        shear = cell_shear(bodies, g.rod.mesh.points[g.rod.mesh.cells, 2].mean(axis=1), depth)
         return cls(model, view, shear, points, cells, body, places, centre_gradients(points, cells))
 
     def sample(self, state: State) -> tuple[dict[str, Array], dict[str, Array]]:

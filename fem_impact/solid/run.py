@@ -1,4 +1,4 @@
-"""One run of the explicit model, from its plan to the state after the last separation."""
+"""One run of the explicit model, from its case to the state after the last separation."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.plan import Plan
+from fem_impact.case.case import Case
 from fem_impact.fem.flight import FreeVibration, RigidMotion
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.run_directory import CHECKPOINT
 from fem_impact.options import RunOptions
-from fem_impact.physics.contact import approach, effective_mass
 from fem_impact.progress import Progress, compiling, setting_up
 from fem_impact.solid.build import build
 from fem_impact.solid.checkpoint import Checkpoint
@@ -69,7 +68,7 @@ class SolidResult:
 
     Attributes
     ----------
-    plan : what was run
+    case : what was run
     time, steps : s and number at the end of the march
     accounts, E_0, worst : the ledger there, J; worst is the largest residual of the run
     motion, flight : rigid and vibrating part of the motion after the last separation
@@ -84,7 +83,7 @@ class SolidResult:
     shares : share of the run time of the effects that have items of their own; None where it is not resolved
     """
 
-    plan: Plan
+    case: Case
     model: Model
     view: RodState
     time: float
@@ -110,14 +109,14 @@ class SolidResult:
     shares: dict[str, float | None] = field(default_factory=dict)
 
 
-def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = None) -> SolidResult:
-    """Run a scene as planned; histories, fields and checkpoints go to ``options.out`` while it runs.
+def solve(case: Case, options: RunOptions = RunOptions(), model: Model | None = None) -> SolidResult:
+    """Run a case; histories, fields and checkpoints go to ``options.out`` while it runs.
 
     Parameters
     ----------
-    plan : scene and choices
+    case : of the scene
     options : output directory, progress, checkpoints
-    model : a prepared model of the plan (default: built here)
+    model : a prepared model of the case (default: built here)
 
     Raises
     ------
@@ -128,16 +127,16 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     """
     whole = Stopwatch()
     if options.progress is not None:
-        size = plan.size
+        size = case.size
         options.progress(
-            setting_up(size.steps * size.step, plan.scene.id, None if options.resume else size.time)
+            setting_up(size.steps * size.step, case.scene.id, None if options.resume else size.time)
         )
-    model, out = model or build(plan), options.out
+    model, out = model or build(case), options.out
     view, state = RodState.of(model), model.initial_state()
-    watchers = Watchers.of(plan, model, view, out, options.resume)
+    watchers = Watchers.of(case, model, view, out, options.resume)
     observers: list[Observer] = [*watchers.all]
     if options.progress is not None:
-        observers.append(_progress_observer(plan, model, watchers, options.progress))
+        observers.append(_progress_observer(case, model, watchers, options.progress))
     evaluate(model, model.initial_state())  # compiles the kernels before the time loop
     clock = Stopwatch()
     if out is not None:
@@ -153,21 +152,21 @@ def solve(plan: Plan, options: RunOptions = RunOptions(), model: Model | None = 
     check = view.vibration(state, model) if free else None
     wall, cpu = (long - part for long, part in zip(whole.read(), here, strict=True))
     cost = LoopCost(*loop, wall, cpu, _peak_memory(), watchers.guard.smallest)
-    result = _result(plan, model, view, state, watchers, check, cost)
+    result = _result(case, model, view, state, watchers, check, cost)
     for strain in watchers.strain if free else []:
         strain.write(strain.ringing(view, state, result.flight))
     return replace(result, shares=run_time_shares(model, state, cost.cpu / max(state.step, 1), watchers.heat))
 
 
 def _progress_observer(
-    plan: Plan, model: Model, watchers: Watchers, show: Callable[[Progress], None]
+    case: Case, model: Model, watchers: Watchers, show: Callable[[Progress], None]
 ) -> ProgressObserver:
     """Return the observer that reports progress; report a first compilation at once."""
-    end = plan.size.steps * plan.size.step
+    end = case.size.steps * case.size.step
     if not compiled_before():
         show(compiling(end, 20))
-    stopping = effective_mass(plan.bodies) * approach(plan.scene)
-    return ProgressObserver(show, watchers.watch, model, end, stopping, plan.scene.id)
+    stopping = case.contact.effective_mass * case.contact.approach
+    return ProgressObserver(show, watchers.watch, model, end, stopping, case.scene.id)
 
 
 def _checkpoint(
@@ -183,7 +182,7 @@ def _checkpoint(
 
 
 def _result(
-    plan: Plan,
+    case: Case,
     model: Model,
     view: RodState,
     state: State,
@@ -194,7 +193,7 @@ def _result(
     """Return the result at ``state``, without the shares of the run time."""
     ledger, stop = watchers.watch.ledger, watchers.stop
     return SolidResult(
-        plan=plan,
+        case=case,
         model=model,
         view=view,
         time=state.time,
@@ -204,8 +203,8 @@ def _result(
         worst=ledger.worst,
         motion=view.rigid(state),
         flight=view.flight(state, model),
-        base=_base(plan, model, state),
-        turned=_turned(plan, model, state) if model.ground.turns else None,
+        base=_base(case, model, state),
+        turned=_turned(case, model, state) if model.ground.turns else None,
         skin_shares=skin_shares(model),
         peak_force=watchers.peak.largest,
         peak_nodes=watchers.peak.nodes,
@@ -220,9 +219,9 @@ def _result(
     )
 
 
-def _base(plan: Plan, model: Model, state: State) -> tuple[float, float]:
+def _base(case: Case, model: Model, state: State) -> tuple[float, float]:
     """Return the velocity of a free barrier's mass centre along n and t, m/s; 0 for any other barrier."""
-    whole, block = plan.scene.barrier.mass, model.layout.barrier_slice
+    whole, block = case.scene.barrier.mass, model.layout.barrier_slice
     if whole is None:
         return 0.0, 0.0
     momentum = (model.mass[block] * state.v[block]).reshape(-1, 3).sum(axis=0)
@@ -230,9 +229,9 @@ def _base(plan: Plan, model: Model, state: State) -> tuple[float, float]:
     return 2 * float(momentum[2]) / whole, 2 * float(momentum[0]) / whole
 
 
-def _turned(plan: Plan, model: Model, state: State) -> BarrierTurn:
+def _turned(case: Case, model: Model, state: State) -> BarrierTurn:
     """Return how a free barrier turns at ``state``; block and footing have its angular momentum."""
-    start, whole, inertia = model.start, plan.scene.barrier.mass or 1.0, plan.scene.barrier.inertia or 1.0
+    start, whole, inertia = model.start, case.scene.barrier.mass or 1.0, case.scene.barrier.inertia or 1.0
     block = np.arange(model.layout.barrier_slice.start, model.layout.barrier_slice.stop).reshape(-1, 3)
     rod = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
 

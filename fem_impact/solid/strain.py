@@ -17,7 +17,7 @@ from fem_impact.solid.rodview import RodState
 from fem_impact.solid.state import State
 
 if TYPE_CHECKING:
-    from fem_impact.case.plan import Plan
+    from fem_impact.case.case import Case
 
 HELD = 0.999  # share of the vibration energy in the modes that are stored for the free flight
 
@@ -97,11 +97,11 @@ class StrainWatch:
     rows: list[Array] = field(default_factory=list)
 
     @classmethod
-    def of(cls, plan: Plan, model: Model, path: Path) -> Self:
+    def of(cls, case: Case, model: Model, path: Path) -> Self:
         """Prepare; a wave of speed sqrt(E/rho) crosses one slice in ``save.strain_samples`` intervals."""
-        rod, sections = plan.scene.projectile, Sections.of(model)
-        speeds = bar_speed(plan.scene), bending_group_speed(plan.scene)
-        interval = sections.pitch / speeds[0] / plan.scene.save.strain_samples
+        rod, sections = case.scene.projectile, Sections.of(model)
+        speeds = bar_speed(rod.material), bending_group_speed(rod)
+        interval = sections.pitch / speeds[0] / case.scene.save.strain_samples
         return cls(
             model, sections, path, rod.length, speeds, interval, max(1, int(interval / model.step / 8))
         )

@@ -13,8 +13,7 @@ from fem_impact.arrays import Array
 from fem_impact.fem.geometry import tail_corners
 from fem_impact.fem.kernels import COMPILING
 from fem_impact.files.fields_write import FieldWriter
-from fem_impact.physics.beam import horizon, stretching_period
-from fem_impact.physics.contact import contact_estimate
+from fem_impact.physics.beam import horizon
 from fem_impact.solid.checkpoint import Moving
 from fem_impact.solid.doubts import SkinWatch
 from fem_impact.solid.march import Observer
@@ -28,8 +27,8 @@ from fem_impact.solid.strain import StrainWatch
 from fem_impact.tables.history import HISTORY, HistoryWriter
 
 if TYPE_CHECKING:
-    from fem_impact.case.plan import Plan
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.case.case import Case
     from fem_impact.solid.heatwatch import HeatWatch
 
 
@@ -96,9 +95,9 @@ class Watchers:
     stop: Separation
 
     @classmethod
-    def of(cls, plan: Plan, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
+    def of(cls, case: Case, model: Model, view: RodState, out: Path | None, go_on: bool) -> Watchers:
         """Make the observers; with ``go_on`` they append to the files of the run that is resumed."""
-        scene = plan.scene
+        scene = case.scene
         watch = Watch(model.ledger(), scene.save.history_every)
         history, frames, strain = [], [], []
         if out is not None:
@@ -106,16 +105,18 @@ class Watchers:
             writer = HistoryWriter(out / "history.csv", (*HISTORY, *own), go_on=go_on)
             history = [History(model, view, watch, writer, scene.save.history_every)]
         if out is not None and scene.save.frames:
-            frames = [_frames(plan, model, view, out, go_on)]
+            frames = [_frames(case, model, view, out, go_on)]
         if out is not None and scene.save.strain_samples and _has_slices(model):
-            strain = [StrainWatch.of(plan, model, out / "waves.h5")]
-        stop = Separation(model, view, plan.max_time, horizon(scene), _untouchable(scene, model))
+            strain = [StrainWatch.of(case, model, out / "waves.h5")]
+        stop = Separation(
+            model, view, case.max_time, horizon(case.scene.projectile), _untouchable(case.bodies, model)
+        )
         skin, peak, added = (
-            SkinWatch(model, plan.slots.bending is not None),
+            SkinWatch(model, case.slots.bending is not None),
             PeakForce(model.book),
             AddedMass(model.added_mass),
         )
-        heat = _heat_watch(model) if plan.slots.heat else None
+        heat = _heat_watch(model) if case.slots.heat else None
         return cls(StepGuard(model), watch, history, frames, strain, skin, peak, added, heat, stop)
 
     @property
@@ -143,10 +144,10 @@ class Watchers:
         return {f"{i}-{type(part).__name__}": part for i, part in enumerate(parts)}
 
 
-def _untouchable(scene: Scene, model: Model) -> Array:
+def _untouchable(bodies: Bodies, model: Model) -> Array:
     """Return the corners (k, 3) of the rod's tail, m, where the model lets only its tip touch, else none."""
     whole = model.geometry.barrier is None and model.rod_stiffness is not None
-    return np.zeros((0, 3)) if whole else tail_corners(scene)
+    return np.zeros((0, 3)) if whole else tail_corners(bodies)
 
 
 def _has_slices(model: Model) -> bool:
@@ -160,21 +161,20 @@ def _heat_watch(model: Model) -> HeatWatch:
     return HeatWatch(model)
 
 
-def _frames(plan: Plan, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
-    scene = plan.scene
-    fields = FieldSampler.of(model, view, scene)
+def _frames(case: Case, model: Model, view: RodState, out: Path, go_on: bool) -> Frames:
+    fields = FieldSampler.of(model, view, case.bodies)
     body = {"body": fields.body}
     writer = FieldWriter(out / "fields.vtkhdf", fields.points, fields.cells, body, go_on)
-    return Frames(fields, writer, *_schedule(plan))
+    return Frames(fields, writer, *_schedule(case))
 
 
-def _schedule(plan: Plan) -> tuple[float, float, float]:
+def _schedule(case: Case) -> tuple[float, float, float]:
     """Return the intervals, s, between early and later frames, and the time, s, that parts them.
 
     A stretching wave runs along the rod and back in the first part.
     """
-    frames, contact = plan.scene.save.frames, float(contact_estimate(plan.bodies).duration)
-    early = TRANSITS / 2 * stretching_period(plan.scene)
+    frames, contact = case.scene.save.frames, float(case.estimate.duration)
+    early = TRANSITS / 2 * case.bodies.stretching_period
     later = FRAMES_SPAN * contact - early
     if later * EARLY < early * (1 - EARLY):
         return (early + max(later, 0.0)) / frames, np.inf, np.inf

@@ -12,7 +12,7 @@ from outcome_maker import altered, outcome
 import fem_impact
 from fem_impact.answers.sweep import MOST_ROWS, publish_sweep, sweep
 from fem_impact.answers.sweep_results import COLUMNS, SHORT, Results, SweepRow
-from fem_impact.answers.vary import Case, cases, in_unit, read_vary
+from fem_impact.answers.vary import Variation, cases, in_unit, read_vary
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.files.run_directory import earlier_runs
 from fem_impact.jobs import run as jobs_run
@@ -174,7 +174,7 @@ def made_up(tips, **changed):
     """Results of cases that differ in the size of their cells."""
     rows = [
         SweepRow(
-            Case(f"case-{at}", {"projectile.diameter": f"{at} mm"}, None),
+            Variation(f"case-{at}", {"projectile.diameter": f"{at} mm"}, None),
             outcome(tip_size_m=tip, **changed),
             "",
         )

@@ -28,7 +28,6 @@ from fem_impact.evidence.problems.square_bars import NodeSprings, node_areas
 from fem_impact.evidence.problems.watch import Until
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.fem.flight import flight
-from fem_impact.physics.contact import projectile
 from fem_impact.solid.march import evaluate, march
 
 STICK, GAP = 0.1, 1e-7
@@ -36,7 +35,7 @@ STICK, GAP = 0.1, 1e-7
 
 def models(p, stiffness):
     """Return the rod over a rigid plane with hard contact, with springs, and which nodes may touch."""
-    rod = projectile(rod_scene(p, ("vibration", "barrier-rigid")))
+    rod = rod_scene(p, ("vibration", "barrier-rigid")).projectile.rigid_body
     mesh = meshes.rod(rod.meridian(), p["length"], int(p["across"]), slice_length=2.5e-3).mesh
     points = placed(mesh.points, p["angle"], GAP)
     velocity = np.tile([-p["v_t"], 0.0, -p["v_n"]], (len(points), 1))

@@ -18,8 +18,8 @@ from pathlib import Path
 
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import BARRIERS
-from fem_impact.case.plan import plan
 from fem_impact.figures.style import PALETTE, QUIET, figure
 from fem_impact.files.atomic import write_text
 from fem_impact.scene.shipped import load
@@ -58,7 +58,7 @@ class Rung:
 
     def __init__(self, scene: Scene, effects: Sequence[str]) -> None:
         stated = replace(scene, measured=None, effects=tuple(effects))
-        planned = plan(stated)
+        planned = Case.of(stated)
         self.model = build(planned)
         self.state, self.best = self.model.initial_state(), float("inf")
         while self.state.time < UNTIL:

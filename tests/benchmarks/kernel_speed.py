@@ -19,7 +19,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 import meshes
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.evidence.problems.bodies import FreeBody, body_model
 from fem_impact.fem.elements import lame_constants
 from fem_impact.fem.sparse import assemble, tie_operator
@@ -142,7 +142,7 @@ def scene_rows(model: Model, state: State) -> list[Row]:
 def main(name: str = "t5b") -> None:
     """Print the table."""
     scene = load(name)
-    model = build(plan(scene))
+    model = build(Case.of(scene))
     state = model.initial_state()
     while state.time < IN_CONTACT:
         evaluate(model, state)

@@ -36,10 +36,10 @@ def half_box(folder, nx, ny, nz):
 
 def measure(folder, sizes):
     """Print the memory of one box, measured and planned, MB."""
-    from fem_impact.case.plan import plan
+    from fem_impact.case.case import Case
     from fem_impact.fem.body import MeshedBodies
 
-    planned = plan(half_box(folder, *sizes))
+    planned = Case.of(half_box(folder, *sizes))
     MeshedBodies(planned).rod_modes()
     status = Path("/proc/self/status").read_text()
     peak = float(status.partition("VmHWM:")[2].split()[0]) * 1024

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from fem_impact.case.case import Case
 from fem_impact.case.cells import (
     ADVISED,
     LEAST,
@@ -16,14 +17,13 @@ from fem_impact.case.cells import (
     size_for,
     widest_tip_size,
 )
-from fem_impact.case.plan import plan
 from fem_impact.scene.shipped import load, replace_all
 
 
 def bodies(**changes):
     """Return the bodies of t5b, whose contact yields, with other values."""
     keys = {"tip": "accuracy.tip_size", "v_n": "impact.v_n", "diameter": "projectile.diameter"}
-    return plan(replace_all(load("t5b"), {keys[k]: value for k, value in changes.items()}), "modal").bodies
+    return Case.of(replace_all(load("t5b"), {keys[k]: value for k, value in changes.items()}), "modal").bodies
 
 
 def test_cells_follow_from_the_mesh_as_it_is_split():
@@ -54,7 +54,7 @@ def test_an_element_wider_than_the_contact_is_doubted_before_the_run():
 
 def test_elastic_bodies_need_fewer_cells():
     scene = replace(load("t5b"), effects=("vibration", "friction", "barrier-elastic"))
-    elastic = plan(scene, "modal").bodies
+    elastic = Case.of(scene, "modal").bodies
     assert size_for(elastic, ADVISED["elastic"]) > size_for(elastic, ADVISED["yielding"])
     assert 0.148e-3 < size_for(elastic, ADVISED["elastic"]) < 0.296e-3  # cells of .148 mm resolve it
     assert "accuracy.tip_size = 0.15 mm or less" in advice(elastic)

@@ -7,8 +7,8 @@ from time import process_time
 
 import pytest
 
+from fem_impact.case.case import Case
 from fem_impact.case.mesh import _require_mesh
-from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.run.simulate import simulate
@@ -35,8 +35,8 @@ def scene(projectile, angle=30, **accuracy):
 
 
 def mesh(stated):
-    planned = plan(stated)
-    return build_geometry(stated, planned.zones, 0.0, meshed_barrier=False).rod.mesh
+    planned = Case.of(stated)
+    return build_geometry(planned.bodies, planned.zones, 0.0, meshed_barrier=False).rod.mesh
 
 
 @pytest.mark.parametrize(("angle", "across"), [(0, 8), (30, 6), (30, 8), (30, 10), (60, 8), (60, 10)])
@@ -53,7 +53,7 @@ def test_a_bore_that_begins_in_a_rounding_is_refused_with_what_works(fault):
     _require_mesh.cache_clear()
     begun = process_time()
     with pytest.raises(SceneError, match=rf'bore\[{number}\] = "z = {z} mm": cannot be meshed') as refused:
-        plan(scene(body))
+        Case.of(scene(body))
     assert process_time() - begun < 3.0  # .02 to .2 s on a free core
     found = re.search(r"Give z = (\S+ mm) there", refused.value.remedy)
     points = [list(row) for row in body["bore"]]
@@ -64,13 +64,13 @@ def test_a_bore_that_begins_in_a_rounding_is_refused_with_what_works(fault):
 def test_a_wall_that_is_thin_beside_its_cells_is_refused_with_cells_that_work():
     thin = {**TUBE, "bore": [["30 mm", "7.4 mm"], ["150 mm", "7.4 mm"]]}
     with pytest.raises(SceneError, match=r"projectile: cannot be meshed: a wall of 0\.075") as refused:
-        plan(scene(thin, across=6))
+        Case.of(scene(thin, across=6))
     across = int(re.search(r"It can be with accuracy.across = (\d+)\.", refused.value.remedy)[1])
     assert len(mesh(scene(thin, across=across)).cells) > 100
 
 
 def test_the_reduced_model_needs_no_mesh():
-    assert plan(scene(CAPPED), "modal").fidelity == "modal"
+    assert Case.of(scene(CAPPED), "modal").fidelity == "modal"
 
 
 POINTED = {"material": "brass", "profile": [["0 mm", "0 mm"], ["20 mm", "6 mm"], ["100 mm", "6 mm"]]}

@@ -4,11 +4,9 @@ import re
 
 import pytest
 
-from fem_impact.case.choose import resolved
-from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.case import Case
 from fem_impact.case.layers import block_of
 from fem_impact.case.limits import not_reduced
-from fem_impact.case.plan import plan
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import SceneError
 from fem_impact.physics.plate import least_span
@@ -26,40 +24,40 @@ def about(sentences, words):
 
 def test_a_plate_bends_by_its_mesh_where_the_half_space_is_told_to_be_wrong():
     """The mesh stands in place of the impedance, never beside it."""
-    thin, thick = plan(stated("5 mm")), plan(stated("12 mm"))
+    thin, thick = Case.of(stated("5 mm")), Case.of(stated("12 mm"))
     assert (half_space_error(thin.bodies) > 0.02, half_space_error(thick.bodies) > 0.02) == (True, False)
     assert thin.slots.plate is None and thin.slots.bending > 0 and thin.zones.edges > 0
     assert thick.slots.plate > 0 and thick.slots.bending is None and thick.zones.edges == 0
-    assert about(thin.validity, "its impedance is not added") and not about(thin.validity, "may be off")
-    assert not about(thick.validity, "thickness")
+    assert about(thin.outside, "its impedance is not added") and not about(thin.outside, "may be off")
+    assert not about(thick.outside, "thickness")
 
 
 def test_the_reduced_model_keeps_the_impedance_and_tells_its_error():
-    planned = plan(stated("5 mm"), "modal")
+    planned = Case.of(stated("5 mm"), "modal")
     assert planned.slots.plate > 0 and planned.slots.bending is None
-    assert about(planned.validity, "e may be off by some")
+    assert about(planned.outside, "e may be off by some")
 
 
 @pytest.mark.parametrize("changes", [{"barrier.support": "backed"}, {"effects": ["auto", "-plate-bending"]}])
 def test_a_plate_on_a_base_and_one_that_is_told_not_to_bend_are_not_meshed_through(changes):
-    planned = plan(stated("5 mm", **changes))
+    planned = Case.of(stated("5 mm", **changes))
     assert planned.slots.bending is None and planned.zones.edges == 0
 
 
 def test_its_edges_are_so_far_that_the_fastest_waves_do_not_come_back():
-    planned = plan(stated("5 mm"))
-    low, high = block_of(planned.scene, planned.zones)
-    assert planned.zones.edges == pytest.approx(0.5 * least_span(planned.bodies), rel=1e-12)
+    planned = Case.of(stated("5 mm"))
+    low, high = block_of(planned.bodies, planned.zones)
+    assert planned.zones.edges == pytest.approx(0.5 * least_span(planned.contact), rel=1e-12)
     assert min(-low[0], high[0], high[1]) > planned.zones.edges
 
 
 def test_a_contact_wider_than_the_plate_is_one_for_finite_elements():
     scene = stated("3 mm")
-    assert plan(scene).slots.bending > 0
+    assert Case.of(scene).slots.bending > 0
     with pytest.raises(SceneError, match=r"less than the width of the contact.*or use --fidelity solid"):
-        plan(scene, "modal")
-    assert not_reduced(scene) == "a plate thinner than its contact is wide"
-    assert not_reduced(stated("5 mm")) == ""
+        Case.of(scene, "modal")
+    assert not_reduced(Case(scene).bodies) == "a plate thinner than its contact is wide"
+    assert not_reduced(Case(stated("5 mm")).bodies) == ""
 
 
 FINE = {"accuracy.across": 40, "accuracy.tip_size": "0.3 mm"}
@@ -68,10 +66,10 @@ FINE = {"accuracy.across": 40, "accuracy.tip_size": "0.3 mm"}
 def remedied(scene, words):
     """Return the plan with the number of cells across that the refusal names."""
     with pytest.raises(SceneError, match=words) as refused:
-        plan(scene)
+        Case.of(scene)
     across = int(re.search(r"accuracy.across = (\d+) or", str(refused.value))[1])
     assert abs(across - scene.across) > 1
-    return plan(replace_all(scene, {"accuracy.across": across}))
+    return Case.of(replace_all(scene, {"accuracy.across": across}))
 
 
 def test_rows_too_flat_are_refused_with_the_cells_that_take_it():
@@ -86,11 +84,11 @@ def test_too_many_cells_are_refused_with_the_finest_possibility():
 
 def test_no_cells_across_are_named_where_none_does():
     with pytest.raises(SceneError, match=r"No accuracy\.across does: give a thicker plate"):
-        plan(stated("0.3 mm", **{"accuracy.across": 64, "accuracy.tip_size": "0.1 mm"}))
+        Case.of(stated("0.3 mm", **{"accuracy.across": 64, "accuracy.tip_size": "0.1 mm"}))
 
 
 def test_the_expected_elements_are_those_of_the_mesh():
-    planned = plan(stated("5 mm", **{"accuracy.across": 6}))
-    low, high = block_of(planned.scene, planned.zones)
+    planned = Case.of(stated("5 mm", **{"accuracy.across": 6}))
+    low, high = block_of(planned.bodies, planned.zones)
     assert planned.size.barrier > ((high - low) / planned.zones.base).prod() > 3000
-    assert bodies_of(resolved(planned.scene)) == planned.bodies
+    assert Case(planned.scene).active == planned.active

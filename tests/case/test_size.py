@@ -7,8 +7,8 @@ from benchmarks.own_mesh_memory import half_box
 
 from fem_impact.answers.refine.levels import Mesh, placed
 from fem_impact.case import size as sizes
+from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
-from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.fem.geometry import build_geometry
 from fem_impact.scene.read import read_dict
@@ -43,9 +43,9 @@ def test_elements_of_shipped_scenes(name):
 
 
 def check_elements(scene):
-    planned = plan(scene)
+    planned = Case.of(scene)
     size, slots = planned.size, planned.slots
-    built = build_geometry(scene, planned.zones, 2e-6, slots.meshed_barrier, slots.vibrating)
+    built = build_geometry(planned.bodies, planned.zones, 2e-6, slots.meshed_barrier, slots.vibrating)
     rod, barrier = len(built.rod.mesh.cells), len(built.barrier.cells) if built.barrier else 0
     assert off(size.rod + size.barrier, rod + barrier) < 1.25
     assert off(size.rod, rod) < 1.5 and (size.barrier == 0) == (barrier == 0)
@@ -64,7 +64,7 @@ def stored_runs():
 @pytest.mark.parametrize("data, setting", list(stored_runs()))
 def test_memory_and_time_of_the_stored_runs(data, setting):
     places = placed(read_dict(data), Mesh(**setting["meshes"][0]))
-    size = plan(places[0]).size
+    size = Case.of(places[0]).size
     steps = setting["element_steps"] / len(places) / (size.rod + size.barrier)
     assert off(size.steps, steps) < 2.0
     assert off(size.time, setting["cpu_s"] / len(places)) < 2.0
@@ -88,13 +88,13 @@ def test_what_needs_more_memory_than_there_is_is_refused_with_a_size_that_fits(c
     monkeypatch.setattr(sizes, "machine_memory", lambda: 16e9)
     scene = replace_all(load("t5b"), changes)
     with pytest.raises(SceneError, match=r"elements, which take some .* GB of memory") as refused:
-        plan(scene)
+        Case.of(scene)
     fits = refused.value.remedy.removeprefix("Give at least ").removesuffix(".")
-    assert plan(replace_all(scene, {"accuracy.tip_size": fits})).size.memory <= 16e9
+    assert Case.of(replace_all(scene, {"accuracy.tip_size": fits})).size.memory <= 16e9
     finer = f"{float(fits.removesuffix(' mm')) / 2} mm"
     with pytest.raises(SceneError, match="GB of memory"):
-        plan(replace_all(scene, {"accuracy.tip_size": finer}))
-    plan(scene, "modal")  # needs no block
+        Case.of(replace_all(scene, {"accuracy.tip_size": finer}))
+    Case.of(scene, "modal")  # needs no block
 
 
 # largest resident memory, MB, of a process that computed the modes of a half box of cells of 1 mm
@@ -109,7 +109,7 @@ OWN = [
 
 @pytest.mark.parametrize(("cells", "measured"), OWN)
 def test_memory_of_the_modes_of_a_users_mesh(cells, measured, tmp_path):
-    planned = plan(half_box(tmp_path, *cells))
+    planned = Case.of(half_box(tmp_path, *cells))
     assert off(planned.size.memory, measured * 1e6) < 1.2
 
 
@@ -118,33 +118,33 @@ def test_a_users_mesh_that_does_not_fit_is_refused_before_any_work(tmp_path, mon
     scene = half_box(tmp_path, 32, 16, 32)
     words = r"projectile\.mesh = .*GB of memory.*a mesh of larger cells, or let it not vibrate"
     with pytest.raises(SceneError, match=words):
-        plan(scene)
+        Case.of(scene)
     stiff = replace_all(scene, {"effects": ["auto", "-vibration"], "accuracy.tip_size": "0.6 mm"})
-    assert plan(stiff).size.memory < 8e8
-    assert plan(half_box(tmp_path, 24, 12, 24)).size.memory < 8e8
+    assert Case.of(stiff).size.memory < 8e8
+    assert Case.of(half_box(tmp_path, 24, 12, 24)).size.memory < 8e8
 
 
 def test_a_users_mesh_whose_modes_the_solver_cannot_number_is_refused(tmp_path, monkeypatch):
     """However much memory there is: the lower factor of 24 x 12 x 24 cells has 14 782 579 entries."""
     scene = half_box(tmp_path, 24, 12, 24)
     monkeypatch.setattr(sizes, "MOST_ENTRIES", 1.1 * 14_782_579)
-    assert plan(scene).size.rod == 6912
+    assert Case.of(scene).size.rod == 6912
     monkeypatch.setattr(sizes, "MOST_ENTRIES", 0.9 * 14_782_579)
     with pytest.raises(
         SceneError, match=r"projectile\.mesh = .*needs? a factor of some .* entries.*larger cells"
     ):
-        plan(scene)
+        Case.of(scene)
     still = {"effects": ["auto", "-vibration"], "accuracy.tip_size": "0.6 mm"}
-    assert not plan(replace_all(scene, still)).slots.vibrating
+    assert not Case.of(replace_all(scene, still)).slots.vibrating
 
 
 def test_a_rod_that_never_fits_is_told_so(monkeypatch):
     monkeypatch.setattr(sizes, "machine_memory", lambda: 1e8)
     with pytest.raises(SceneError, match="No tip size fits"):
-        plan(load("t5b"))
+        Case.of(load("t5b"))
 
 
 def test_a_longer_time_or_step_changes_the_number_of_steps_alone():
-    size, base = plan(replace_all(load("t5b"), {"accuracy.step": 0.45})).size, plan(load("t5b")).size
+    size, base = Case.of(replace_all(load("t5b"), {"accuracy.step": 0.45})).size, Case.of(load("t5b")).size
     assert size.steps == pytest.approx(2 * base.steps, rel=1e-3) and size.rod == base.rod
     assert base.most_steps == pytest.approx(2.5e-3 / base.step, abs=1)

@@ -3,15 +3,17 @@
 import numpy as np
 import pytest
 
+from fem_impact.case.case import Case
 from fem_impact.case.cells import ADVISED, contact_radius, levels_of
-from fem_impact.case.plan import plan
 from fem_impact.case.zones import FEWEST, share_of
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.write import digest
 
 
 def zones(name="t5b", **changes):
-    return plan(replace_all(load(name), {f"accuracy.{key}": value for key, value in changes.items()})).zones
+    return Case.of(
+        replace_all(load(name), {f"accuracy.{key}": value for key, value in changes.items()})
+    ).zones
 
 
 def test_finer_levels_reach_less_far():
@@ -33,15 +35,15 @@ def test_the_barrier_has_a_size_of_its_own():
 
 @pytest.mark.parametrize("name", ["t2", "t5b", "t5d", "t6-17", "t6-60", "elastic-frictionless"])
 def test_a_scene_without_a_size_gets_one_from_its_contact(name):
-    planned = plan(load(name))
+    planned = Case.of(load(name))
     kind = "elastic" if name.startswith("elastic") else "yielding"
     cells = contact_radius(planned.bodies) / planned.zones.tip_size
     assert ADVISED[kind] / 1.6 < cells < 1.6 * ADVISED[kind]
 
 
 def test_a_slower_rod_gets_smaller_cells():
-    slow = plan(replace_all(load("t5b"), {"impact.v_n": "-0.15 m/s", "impact.v_t": "-0.15 m/s"}))
-    assert levels_of(slow.bodies)[0] > levels_of(plan(load("t5b")).bodies)[0]
+    slow = Case.of(replace_all(load("t5b"), {"impact.v_n": "-0.15 m/s", "impact.v_t": "-0.15 m/s"}))
+    assert levels_of(slow.bodies)[0] > levels_of(Case.of(load("t5b")).bodies)[0]
 
 
 def test_shares_follow_the_cells_over_the_radius():

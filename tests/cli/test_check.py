@@ -3,7 +3,7 @@
 import json
 import re
 
-from fem_impact.case.choose import active
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS, NAMES
 from fem_impact.scene.library import materials, shipped
 from fem_impact.scene.read import read_dict
@@ -114,7 +114,7 @@ def test_check_as_json_gives_a_scene_that_reads_back(cli):
     scene = read_dict(statement["scene"])
     assert statement["digest"] == digest(scene)
     assert any("angle 80 deg" in sentence for sentence in statement["validity"])
-    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(active(scene))
+    assert {effect["name"] for effect in statement["effects"] if effect["on"]} == set(Case(scene).active)
 
 
 def test_check_refuses_a_bad_file_by_name(cli, tmp_path):

@@ -8,13 +8,12 @@ import pytest
 from own_package.my_impact_parts import LUNAR_GRAVITY as EFFECT
 from own_package.my_impact_parts import MOON
 
-from fem_impact.case import choose
-from fem_impact.case.choose import active, choices, neglected
+from fem_impact.case import case, choose
+from fem_impact.case.case import Case
+from fem_impact.case.choose import neglected
 from fem_impact.case.effects import registry as effect_names
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.case.plan import plan
 from fem_impact.options import RunOptions
-from fem_impact.physics.contact import projectile
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.shipped import replace as changed
@@ -31,11 +30,8 @@ def moon(monkeypatch):
     """What two lines in `effects/registry.py` do."""
     names = (*effect_names.NAMES, EFFECT.name)
     monkeypatch.setitem(EFFECTS, EFFECT.name, EFFECT)
-    for module in (effect_names, choose):
+    for module in (effect_names, choose, case):
         monkeypatch.setattr(module, "NAMES", names)
-    choose.decided.cache_clear()
-    yield
-    choose.decided.cache_clear()
 
 
 def scene_with(*effects, **changes):
@@ -44,23 +40,23 @@ def scene_with(*effects, **changes):
 
 def test_an_added_effect_is_chosen_by_its_number(moon):
     fast, slow = scene_with(), scene_with(**{"impact.v_n": "-5 mm/s", "impact.v_t": "-5 mm/s"})
-    assert EFFECT.name not in active(fast)
-    assert EFFECT.name in active(slow)
-    (choice,) = [choice for choice in choices(slow) if choice.name == EFFECT.name]
-    assert choice.told(None).sentence == "The Moon pulls the rod down."
+    assert EFFECT.name not in Case(fast).active
+    assert EFFECT.name in Case(slow).active
+    (choice,) = [choice for choice in Case(slow).choices if choice.name == EFFECT.name]
+    assert choice.sentence == "The Moon pulls the rod down."
     left_out = changed(slow, "effects", ["auto", f"-{EFFECT.name}"])
-    assert any(EFFECT.name in words for words in neglected(left_out))
+    assert any(EFFECT.name in words for words in neglected(Case(left_out).choices))
 
 
 def test_it_is_built_when_it_is_on_and_only_then(moon):
     coarse = {"accuracy.tip_size": "1.6 mm", "accuracy.across": 6, "projectile.length": "60 mm"}
     on, off = (scene_with("barrier-rigid", *names, **coarse) for names in ((EFFECT.name,), ()))
-    model = build(plan(on))
+    model = build(Case.of(on))
     (weight,) = [item for item in model.forces if isinstance(item, Weight)]
     places = model.layout.rod[model.layout.rod[:, 0] < model.layout.rod_size]
     pull = np.hypot(*weight.weight[places[:, [0, 2]]].sum(axis=0))
-    assert pull == pytest.approx(MOON * projectile(on).mass / 2, rel=1e-9)  # half the rod is meshed
-    assert not [item for item in build(plan(off)).forces if isinstance(item, Weight)]
+    assert pull == pytest.approx(MOON * on.projectile.rigid_body.mass / 2, rel=1e-9)  # half the rod is meshed
+    assert not [item for item in build(Case.of(off)).forces if isinstance(item, Weight)]
 
 
 @dataclass
@@ -113,7 +109,7 @@ def with_drag(model, rate):
 
 def test_an_own_item_closes_the_ledger():
     scene = coarse_scene()
-    model = with_drag(build(plan(scene)).coasting(), RATE)
+    model = with_drag(build(Case.of(scene)).coasting(), RATE)
     watch, state = Watch(model.ledger(), every=10), model.initial_state()
 
     class End:

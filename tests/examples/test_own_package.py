@@ -20,8 +20,8 @@ outcome = fem_impact.simulate(scene, "rigid")
 print(json.dumps({
     "rho": scene.projectile.material.rho,
     "source": source_of("al-6082-t6", "E"),
-    "effects": fem_impact.make_plan(scene).active,
-    "gravity": fem_impact.make_plan(scene).slots.gravity,
+    "effects": fem_impact.Case.of(scene).active,
+    "gravity": fem_impact.Case.of(scene).slots.gravity,
     "mass": outcome.motion.mass,
     "versions": dict(outcome.provenance.versions),
 }))

@@ -6,9 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem.geometry import build_geometry
-from fem_impact.physics.contact import projectile
 from fem_impact.scene.shipped import load, replace, replace_all
 from rigid import SHAPES, Nose
 
@@ -23,13 +22,13 @@ def test_an_added_tip_is_turned_meshed_and_touches_where_it_should(ball):
         load("t5b"),
         {"projectile.tip": "ball", "projectile.tip_radius": "9.5 mm", "accuracy.tip_size": "1.2 mm"},
     )
-    rod = projectile(scene)
+    rod = scene.projectile.rigid_body
     cylinder, half_ball = math.pi * 0.0095**2 * (0.08 - 0.0095), 2 / 3 * math.pi * 0.0095**3
     assert rod.mass == pytest.approx(7850 * (cylinder + half_ball), rel=1e-12)
     rho, z = rod.contact_point(math.pi / 4)
     assert (rho, 0.0095 - z) == pytest.approx((0.0095 * math.sqrt(0.5),) * 2)
     scene = replace(scene, "effects", ["vibration", "barrier-rigid"])
-    built = build_geometry(scene, plan(scene).zones, 1e-5, meshed_barrier=False)
+    built = build_geometry(Case.of(scene).bodies, Case.of(scene).zones, 1e-5, meshed_barrier=False)
     assert built.rod_points[:, 2].min() == pytest.approx(1e-5)
 
 
@@ -83,5 +82,7 @@ def test_an_own_material_is_a_table_of_the_scene():
         "ultimate_stress": "310 MPa",
     }
     scene = replace(load("t5b"), "projectile.material", aluminium)
-    assert projectile(scene).mass == pytest.approx(2700 / 7850 * projectile(load("t5b")).mass)
+    assert scene.projectile.rigid_body.mass == pytest.approx(
+        2700 / 7850 * load("t5b").projectile.rigid_body.mass
+    )
     assert scene.measured == "t5b"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
@@ -51,14 +51,14 @@ def test_the_plain_drop_is_the_solvers_within_what_its_masses_lack(scene):
 
 def test_on_the_solvers_own_masses_the_plain_drop_is_the_solver(scene):
     """Slices, frame, compiled contact and ledger save time and change nothing."""
-    model = build(plan(scene))
+    model = build(Case.of(scene))
     mesh = model.geometry.rod.mesh
     places, spread = model.layout.rod[~mesh.is_hanging], model.rod_stiffness.spread
     K = (spread.T @ sum(model.rod_stiffness.parts) @ spread).tocsr()
     rows, mass = places.ravel(), model.mass[places[:, :1]]
     free = (model.inverse_mass[places] > 0).astype(float)
     rod = plain.Rod(model.start[0][places], mass, K[rows][:, rows], free, mesh.free_skin)
-    ours, impact, dt = solve(plan(scene), model=model), scene.impact, model.steps["rod"]
+    ours, impact, dt = solve(Case.of(scene), model=model), scene.impact, model.steps["rod"]
     end = plain.drop(rod, impact.v_n, impact.v_t, scene.surface.friction, dt, ours.steps * dt)
     assert end["E_0"] == pytest.approx(ours.E_0, rel=1e-12)
     assert end["friction"] == pytest.approx(ours.accounts["friction"], rel=1e-9)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem.body import MeshedBodies
 from fem_impact.fem.mass_scaling import MOST_REMOVED, crossing_times, scaled_rod
 from fem_impact.run.simulate import simulate
@@ -31,7 +31,7 @@ def moments(body):
 
 @pytest.mark.parametrize("name", ["quick", "t6-17", "elastic-frictionless"])
 def test_a_scaled_rod_keeps_mass_centre_and_inertia(name):
-    true, heavy = (MeshedBodies(plan(scaled(factor, load(name)))) for factor in (1.0, 4.0))
+    true, heavy = (MeshedBodies(Case.of(scaled(factor, load(name)))) for factor in (1.0, 4.0))
     assert moments(heavy.rod) == pytest.approx(moments(true.rod), rel=1e-10, abs=1e-15)
     factors = heavy.rod.mass / true.rod.mass
     assert factors.max() > 2.0
@@ -41,13 +41,13 @@ def test_a_scaled_rod_keeps_mass_centre_and_inertia(name):
 
 
 def test_the_step_grows_with_the_root_of_the_scaling():
-    steps = {factor: build(plan(scaled(factor, load("t5b")))).step for factor in (1.0, 2.0, 4.0)}
+    steps = {factor: build(Case.of(scaled(factor, load("t5b")))).step for factor in (1.0, 2.0, 4.0)}
     assert steps[2.0] / steps[1.0] == pytest.approx(np.sqrt(2.0), rel=0.05)
     assert steps[4.0] / steps[1.0] == pytest.approx(2.0, rel=0.05)
 
 
 def test_a_rod_takes_no_more_than_it_can_make_up_for():
-    wanted = build(plan(scaled(25.0, load("t6-17"))))
+    wanted = build(Case.of(scaled(25.0, load("t6-17"))))
     assert 1.0 < wanted.scaling < 25.0
     assert wanted.added_mass.max() > 0.0 > wanted.added_mass.min()
 
@@ -61,7 +61,7 @@ def test_a_rod_without_larger_cells_keeps_its_masses():
 
 
 def test_a_wave_crosses_a_box_through_its_thinnest_side():
-    bodies = MeshedBodies(plan(QUICK))
+    bodies = MeshedBodies(Case.of(QUICK))
     barrier = bodies.geometry.barrier
     times = crossing_times(barrier, barrier.points, bodies.materials["barrier"])
     edges = np.ptp(barrier.points[barrier.cells], axis=1)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.fem import eigen
 from fem_impact.fem.eigen import rod_modes
@@ -33,7 +33,7 @@ def _scene(length, across=8, tip=("plain", 0.0), tip_size=2.4e-3):
 
 
 def _model(*args, **kwargs):
-    return build(plan(_scene(*args, **kwargs)))
+    return build(Case.of(_scene(*args, **kwargs)))
 
 
 def _modes(model, count=12):
@@ -54,7 +54,7 @@ def test_frequencies_of_the_long_rod(long):
 def test_runs_with_the_same_rod_find_its_modes_once():
     scene = changed(load("t5b"), "accuracy.tip_size", "1.2 mm")
     first, moved, longer = (
-        modes_of(build(plan(s)))
+        modes_of(build(Case.of(s)))
         for s in (
             scene,
             changed(scene, "accuracy.grid_shift", 0.5),
@@ -73,7 +73,9 @@ def test_frequencies_of_the_short_rod():
 def test_frequencies_of_a_rod_of_320_diameters():
     """Its first bending is so slow that two corrections leave the rigid motions too near to it."""
     scene = _scene(6.0, across=6, tip_size=3.2e-3)
-    assert _modes(build(plan(scene)), 40).omega[:2] == pytest.approx(bending_frequencies(scene)[:2], rel=5e-3)
+    assert _modes(build(Case.of(scene)), 40).omega[:2] == pytest.approx(
+        bending_frequencies(scene.projectile)[:2], rel=5e-3
+    )
 
 
 def test_a_factor_that_is_too_large_is_refused(long, monkeypatch):

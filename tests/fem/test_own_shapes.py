@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem.body import MeshedBodies
-from fem_impact.physics.contact import projectile
 from fem_impact.physics.stepped_beam import beam_modes
 from fem_impact.scene.read import read_dict
 
@@ -45,7 +44,7 @@ def meshed(name):
         "impact": {"angle": "30 deg", "v_n": "-1 m/s", "v_t": "0 m/s"},
         "accuracy": {"tip_size": "1.2 mm", "mass_scaling": 1.0},
     }
-    return MeshedBodies(plan(read_dict(data)))
+    return MeshedBodies(Case.of(read_dict(data)))
 
 
 @pytest.mark.parametrize(
@@ -59,7 +58,11 @@ def meshed(name):
 )
 def test_mass_inertia_and_free_modes_are_those_of_the_shape(name):
     made = meshed(name)
-    body, theory, places = projectile(made.scene), beam_modes(made.scene.projectile), made.free_nodes
+    body, theory, places = (
+        made.scene.projectile.rigid_body,
+        beam_modes(made.scene.projectile),
+        made.free_nodes,
+    )
     mass, x = made.mass[places[:, 0]], made.x[places]
     centre = mass @ x / mass.sum()
     arm = x - centre
@@ -76,7 +79,7 @@ def test_mass_inertia_and_free_modes_are_those_of_the_shape(name):
 
 def projectile_centre(made):
     """Return the place of the theory's mass centre over the barrier, m."""
-    d_c, d_d = projectile(made.scene).arms(made.scene.impact.angle)
+    d_c, d_d = made.scene.projectile.rigid_body.arms(made.scene.impact.angle)
     return np.array([float(d_c), 0.0, float(d_d)])
 
 

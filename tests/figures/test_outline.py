@@ -5,9 +5,9 @@ import re
 import numpy as np
 import pytest
 
+from fem_impact.case.case import Case
 from fem_impact.figures.outline import draw
 from fem_impact.figures.style import new_figure
-from fem_impact.physics.contact import projectile, touch_point
 from fem_impact.scene.shipped import load
 from rigid import Turned
 
@@ -19,9 +19,9 @@ def drawn(monkeypatch, tmp_path, name):
         "fem_impact.figures.style.new_figure", lambda height: kept.append(new_figure(height)) or kept[0]
     )
     scene = load(name)
-    body, rod = projectile(scene), scene.projectile
+    body, rod = scene.projectile.rigid_body, scene.projectile
     parts = [(part.to, part.material.name) for part in rod.segments] or [(body.length, rod.material.name)]
-    draw(body, touch_point(scene), parts, tmp_path / "a.svg")
+    draw(body, Case(scene).contact.touch_point, parts, tmp_path / "a.svg")
     return kept[0].axes[0], body, scene
 
 
@@ -41,7 +41,7 @@ def test_a_tube_is_drawn_with_its_bore_contact_and_mass_centre(monkeypatch, tmp_
     wall = np.trapezoid(body.radius(z) - body.inner_radius(z), z) * 1e6
     assert filled(axes) == pytest.approx([wall, wall], rel=2e-3)
     marks = {line.get_label(): line.get_xydata()[0] for line in axes.lines}
-    rho, place = touch_point(scene)
+    rho, place = Case(scene).contact.touch_point
     assert marks["touches first"] == pytest.approx([1e3 * place, -1e3 * rho])
     assert marks["mass centre"] == pytest.approx([1e3 * body.z_c, 0.0])
     assert axes.get_aspect() == 1.0

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from outcome_maker import outcome
 from scale_tasks import Acting, Here, job, record
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.cli.study import _estimate_text
 from fem_impact.jobs.job import GUESS, REFUSED, Failure, Job
 from fem_impact.jobs.run import Eta, Pace, estimate, expected_costs, makespan, run_jobs
@@ -31,7 +31,7 @@ def test_costs_are_planned_times_at_the_pace_of_what_has_run():
     new = [solid("coarse", 0.9), solid("fine", 0.3)]
     results = {job.name: ran(job, pace) for job, pace in zip(done, (0.5, 0.7, 3.0), strict=True)}
     costs = expected_costs([*done, *new, job("r")], results)
-    planned = {one.name: plan(one.scene).size.time for one in new}
+    planned = {one.name: Case.of(one.scene).size.time for one in new}
     assert planned["fine"] > 2 * planned["coarse"]
     wanted = {name: 0.7 * time for name, time in planned.items()}
     assert costs == pytest.approx(wanted | {"r": GUESS["rigid"]})

@@ -10,7 +10,7 @@ from damage import TRIED, answered, call
 
 import fem_impact.films.film as films
 from fem_impact.answers.report import Request, Sheet, StudyReport, publish
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.files.digests import CHECKSUM, signed
 from fem_impact.jobs.job import Failure
@@ -81,7 +81,7 @@ def spoil_bytes(chance, data):
 
 def full_outcome():
     """An outcome with effect choices and two meshes, in which nearly no value is null."""
-    told = [choice.told(0.1) for choice in plan(load("t5b")).choices]
+    told = [choice.told(0.1) for choice in Case.of(load("t5b")).choices]
     choices = [{key.name: key.of(choice) for key in keys_of(type(choice))} for choice in told]
     meshes = {"mesh_limit": {"mu": 0.6, "e_edge": 0.3}, "mesh_band": {"mu": 0.01}}
     return result_maker.values(effect_choices=choices, **meshes)

@@ -15,7 +15,7 @@ def test_all_names_of_the_menu_exist_and_are_listed():
     assert set(fem_impact.__all__) == set(fem_impact._PLACES)
 
 
-@pytest.mark.parametrize("names", ["load", "load, replace, Scene, RunOptions, make_plan"])
+@pytest.mark.parametrize("names", ["load", "load, replace, Scene, RunOptions, Case"])
 def test_the_menu_itself_loads_no_heavy_module(names):
     first = names.split(",")[0]
     code = f"import sys, fem_impact; before = 'numpy' in sys.modules; fem_impact.{first}; print(before)"

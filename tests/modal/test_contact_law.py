@@ -6,7 +6,7 @@ from math import inf, pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.modal.furrow import indent
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import drop
@@ -24,7 +24,6 @@ from fem_impact.modal.motion import (
     Bounds,
     Start,
 )
-from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
 from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.scene.shipped import load
@@ -36,7 +35,7 @@ HERTZ = 4 / 3 * E_STAR * sqrt(R)
 
 
 def law_of(scene):
-    return contact_law(plan(scene, "modal").bodies)
+    return contact_law(Case.of(scene, "modal").contact)
 
 
 def law(f=0.0, limit=inf):
@@ -151,7 +150,7 @@ def test_thornton_of_the_short_rod():
     contact = law_of(scene)
     assert contact.R == pytest.approx(6.05e-3, rel=1e-3)
     assert contact.limit == pytest.approx(2.8 * 320e6)
-    rod = projectile(scene)
+    rod = scene.projectile.rigid_body
     d_c, d_d = map(float, rod.arms(pi / 4))
     mass = rod.mass / (1 + d_c * (d_c - 0.6 * d_d) / rod.k2)
     found = [restitution(contact, mass, v / sqrt(2)) for v in (1.31, 2.11, 4.23, 6.09)]

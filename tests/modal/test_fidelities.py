@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from fem_impact.answers.compare import compare
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.modal.impact import solve as modal_solve
 from fem_impact.options import RunOptions
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.physics.beam import HORIZON, horizon
-from fem_impact.physics.contact import effective_mass, projectile
 from fem_impact.run.common import NO_PUSH, barrier_motion, motion, restitution
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict, read_toml
@@ -112,17 +111,17 @@ def test_a_thick_rod_has_modes_too():
 def test_a_rod_that_gravity_draws_in_more_than_it_is_pushed_away_has_no_coefficients():
     scene = load("t5b")
     still = barrier_motion(scene, 0.0, 0.0, 0.0)
-    found = restitution(scene, motion(plan(scene, "rigid"), -1.6, -0.5, 90.0, 0.17, 5.56e-4), still)
+    found = restitution(scene, motion(Case.of(scene, "rigid"), -1.6, -0.5, 90.0, 0.17, 5.56e-4), still)
     for number in (found.mu, found.mu_c, found.edge.e, found.paper.E_ln, found.impulse.d_c):
         assert number == NO_PUSH
-    pushed = restitution(scene, motion(plan(scene, "rigid"), -1.4, -0.5, 90.0, 0.17, 5.56e-4), still)
+    pushed = restitution(scene, motion(Case.of(scene, "rigid"), -1.4, -0.5, 90.0, 0.17, 5.56e-4), still)
     assert pushed.mu > 0
 
 
 def test_arms_that_do_not_approach_have_no_restitution():
     scene = replace_all(load("t5b"), {"impact.omega": "60 rad/s"})
     still = barrier_motion(scene, 0.0, 0.0, 0.0)
-    found = restitution(scene, motion(plan(scene, "rigid"), 0.4, -0.5, 90.0, 0.17, 5.56e-4), still)
+    found = restitution(scene, motion(Case.of(scene, "rigid"), 0.4, -0.5, 90.0, 0.17, 5.56e-4), still)
     assert found.impulse.d_c > 1.502 / 60
     assert isinstance(found.impulse.e, Unknown)
     assert "approach" in found.impulse.e.reason
@@ -132,11 +131,11 @@ def test_arms_that_do_not_approach_have_no_restitution():
 @pytest.mark.slow
 def test_a_long_rod_is_followed_until_its_bending_cannot_bring_it_back():
     long = {"projectile.length": "1.5 m", "accuracy.max_time": "60 ms"}
-    result = modal_solve(plan(replace_all(load("t3-machined"), long), "modal"))
+    result = modal_solve(Case.of(replace_all(load("t3-machined"), long), "modal"))
     later = np.diff(result.contacts[:, 0])
     assert result.finished
     assert later.max() > HORIZON
-    assert horizon(load("t3-machined")) == HORIZON
+    assert horizon(load("t3-machined").projectile) == HORIZON
 
 
 def test_compare_and_tables_take_what_is_not_known():
@@ -164,11 +163,13 @@ def test_the_rigid_fidelity_names_the_source_of_its_restitution():
 
 def test_a_frictionless_elastic_rod_turns_as_momentum_says():
     scene = replace(load("t5b"), effects=("vibration", "barrier-elastic"))
-    rod = projectile(scene)
+    rod = scene.projectile.rigid_body
     d_c = float(rod.arms(scene.impact.angle)[0])
     Omega = 2 * -scene.impact.v_n * d_c / (rod.k2 + d_c**2)
     assert simulate(scene, "rigid").motion.Omega == pytest.approx(Omega)
-    assert effective_mass(plan(scene, "rigid").bodies) == pytest.approx(rod.mass / (1 + d_c**2 / rod.k2))
+    assert Case.of(scene, "rigid").bodies.contact.effective_mass == pytest.approx(
+        rod.mass / (1 + d_c**2 / rod.k2)
+    )
 
 
 @pytest.mark.parametrize("name", [n for n in MEASURED_SETS if n.startswith("t5")])

@@ -9,19 +9,18 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import fem_impact.modal.impact as impact
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SpringRow, tangential_ratio
 from fem_impact.evidence.references.oblique import oblique_drop, oblique_rod
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import ALONE
 from fem_impact.modal.rod import ModalRod, modal_rod
-from fem_impact.physics.contact import contact_modulus, projectile
 from fem_impact.run import modal as record
 from fem_impact.scene.shipped import load, replace_all
 
 
 def planned(scene):
-    return plan(scene, "modal")
+    return Case.of(scene, "modal")
 
 
 def rod(length, speed, f, angle=pi / 4):
@@ -45,7 +44,7 @@ def beam_of(scene):
 
     The beam ends where a flat end gives the rod its volume.
     """
-    body, alpha = projectile(scene), scene.impact.angle
+    body, alpha = scene.projectile.rigid_body, scene.impact.angle
     (rho, z), arms = (tuple(map(float, found(alpha))) for found in (body.contact_point, body.arms))
     mass, modes, length = (body.mass, body.k2), KEPT[body.length], body.mass / (7850.0 * pi * 9.5e-3**2)
     touch = rho, z - (body.length - length)
@@ -55,13 +54,13 @@ def beam_of(scene):
 
 def reference(scene):
     beam = beam_of(scene)
-    E_star = contact_modulus(planned(scene).bodies)
+    E_star = planned(scene).bodies.contact.modulus
     row = SpringRow(E_star, tangential_ratio(0.29) * E_star, 6.05e-3, scene.surface.friction, 1.5e-3)
     return oblique_drop(beam, row, scene.impact.v_n, scene.impact.v_t)
 
 
 def restitution(scene, result):
-    d_c = float(projectile(scene).arms(scene.impact.angle)[0])
+    d_c = float(scene.projectile.rigid_body.arms(scene.impact.angle)[0])
     return -(result.V_n + d_c * result.Omega) / scene.impact.v_n
 
 
@@ -126,7 +125,7 @@ def test_friction_takes_energy_whatever_the_step(monkeypatch):
 
 def test_modes_at_the_contact_are_those_of_a_beam():
     scene = rod(0.24, 2.1, 0.0)
-    found, beam = modal_rod(scene), beam_of(scene)
+    found, beam = modal_rod(Case(scene).bodies), beam_of(scene)
     order = np.argsort(beam.omega)[:5]
     assert found.omega[:5] == pytest.approx(beam.omega[order], rel=0.006)
     assert abs(found.along_t[:5]) == pytest.approx(abs(beam.along_t[order]), rel=0.02)
@@ -135,11 +134,13 @@ def test_modes_at_the_contact_are_those_of_a_beam():
 
 def test_a_rod_that_cannot_vibrate_keeps_its_energy():
     scene = rod(0.24, 2.1, 0.0)
-    stiff = replace(modal_rod(scene), omega=np.zeros(0), along_t=np.zeros(0), along_n=np.zeros(0))
+    stiff = replace(
+        modal_rod(Case(scene).bodies), omega=np.zeros(0), along_t=np.zeros(0), along_n=np.zeros(0)
+    )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(impact, "modal_rod", lambda *_: stiff)
         found = solve(planned(scene))
-    body = projectile(scene)
+    body = scene.projectile.rigid_body
     d_c = float(body.arms(pi / 4)[0])
     assert restitution(scene, found) == pytest.approx(1, abs=2e-3)
     Omega = (1 + 1) * -scene.impact.v_n * d_c / (body.k2 + d_c**2)

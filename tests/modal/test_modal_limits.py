@@ -6,13 +6,12 @@ from math import cos, radians, sin
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import solve
 from fem_impact.modal.motion import F_N_ROW
 from fem_impact.modal.rod import modal_rod
 from fem_impact.outcome.keys import Unknown
-from fem_impact.physics.contact import projectile
 from fem_impact.run.modal import reduce
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
@@ -21,11 +20,11 @@ SLOW = {"impact.v_n": "-30 mm/s", "impact.v_t": "-10 mm/s", "accuracy.max_time":
 
 
 def result_of(scene):
-    return solve(plan(scene, "modal"))
+    return solve(Case.of(scene, "modal"))
 
 
 def outcome_of(scene):
-    return reduce(plan(scene, "modal"), result_of(scene))
+    return reduce(Case.of(scene, "modal"), result_of(scene))
 
 
 def slow(*effects, **changes):
@@ -52,7 +51,7 @@ STEEP = {
 @pytest.mark.parametrize("mass", ["0.7 kg", "1e9 kg"])
 def test_a_tip_that_leaves_a_steep_furrow_is_held_down_by_its_flank(mass):
     """Friction there points down and the normal force falls below zero: the contact is not over."""
-    result = solve(plan(replace_all(load("t5b"), STEEP | {"barrier.mass": mass}), "modal"), recorded=True)
+    result = solve(Case.of(replace_all(load("t5b"), STEEP | {"barrier.mass": mass}), "modal"), recorded=True)
     assert result.finished
     assert result.record[:, F_N_ROW].min() < -1e-3 * result.record[:, F_N_ROW].max()
     assert abs(result.residual) < 2e-5 * result.E_0
@@ -104,7 +103,7 @@ def test_a_face_pressed_in_beyond_its_edge_counts_as_wide_as_it_is(rod, angle):
 
 
 def test_an_open_ledger_fails_a_run_of_the_reduced_model():
-    planned = plan(load("t5b"), "modal")
+    planned = Case.of(load("t5b"), "modal")
     result = solve(planned)
     spoiled = reduce(planned, replace(result, residual=-2e-4 * result.E_0)).validity
     assert not spoiled.finished
@@ -144,11 +143,11 @@ def test_a_face_that_lands_flat_is_left_to_finite_elements_or_a_stated_restituti
     flat = replace_all(load("t5b"), UPRIGHT | shape)
     for fidelity in ("modal", "rigid"):
         with pytest.raises(SceneError, match=rf"0 deg.: is that of a flat face .* {fidelity} takes"):
-            plan(flat, fidelity)
+            Case.of(flat, fidelity)
     assert simulate(replace_all(flat, {"restitution": 0.9}), "rigid").motion.V_n == pytest.approx(1.35216)
-    assert plan(flat, "solid")
-    assert plan(replace_all(flat, {"impact.angle": "0.1 deg"}), "modal")
-    assert plan(replace_all(load("t2"), UPRIGHT), "modal")
+    assert Case.of(flat, "solid")
+    assert Case.of(replace_all(flat, {"impact.angle": "0.1 deg"}), "modal")
+    assert Case.of(replace_all(load("t2"), UPRIGHT), "modal")
 
 
 def test_a_rod_that_still_comes_down_is_not_said_to_have_no_further_contact():
@@ -174,7 +173,7 @@ def test_a_negative_restitution_is_explained():
 def test_the_lowest_of_a_turned_rod_is_the_point_that_is_followed_or_another_one(tip, angle):
     changes = {"projectile.tip": tip[0], "projectile.tip_radius": tip[1], "impact.angle": f"{angle} deg"}
     scene = replace(replace_all(load("t5b"), changes), effects=("friction", "barrier-rigid"))
-    rod, body, alpha = modal_rod(scene), projectile(scene), radians(angle)
+    rod, body, alpha = modal_rod(Case(scene).bodies), scene.projectile.rigid_body, radians(angle)
     rho, z = np.append(body.meridian(400), [[body.diameter / 2, body.length]], axis=0).T
     x, z = np.append(rho, -rho), np.tile(z - body.z_c, 2)
     for turn in np.radians([-80.0, -20.0, -1.0, 0.0, 1.0, 20.0, 80.0, 170.0]):
@@ -283,6 +282,6 @@ def test_an_open_ledger_is_closed_by_smaller_steps(monkeypatch):
 
 
 def test_a_smaller_step_is_one():
-    usual, half = (solve(plan(load("t5b"), "modal"), step=step) for step in (1.0, 0.5))
+    usual, half = (solve(Case.of(load("t5b"), "modal"), step=step) for step in (1.0, 0.5))
     assert half.step == 0.5 * usual.step
     assert half.V_n == pytest.approx(usual.V_n, abs=3e-3 * 1.5)

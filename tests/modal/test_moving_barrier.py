@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import rigid
-from fem_impact.physics.contact import arms, projectile
+from fem_impact.case.case import Case
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 from rigid.finite import solve_free
@@ -57,7 +57,7 @@ def test_a_massive_barrier_that_moves_gives_energy_and_keeps_its_speed():
     outcome = run("rigid", MOVING)
     assert (outcome.barrier.V_bn, outcome.barrier.V_bt) == (0.5, 0.2)
     scene = load("t5b")
-    d_c, d_d = arms(scene)
+    d_c, d_d = Case(scene).contact.arms
     general = rigid.General(
         -1.0024,
         -1.2821,
@@ -65,8 +65,8 @@ def test_a_massive_barrier_that_moves_gives_energy_and_keeps_its_speed():
         mu=outcome.restitution.mu,
         d_c=d_c,
         d_d=d_d,
-        mass=projectile(scene).mass,
-        k2=projectile(scene).k2,
+        mass=scene.projectile.rigid_body.mass,
+        k2=scene.projectile.rigid_body.k2,
         v_bn=0.5,
     ).solve()
     assert motion(outcome) == pytest.approx([float(v) for v in general], rel=1e-9)

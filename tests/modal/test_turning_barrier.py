@@ -8,7 +8,6 @@ from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown, known
-from fem_impact.physics.contact import projectile
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
 
@@ -61,7 +60,7 @@ def test_both_bodies_keep_their_momenta_and_the_energy(effects):
 def test_angular_momentum_about_a_fixed_point_is_that_of_the_start():
     """Reckoned from the velocities alone: the impulse acts on both bodies near the first point of contact."""
     outcome = run(TURNING, {"effects": ["friction", "rod-plasticity", "barrier-elastoplastic"]})
-    m, b, rod = outcome.motion, outcome.barrier, projectile(replace_all(load("t5b"), TURNING))
+    m, b, rod = outcome.motion, outcome.barrier, replace_all(load("t5b"), TURNING).projectile.rigid_body
     d_c, d_d = rod.arms(m.alpha)
     P_n, P_t = m.mass * (m.V_n - m.v_n), m.mass * (m.V_t - m.v_t)
     on_rod = -d_d * P_t + d_c * P_n - m.mass * m.k_squared * m.Omega

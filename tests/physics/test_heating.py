@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.case.plan import plan
-from fem_impact.physics.contact import arms, contact_estimate
+from fem_impact.case.case import Case
+from fem_impact.case.effects.heating import halves
 from fem_impact.physics.flash import (
     Half,
     expected_rise,
@@ -16,7 +16,6 @@ from fem_impact.physics.flash import (
     flash_bound,
     moving_rise,
     short_rise,
-    sliding_speed,
 )
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
@@ -27,6 +26,16 @@ from fem_impact.solid.heatwatch import loaded_area
 
 STEEL = Half(53.0, 7850 * 440.0)
 Q, A = 1e8, 1e-3
+
+
+def bound_of(scene):
+    bodies = Case(scene, "rigid").bodies
+    return flash_bound(bodies.contact, scene.surface.friction, halves(bodies))
+
+
+def rise_of(scene):
+    bodies = Case(scene, "rigid").bodies
+    return expected_rise(bodies.contact, scene.surface.friction, halves(bodies))
 
 
 def test_resting_source():
@@ -117,14 +126,14 @@ def test_the_watch_finds_all_heat_and_the_patch(barrier, tip):
     effects = ("vibration", "friction", barrier, "large-rotation", "contact-heating")
     changes = {"length": 0.08, "f": 0.2, "angle": 0.8, "v_n": -6.0, "v_t": -6.0, "tip": tip, "max_time": 5e-5}
     result = solid_scenes.run(*effects, **changes)
-    stated = result.plan.scene
+    stated = result.case.scene
     watch = result.heat
     heat = float(np.array(watch.power) @ np.diff(watch.t))
     assert heat == pytest.approx(result.accounts["friction"], rel=0.01)  # the last window is still open
-    found, size = reduce(result), contact_estimate(result.plan.bodies)
+    found, size = reduce(result), result.case.bodies.estimate
     assert found.heat.patch == pytest.approx(pi * size.a_t * size.a_b, rel=0.35)
     # the blow turns the rod and the tip slides faster and faster
-    last = abs(result.motion.V_t - result.motion.Omega * arms(stated)[1])
+    last = abs(result.motion.V_t - result.motion.Omega * Case(stated).contact.arms[1])
     pushed = 2 * 0.2 * result.model.book.impulse[1]
     assert heat == pytest.approx(pushed * 0.5 * (6.0 + last), rel=0.1)
     assert np.average(watch.speed, weights=watch.power) == pytest.approx(heat / pushed, rel=0.15)
@@ -165,22 +174,22 @@ def test_closed_form_of_the_rigid_fidelity():
     power = found.energy.friction * found.energy.E_0 / found.heat.power
     assert found.heat.flux * found.heat.patch == found.heat.power
     assert 5e-5 < power < 2e-4  # the contact time, s
-    assert 100 < found.heat.rise < flash_bound(plan(stated, "rigid").bodies)
+    assert 100 < found.heat.rise < bound_of(stated)
     assert found.heat.temperature == found.heat.rise + 293.15
     assert any("Heat by closed form" in words for words in found.validity.assumptions)
     off = simulate(changed(load("t5b"), "effects", ["auto", "-contact-heating"]), "rigid")
     assert not any("Heat by closed form" in words for words in off.validity.assumptions)
     assert "above 1700 K, where plate-steel begins to melt" in found.heat.bound.reason
-    assert 0.2 < expected_rise(plan(stated, "rigid").bodies) / found.heat.rise < 5
+    assert 0.2 < rise_of(stated) / found.heat.rise < 5
 
 
 def test_the_bound_by_hand():
     """Hardness of the plate, first speed along and across, all heat in the less effusive body."""
     stated = changed(load("t5b"), "heating.rod_conductivity", "20 W/(m K)")
     f, v = stated.surface.friction, abs(stated.impact.v_t) + abs(stated.impact.v_n)
-    seconds = 3 * contact_estimate(plan(stated).bodies).duration
+    seconds = 3 * Case.of(stated).bodies.estimate.duration
     alone = 2 * f * 3 * 446e6 * v * sqrt(seconds / (pi * 20.0 * 7850 * 440.0))
-    assert flash_bound(plan(stated, "rigid").bodies) == pytest.approx(alone)
+    assert bound_of(stated) == pytest.approx(alone)
 
 
 def test_expected_rise_of_a_hertzian_patch_by_hand():
@@ -192,12 +201,12 @@ def test_expected_rise_of_a_hertzian_patch_by_hand():
         effects=("vibration", "friction", "barrier-rigid"),
         impact=replace(stated.impact, v_t=-1.0, omega=-2.0),
     )
-    size = contact_estimate(plan(stated).bodies)
-    speed = abs(-1.0 + 2.0 * arms(stated)[1])
-    assert sliding_speed(stated) == pytest.approx(speed)
+    size = Case.of(stated).bodies.estimate
+    speed = abs(-1.0 + 2.0 * Case(stated).contact.arms[1])
+    assert abs(Case(stated).contact.sliding) == pytest.approx(speed)
     flux = 0.1 * size.pressure * 0.5 * speed
     shared = 2 * flux * sqrt(size.duration / pi) / (2 * sqrt(53.0 * 7850 * 440.0))
-    assert expected_rise(plan(stated, "rigid").bodies) == pytest.approx(shared, rel=0.02)
+    assert rise_of(stated) == pytest.approx(shared, rel=0.02)
 
 
 def test_heat_stays_for_a_while_when_the_source_is_gone():
@@ -211,7 +220,7 @@ def test_a_temperature_above_the_melting_point_is_not_resolved(melting, resolved
     """Of the two bodies the one that melts first counts; conduction without latent heat is no bound there."""
     limits = {"heating.rod_melting": melting, "heating.barrier_melting": "5500 K"}
     other = replace_all(load("t5b"), limits | {"effects": ["auto", "contact-heating"]})
-    heat, bound = simulate(other, "rigid").heat, 293.15 + flash_bound(plan(other, "rigid").bodies)
+    heat, bound = simulate(other, "rigid").heat, 293.15 + bound_of(other)
     assert 300.0 < heat.temperature < 700.0 < bound
     if resolved:
         assert heat.bound == pytest.approx(bound)

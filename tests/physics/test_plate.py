@@ -6,16 +6,13 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from fem_impact.case.choose import resolved
+from fem_impact.case.case import Case
 from fem_impact.case.effects.barrier import compliance_share
-from fem_impact.case.effects.slots import bodies_of
-from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.evidence.references.zener import zener_impact
 from fem_impact.modal.impact import reach
 from fem_impact.modal.march import drop
 from fem_impact.modal.motion import ALONE, HARDEST, MOST_CONTACTS, RIGID, WORK_P, Bounds, Start
-from fem_impact.physics.contact import contact_estimate
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from fem_impact.physics.plate import contact_time, least_span, plate_impedance, zener_number
@@ -46,8 +43,8 @@ def test_zeners_equation_gives_the_published_kind_of_curve(number):
 
 @pytest.mark.parametrize("number", ZENER)
 def test_the_reduced_model_obeys_zeners_equation(number):
-    bodies = bodies_of(resolved(load("elastic-frictionless")))
-    law, flow = contact_law(bodies), flow_law(bodies, None, None)
+    bodies = Case(load("elastic-frictionless")).bodies
+    law, flow = contact_law(bodies.contact), flow_law(bodies.contact, None, None)
     m, v, exact = 0.1, 1.0, zener_impact(number)
     T = (m / (law.stiffness * sqrt(v))) ** 0.4
     start = Start(m, 1.0, 0.0, 0.0, 0.0, 0.0, -v, 0.0, 0.0, 0.0, give=number * T / m)
@@ -64,13 +61,13 @@ def test_a_plate_that_is_not_thick_beside_the_contact_is_told():
     """What a half-space gives deeper than h: its strain under a point force, integrated from there."""
 
     def told(thickness):
-        planned = plan(replace_all(load("plate-10mm"), {"barrier.thickness": thickness}), "modal")
-        found = [sentence for sentence in planned.validity if "half-space" in sentence]
+        planned = Case.of(replace_all(load("plate-10mm"), {"barrier.thickness": thickness}), "modal")
+        found = [sentence for sentence in planned.outside if "half-space" in sentence]
         return planned, found[0] if found else ""
 
     assert told("20 mm")[1] == ""
     planned, sentence = told("5 mm")
-    size, steel, h = contact_estimate(planned.bodies), planned.scene.barrier.material, 5e-3
+    size, steel, h = planned.estimate, planned.scene.barrier.material, 5e-3
     a, nu = sqrt(size.a_t * size.a_b), steel.nu
     z = np.geomspace(h, 1e4 * h, 20_001)
     strain = (3 - 2 * nu * (2 * nu - 1) / 2) / (2 * pi * steel.E * z**2)  # of 1 N, on the axis
@@ -78,21 +75,19 @@ def test_a_plate_that_is_not_thick_beside_the_contact_is_told():
     share = 100 * np.trapezoid(strain, z) / whole
     words = f"{2e3 * a:.2g} mm wide, {2 * a / h:.2g} of the plate's thickness.* gives {share:.2g} % of its"
     assert re.search(words, sentence)
-    assert f"e may be off by some {0.5 * share * compliance_share(planned.scene):.2g} %" in sentence
+    assert f"e may be off by some {0.5 * share * compliance_share(planned.bodies):.2g} %" in sentence
 
 
 def test_zeners_number_falls_as_the_square_of_the_thickness():
-    thin, thick = (
-        zener_number(bodies_of(resolved(stated(**{"barrier.thickness": h})))) for h in ("5 mm", "10 mm")
-    )
+    thin, thick = (zener_number(Case(stated(**{"barrier.thickness": h})).contact) for h in ("5 mm", "10 mm"))
     assert thin == pytest.approx(4 * thick, rel=1e-12)
 
 
 def test_a_plate_bends_where_that_matters_and_radiates_no_more():
-    active = plan(stated(), "modal").active
+    active = Case.of(stated(), "modal").active
     assert "plate-bending" in active and "radiation" not in active
-    assert "plate-bending" not in plan(stated(**{"barrier.thickness": "150 mm"}), "modal").active
-    assert "plate-bending" not in plan(load("quick"), "modal").active
+    assert "plate-bending" not in Case.of(stated(**{"barrier.thickness": "150 mm"}), "modal").active
+    assert "plate-bending" not in Case.of(load("quick"), "modal").active
 
 
 @pytest.mark.parametrize(
@@ -106,7 +101,7 @@ def test_a_plate_bends_where_that_matters_and_radiates_no_more():
 )
 def test_a_plate_that_the_model_does_not_hold_is_refused(changes, said):
     with pytest.raises(SceneError, match=said):
-        plan(stated(**changes), "modal")
+        Case.of(stated(**changes), "modal")
 
 
 @pytest.mark.parametrize(
@@ -122,13 +117,13 @@ def test_a_plate_that_the_model_does_not_hold_is_refused(changes, said):
 )
 def test_a_barrier_that_is_stated_badly_is_refused(changes, said):
     with pytest.raises(SceneError, match=said):
-        plan(replace_all(load("quick"), changes), "modal")
+        Case.of(replace_all(load("quick"), changes), "modal")
 
 
 def test_the_least_span_is_that_of_the_group_speed_at_the_end_of_the_main_lobe():
-    bodies = bodies_of(resolved(stated()))
-    steel, h, tau = bodies.scene.barrier.material, 10e-3, contact_time(bodies)
+    bodies = Case(stated()).bodies
+    steel, h, tau = bodies.scene.barrier.material, 10e-3, contact_time(bodies.contact)
     k = np.linspace(1.0, 500.0, 200_001)
     omega = np.sqrt(steel.E * h**2 / (12 * (1 - steel.nu**2) * steel.rho)) * k**2
     speed = np.interp(3 * pi / tau, omega, np.gradient(omega, k))
-    assert least_span(bodies) == pytest.approx(speed * tau, rel=1e-4)
+    assert least_span(bodies.contact) == pytest.approx(speed * tau, rel=1e-4)

@@ -7,10 +7,9 @@ import pytest
 from own_bodies import taper, write
 
 import meshes
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.body import MeshedBodies
-from fem_impact.physics.contact import projectile
 from fem_impact.physics.stepped_beam import beam_modes
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.read import read_dict
@@ -43,12 +42,12 @@ def scene(projectile, effects, **accuracy):
 def test_the_programs_own_rod_from_a_file_gives_its_run_again(tmp_path, ending):
     effects = ["vibration", "friction", "barrier-rigid"]
     built = scene(BUILT, effects)
-    mesh = MeshedBodies(plan(built)).geometry.rod.mesh
+    mesh = MeshedBodies(Case.of(built)).geometry.rod.mesh
     assert mesh.level.max() == 0
     path = write(tmp_path / f"rod{ending}", mesh.points, mesh.cells)
     own = scene({"mesh": str(path), "material": "rod-steel"}, effects)
     first, again = simulate(built), simulate(own)
-    assert projectile(own).mass == pytest.approx(projectile(built).mass, rel=3e-3)
+    assert own.projectile.rigid_body.mass == pytest.approx(built.projectile.rigid_body.mass, rel=3e-3)
     assert again.energy.vibration == pytest.approx(first.energy.vibration, rel=0.01)
     assert again.restitution.impulse.e == pytest.approx(first.restitution.impulse.e, abs=2e-3)
     assert again.restitution.mu == pytest.approx(first.restitution.mu, abs=2e-3)
@@ -66,17 +65,19 @@ def test_a_tapered_bar_that_yields_on_a_barrier_that_yields_is_balanced(tmp_path
     assert abs(energy.residual) < 1e-4
     assert energy.plastic_rod > 0.01
     assert energy.plastic_barrier > 0.0
-    made = MeshedBodies(plan(split))
+    made = MeshedBodies(Case.of(split))
     assert made.geometry.rod.mesh.level.max() == 1
     assert made.true_rod.yields.any()
-    assert made.mass[made.free_nodes[:, 0]].sum() * 2 == pytest.approx(projectile(split).mass, rel=1e-9)
+    assert made.mass[made.free_nodes[:, 0]].sum() * 2 == pytest.approx(
+        split.projectile.rigid_body.mass, rel=1e-9
+    )
 
 
 def test_a_mesh_that_is_fine_already_is_used_as_it_is(tmp_path):
     points, cells = taper(cells=(8, 4, 40))
     path = write(tmp_path / "fine.vtu", points, cells)
     own = {"mesh": str(path), "material": "rod-steel"}
-    made = MeshedBodies(plan(scene(own, ["auto", "vibration"], tip_size="0.9 mm", across=8)))
+    made = MeshedBodies(Case.of(scene(own, ["auto", "vibration"], tip_size="0.9 mm", across=8)))
     geometry, half = made.geometry, meshes.read_own(path)
     assert len(geometry.rod.mesh.cells) == len(half.cells)
     yields, touching = geometry.may_yield["rod"], geometry.touching
@@ -92,7 +93,7 @@ def test_free_modes_of_a_tapered_bar_are_those_of_its_beam(tmp_path):
     points, cells = taper(width=10e-3, length=0.2, cells=(6, 3, 60))
     path = write(tmp_path / "taper.vtu", points, cells)
     made = MeshedBodies(
-        plan(scene({"mesh": str(path), "material": "rod-steel"}, ["vibration", "barrier-rigid"]))
+        Case.of(scene({"mesh": str(path), "material": "rod-steel"}, ["vibration", "barrier-rigid"]))
     )
     theory, found = beam_modes(made.scene.projectile), made.rod_modes().frequency
     for wanted in (*theory.bent[:2], theory.stretched[0]):
@@ -102,7 +103,7 @@ def test_free_modes_of_a_tapered_bar_are_those_of_its_beam(tmp_path):
 def test_a_rod_from_a_file_that_cannot_vibrate_gives_the_run_of_the_built_in_one(tmp_path):
     """The noses are of the same length, the rest of both moves as one rigid body."""
     effects = ["friction", "barrier-elastic"]
-    mesh = MeshedBodies(plan(scene(BUILT, ["vibration", "barrier-rigid"]))).geometry.rod.mesh
+    mesh = MeshedBodies(Case.of(scene(BUILT, ["vibration", "barrier-rigid"]))).geometry.rod.mesh
     path = write(tmp_path / "rod.vtu", mesh.points, mesh.cells)
     built, own = (
         scene(rod, effects, tip_size="0.8 mm")
@@ -125,7 +126,7 @@ def test_the_rest_of_a_users_body_keeps_its_mass_centre_and_inertia(tmp_path):
     own = scene(
         {"mesh": str(path), "material": "rod-steel"}, ["friction", "barrier-elastic"], tip_size="1 mm"
     )
-    made, whole = MeshedBodies(plan(own)), projectile(own)
+    made, whole = MeshedBodies(Case.of(own)), own.projectile.rigid_body
     assert 2 * made.mass[made.free_nodes[:, 0]].sum() == pytest.approx(whole.mass, rel=1e-9)
     start = made.geometry.rod.body_start
     assert 12e-3 / 3 <= start < 30e-3
@@ -145,5 +146,5 @@ def test_a_body_that_is_all_nose_is_refused_without_vibration(tmp_path):
     points, cells = taper(width=12e-3, length=14e-3, end=1.0, cells=(4, 2, 1))
     own = {"mesh": str(write(tmp_path / "stub.vtu", points, cells)), "material": "rod-steel"}
     with pytest.raises(SceneError, match="leaves nothing behind the fine zone"):
-        plan(scene(own, ["friction", "barrier-elastic"], tip_size="0.5 mm"))
-    assert plan(scene(own, ["vibration", "barrier-elastic"], tip_size="0.5 mm")).slots.vibrating
+        Case.of(scene(own, ["friction", "barrier-elastic"], tip_size="0.5 mm"))
+    assert Case.of(scene(own, ["vibration", "barrier-elastic"], tip_size="0.5 mm")).slots.vibrating

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.library import material, materials
@@ -109,7 +109,7 @@ EFFECTS = [
 @pytest.mark.parametrize(("names", "words"), EFFECTS)
 def test_effects_that_cannot_be_are_named_by_the_plan(names, words):
     with pytest.raises(SceneError) as caught:
-        plan(replace(load("t5b"), "effects", names), "rigid")
+        Case.of(replace(load("t5b"), "effects", names), "rigid")
     assert all(word in str(caught.value) for word in words) and caught.value.key == "effects"
 
 

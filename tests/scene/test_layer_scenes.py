@@ -4,7 +4,7 @@ from math import inf
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load
@@ -17,7 +17,7 @@ def layered(layers, fidelity="solid", **barrier):
     data = to_dict(load("layered"))
     data["barrier"] = {"material": "aluminium-6061-t6", "layers": layers, **barrier}
     scene = read_dict(data)
-    plan(scene, fidelity)
+    Case.of(scene, fidelity)
     return scene
 
 
@@ -67,18 +67,18 @@ def test_the_advised_cells_take_the_thin_layer():
     data = to_dict(load("layered"))
     data["barrier"]["layers"][0]["thickness"] = "0.6 mm"
     with pytest.raises(SceneError) as told:
-        plan(read_dict(data))
+        Case.of(read_dict(data))
     data["accuracy"]["across"] = int(told.value.remedy.split("across = ")[1].split(",")[0])
-    assert plan(read_dict(data)).scene.accuracy.across > 8
+    assert Case.of(read_dict(data)).scene.accuracy.across > 8
 
 
 def test_the_reduced_model_is_refused_and_the_estimates_are_told():
     with pytest.raises(SceneError, match=r"which has one material there\. Use --fidelity solid"):
         layered([PLATE], "modal")
-    planned = plan(load("layered"))
-    assert any("first layer alone" in sentence for sentence in planned.validity)
+    planned = Case.of(load("layered"))
+    assert any("first layer alone" in sentence for sentence in planned.outside)
     assert any("is thin for a contact" in sentence for sentence in planned.warnings)
-    assert plan(load("layered"), "rigid").fidelity == "rigid"
+    assert Case.of(load("layered"), "rigid").fidelity == "rigid"
 
 
 def test_a_soft_base_is_seen_to_yield_under_a_hard_layer_that_cannot():
@@ -87,5 +87,5 @@ def test_a_soft_base_is_seen_to_yield_under_a_hard_layer_that_cannot():
     for base in ("lead", "titanium-6al-4v"):
         data["barrier"] = {"material": base, "layers": [{"thickness": "1.5 mm", "material": "alumina"}]}
         data["effects"] = "auto"
-        on[base] = "barrier-elastoplastic" in plan(read_dict(data)).active
+        on[base] = "barrier-elastoplastic" in Case.of(read_dict(data)).active
     assert on == {"lead": True, "titanium-6al-4v": False}

@@ -5,12 +5,12 @@ import tomllib
 
 import pytest
 
-from fem_impact.case.choose import active
+from fem_impact.case.case import Case
+from fem_impact.case.effects.heating import halves, thermal
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.metals import flow_stresses, unknowns
-from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
-from fem_impact.physics.flash import Half, halves, thermal
+from fem_impact.physics.flash import Half
 from fem_impact.physics.hardening import CowperSymonds, JohnsonCook, rate_gain, rate_law, tabor_stress
 from fem_impact.scene.library import intervals_of, materials
 from fem_impact.scene.material import CowperSymondsRate, JohnsonCookRate, Material
@@ -88,11 +88,11 @@ def test_the_intervals_span_the_conventions():
 
 
 def test_check_tells_flow_stresses_at_rates():
-    told = flow_stresses(T5B, active(T5B))
+    told = flow_stresses(Case(T5B).bodies)
     assert set(told) == {"rod", "barrier"}
     assert told["barrier"] == pytest.approx([481.85e6 * k for k in (1, 1.27573, 1.33441, 1.39309)], rel=1e-4)
     elastic = load("elastic-frictionless")
-    assert flow_stresses(elastic, active(elastic)) == {}
+    assert flow_stresses(Case(elastic).bodies) == {}
 
 
 MISTAKES = [
@@ -140,17 +140,17 @@ def test_a_material_that_contradicts_itself_is_refused(changes, words):
 def test_a_hardness_below_yield_is_refused_before_any_work():
     soft = replace_all(T5B, {"barrier.material.law": "hardness", "barrier.material.hardness": 90})
     with pytest.raises(SceneError, match="HV 90 stands for a flow stress of 294 MPa"):
-        plan(soft)
+        Case.of(soft)
 
 
 @pytest.mark.parametrize("name", materials())
 def test_every_shipped_material_makes_a_plan(name):
     scene = of(name)
-    planned = plan(scene, "modal")
+    planned = Case.of(scene, "modal")
     assert read_dict(to_dict(scene)) == scene
     metal = scene.projectile.material
     assert ("rod-plasticity" in planned.active) <= metal.yields
-    told = " ".join(unknowns(scene, planned.active))
+    told = " ".join(unknowns(planned.bodies))
     silent = metal.rate is None and "rod-plasticity" in planned.active
     assert (f"({name}) has no rate data" in told) == silent
     assert (f"({name}) has no yield stress" in told) == (not metal.yields)
@@ -164,7 +164,7 @@ def test_the_model_of_the_earlier_constants_is_the_earlier_model():
     """Tensile law, C = .022 over the tensile curve, and heat of carbon steel."""
     earlier = {"C": 0.022, "tested": "1 /s"}
     scene = replace_all(T5B, {f"{body}.rate.{key}": earlier[key] for body in BODIES for key in earlier})
-    slots = plan(scene).slots
+    slots = Case.of(scene).slots
     for law, E, strength, exponent in (
         (slots.rod_law, 219e9, 546e6, 0.042629108901212936),
         (slots.barrier_law, 206e9, 320e6, 0.10334158957939037),
@@ -172,28 +172,28 @@ def test_the_model_of_the_earlier_constants_is_the_earlier_model():
         assert (law.yield_stress, law.slope, law.rate) == (strength, E / strength, JohnsonCook(0.022, 1.0))
         assert law.exponent == pytest.approx(exponent, rel=1e-13)
     assert slots.skin is None
-    assert halves(scene) == (Half(53.0, 7850 * 440.0),) * 2
-    assert thermal(T5B) == thermal(scene)
+    assert halves(Case(scene).bodies) == (Half(53.0, 7850 * 440.0),) * 2
+    assert thermal(Case(T5B).bodies) == thermal(Case(scene).bodies)
 
 
 def test_what_a_scene_states_of_heat_overrides_the_material():
-    assert halves(replace(T5B, "heating.rod_conductivity", "20 W/(m K)"))[0].conductivity == 20.0
+    assert halves(Case(replace(T5B, "heating.rod_conductivity", "20 W/(m K)")).bodies)[0].conductivity == 20.0
     known = {"heating.rod_conductivity": "44 W/(m K)", "effects": ["auto", "contact-heating"]}
     scene = of("steel-4340")
-    assert plan(replace_all(scene, known)).slots.heat
+    assert Case.of(replace_all(scene, known)).slots.heat
     with pytest.raises(SceneError, match=r"heating.rod_conductivity.*is not known"):
-        plan(replace_all(scene, {"effects": known["effects"]}))
+        Case.of(replace_all(scene, {"effects": known["effects"]}))
 
 
 def test_no_metal_has_the_law_of_another():
     """A soft metal without rate data makes the model no stronger at any rate, beside a plate that has one."""
     scene = of("lead")
     assert rate_law(scene.projectile.material) is None
-    slots = plan(scene, "modal").slots
+    slots = Case.of(scene, "modal").slots
     assert slots.rod_law is not None and slots.rod_law.rate is None
     assert slots.barrier_law is None or slots.barrier_law.rate is not None
 
 
 def test_what_never_yields_cannot_be_told_to():
     with pytest.raises(SceneError, match="yield_stress of alumina"):
-        plan(replace(of("alumina"), "effects", ["auto", "rod-plasticity"]))
+        Case.of(replace(of("alumina"), "effects", ["auto", "rod-plasticity"]))

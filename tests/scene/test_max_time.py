@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.modal.impact import solve
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shipped import load, replace_all
@@ -18,12 +18,12 @@ TUNGSTEN = {
 
 @pytest.mark.parametrize("name", MEASURED_SETS)
 def test_the_measured_sets_run_for_2_5_ms_at_most(name):
-    assert plan(load(name)).max_time == 2.5e-3
+    assert Case.of(load(name)).max_time == 2.5e-3
 
 
 def test_a_long_heavy_rod_is_followed_to_its_end():
     """It touches for several milliseconds: at 2.5 ms it was cut off."""
-    planned = plan(replace_all(load("t3-machined"), TUNGSTEN), "modal")
+    planned = Case.of(replace_all(load("t3-machined"), TUNGSTEN), "modal")
     result = solve(planned)
     assert result.contacts[-1, 1] > 2.5e-3
     assert result.contacts[-1, 1] < planned.max_time
@@ -32,7 +32,7 @@ def test_a_long_heavy_rod_is_followed_to_its_end():
 
 def test_a_slow_rod_is_given_the_time_of_its_contact():
     slow = {"projectile.diameter": "60 mm", "impact.v_n": "-1e-5 m/s", "impact.v_t": "0 m/s"}
-    planned = plan(replace_all(load("t5b"), {**slow, "projectile.length": "0.5 m"}), "modal")
+    planned = Case.of(replace_all(load("t5b"), {**slow, "projectile.length": "0.5 m"}), "modal")
     result = solve(planned)
     assert result.contacts[-1, 1] > 2.5e-3
     assert result.finished
@@ -41,7 +41,7 @@ def test_a_slow_rod_is_given_the_time_of_its_contact():
 def test_a_stated_time_stays_and_an_unstated_one_is_not_written():
     scene = load("t5b")
     stated = replace_all(scene, {"accuracy.max_time": "1 ms"})
-    assert plan(stated).max_time == 1e-3
+    assert Case.of(stated).max_time == 1e-3
     assert to_dict(stated)["accuracy"]["max_time"] == "1 ms"
     assert "max_time" not in to_dict(scene)["accuracy"]
     assert read_dict(to_dict(scene), "test") == scene

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from own_bodies import box, taper, write
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.physics.beam import bending_period, stretching_period
-from fem_impact.physics.contact import arms, projectile
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.read import read_dict, read_toml
@@ -53,18 +52,18 @@ def test_a_mesh_is_shown_as_seen_from_the_scene(scene, tmp_path):
 
 
 def test_mass_inertia_arms_and_periods_of_a_bar_are_those_of_closed_forms(scene):
-    body, rod = projectile(scene), scene.projectile
+    body, rod = scene.projectile.rigid_body, scene.projectile
     assert (rod.length, rod.diameter) == (pytest.approx(0.1), pytest.approx(0.01))
     assert body.mass == pytest.approx(rod.material.rho * 1e-5, rel=1e-9)
     assert body.k2 == pytest.approx((0.1**2 + 0.01**2) / 12, rel=1e-9)
-    d_c, d_d = arms(scene)
+    d_c, d_d = Case(scene).contact.arms
     assert d_c == pytest.approx(0.05 * 0.5 - 0.005 * sqrt(0.75), rel=1e-9)
     assert d_d == pytest.approx(0.05 * sqrt(0.75) + 0.005 * 0.5, rel=1e-9)
     c0 = sqrt(rod.material.E / rod.material.rho)
-    assert stretching_period(scene) == pytest.approx(0.2 / c0, rel=2e-3)
+    assert stretching_period(scene.projectile) == pytest.approx(0.2 / c0, rel=2e-3)
     slender = 2 * pi / (4.730041**2 / 0.1**2 * c0 * 0.01 / sqrt(12))
     # a beam of a tenth of its length in depth is 4 % slower by shear and rotatory inertia
-    assert bending_period(scene) == pytest.approx(1.037 * slender, rel=0.01)
+    assert bending_period(scene.projectile) == pytest.approx(1.037 * slender, rel=0.01)
 
 
 def test_a_written_scene_reads_back_equal_and_from_anywhere(scene, tmp_path, monkeypatch):
@@ -122,7 +121,7 @@ def test_segments_end_between_cells_and_weigh_what_they_are_of(scene, tmp_path):
         ]
         return stated(tmp_path / "bar.vtu", mesh_unit="mm", material=None, segments=parts)
 
-    body = projectile(of("60 mm"))
+    body = of("60 mm").projectile.rigid_body
     light, heavy = (part.material.rho for part in of("60 mm").projectile.segments)
     assert body.mass == pytest.approx(1e-4 * (0.06 * light + 0.04 * heavy), rel=1e-9)
     with pytest.raises(
@@ -137,9 +136,9 @@ def test_only_what_the_model_holds_is_planned(scene):
         (replace(scene, impact=Impact(1.5707, -2.0, 0.0)), "solid", "side along"),
     ):
         with pytest.raises(SceneError, match=reason):
-            plan(changed, fidelity)
-    assert plan(scene, "rigid").fidelity == "rigid"
-    assert any("flat facets" in sentence for sentence in plan(scene).validity)
+            Case.of(changed, fidelity)
+    assert Case.of(scene, "rigid").fidelity == "rigid"
+    assert any("flat facets" in sentence for sentence in Case.of(scene).outside)
 
 
 def test_a_thin_cell_is_told_with_its_place(tmp_path):
@@ -147,7 +146,7 @@ def test_a_thin_cell_is_told_with_its_place(tmp_path):
     layer = np.isclose(points[:, 2], 40e-3)
     points[layer, 2] -= 3.9e-3
     scene = stated(write(tmp_path / "thin.vtu", points, cells))
-    (told,) = [sentence for sentence in plan(scene).warnings if "thinnest" in sentence]
+    (told,) = [sentence for sentence in Case.of(scene).warnings if "thinnest" in sentence]
     assert "100 um" in told
     assert "36.05" in told
     assert "8 cells are thinner" in told

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.scene.read import read_dict
 from fem_impact.scene.shapes import NEEDS
 
@@ -19,7 +19,7 @@ SCENES = [tomllib.loads(block) for block in re.findall(r"```toml\n(.*?)```", PAG
 @pytest.mark.parametrize("data", SCENES, ids=lambda data: data["id"])
 def test_a_scene_of_the_page_is_valid(data):
     for fidelity in ("rigid", "modal", "solid"):
-        assert plan(read_dict(data), fidelity).scene.id == data["id"]
+        assert Case.of(read_dict(data), fidelity).scene.id == data["id"]
 
 
 def test_the_page_names_every_shape_and_its_sizes():

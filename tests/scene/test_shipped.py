@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.scene.fields import DEFAULTS
 from fem_impact.scene.impact import Impact
@@ -88,7 +88,7 @@ def test_a_measured_scene_repeats_the_published_set(name):
 
 @pytest.mark.parametrize("name", MEASURED_SETS)
 def test_a_measured_scene_lies_inside_the_measured_range(name):
-    assert plan(load(name)).validity == ()
+    assert Case.of(load(name)).outside == ()
 
 
 def test_one_friction_interval_serves_every_rod_speed_and_angle():
@@ -161,7 +161,7 @@ def test_the_table_of_defaults_is_what_an_unstated_value_becomes():
 
 def test_a_scene_that_leaves_the_measured_range_says_where():
     changed = replace(replace(load("t5b"), "impact.angle", "80 deg"), "impact.omega", "5 rad/s")
-    sentences = " ".join(plan(changed, "rigid").validity)
+    sentences = " ".join(Case.of(changed, "rigid").outside)
     assert "angle 80 deg, measured 17 deg to 60 deg" in sentences
     assert "turn" in sentences
 

@@ -4,7 +4,7 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.scene.shipped import load
 from fem_impact.solid.build import build
 from fem_impact.solid.run import solve
@@ -48,10 +48,10 @@ def scene(
 
 def model(*effects, **changes):
     """A fresh model: its items hold what moves."""
-    return build(plan(scene(*effects, **changes)))
+    return build(Case.of(scene(*effects, **changes)))
 
 
 @cache
 def run(*effects, **changes):
     """The end of a run; read only."""
-    return solve(plan(scene(*effects, **changes)))
+    return solve(Case.of(scene(*effects, **changes)))

@@ -10,7 +10,7 @@ import pytest
 import solid_scenes as scenes
 
 import rigid
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.fem.flight import RigidMotion
 from fem_impact.fem.stable import SAFETY, gradient_squares
@@ -151,7 +151,7 @@ def told(words, cause, place):
 
 def test_a_run_that_makes_energy_stops_and_keeps_its_answer():
     """At 1.1 times the stable step the highest mode of the rod grows: it is seen and stopped."""
-    planned = plan(scenes.scene("vibration", "barrier-rigid", length=0.08))
+    planned = Case.of(scenes.scene("vibration", "barrier-rigid", length=0.08))
     model = scenes.model("vibration", "barrier-rigid", length=0.08)
     result = solve(planned, model=replace(model, steps={"rod": 1.1 / SAFETY * model.step}))
     assert not result.finished
@@ -250,7 +250,7 @@ def test_a_tail_that_strikes_first_ends_the_run(effects):
 
 
 def test_camera_reads_a_rigid_flight_exactly(result):
-    alpha, arm = result.plan.scene.impact.angle, lever_of(0.08)
+    alpha, arm = result.case.scene.impact.angle, lever_of(0.08)
     # the last two turn the rod by more than a quarter, and by more than a whole turn, in the window
     for V_n, V_t, Omega in ((0.4, -1.2, s) for s in (0.0, 12.0, -30.0, 500.0, -1700.0)):
         seen = replay(_moving(result, V_n, V_t, Omega), V_n, V_t)
@@ -283,7 +283,7 @@ def test_levers():
 @pytest.fixture(scope="module")
 def measured(result):
     """The run as if it repeated a measured set, so that all three sets of arms are filled."""
-    return reduce(replace(result, plan=plan(replace(result.plan.scene, measured="t5b"))))
+    return reduce(replace(result, case=Case.of(replace(result.case.scene, measured="t5b"))))
 
 
 @pytest.mark.parametrize("arms", ["paper", "edge", "impulse"])
@@ -311,7 +311,7 @@ def test_restitution_of_moment_is_minus_one_at_the_centre_of_impulse(measured):
 
 
 def test_coefficients_are_those_of_the_velocities(measured, result):
-    m, impact = result.motion, result.plan.scene.impact
+    m, impact = result.motion, result.case.scene.impact
     d_c = measured.restitution.edge.d_c
     assert measured.restitution.edge.e == pytest.approx(-(m.V_n + d_c * m.Omega) / impact.v_n)
     assert measured.restitution.mu == pytest.approx((m.V_t - impact.v_t) / (m.V_n - impact.v_n))
@@ -331,8 +331,8 @@ def test_sign_of_omega_follows_the_impulse(result):
 
 
 def test_gravity_is_taken_out(result):
-    scene = replace(result.plan.scene, effects=(*result.plan.scene.effects, "gravity"))
-    with_fall = reduce(replace(result, plan=plan(scene)))
+    scene = replace(result.case.scene, effects=(*result.case.scene.effects, "gravity"))
+    with_fall = reduce(replace(result, case=Case.of(scene)))
     without = reduce(result)
     fall = 9.80665 * result.time
     assert with_fall.motion.V_n - without.motion.V_n == pytest.approx(fall * cos(pi / 4), rel=1e-4)
@@ -377,7 +377,7 @@ def test_a_step_changes_momentum_by_the_contact_impulse_alone():
 
 
 def test_a_run_that_ends_before_it_touches_has_no_outcome():
-    planned = plan(scenes.scene(*PLANE, length=0.08, max_time=1e-6, v_n=-0.1))
+    planned = Case.of(scenes.scene(*PLANE, length=0.08, max_time=1e-6, v_n=-0.1))
     result = solve(planned, model=build(planned, gap=1e-4))
     assert result.model.book.intervals == []
     with pytest.raises(RunError, match=r"There was no contact in .* us, 100 steps. Reached max_time"):

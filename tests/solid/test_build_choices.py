@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.eigen import rod_modes
 from fem_impact.scene.shipped import load
@@ -19,7 +19,7 @@ BASE = scenes.scene("vibration", "barrier-elastic", length=0.08)
 
 def model(**accuracy):
     scene = replace(BASE, accuracy=replace(BASE.accuracy, **accuracy))
-    return build(plan(scene))
+    return build(Case.of(scene))
 
 
 def lowest(model):
@@ -41,7 +41,7 @@ def test_fully_integrated_cells_are_stiffer_in_bending_than_incompatible_ones():
 def test_cells_that_yield_may_be_fully_integrated():
     scene = scenes.scene("vibration", "rod-plasticity", "barrier-rigid", length=0.08)
     accuracy = replace(scene.accuracy, yielding_element="full")
-    plain, full = build(plan(scene)), build(plan(replace(scene, accuracy=accuracy)))
+    plain, full = build(Case.of(scene)), build(Case.of(replace(scene, accuracy=accuracy)))
     assert [zone.full for zone in (*plain.zones, *full.zones)] == [False, True]
     assert full.steps["rod"] <= plain.steps["rod"]
 
@@ -53,7 +53,7 @@ def faces_inverse(model):
 
 def test_faces_of_a_block_are_held_where_the_scene_says_so():
     fixed = replace(BASE, barrier=replace(BASE.barrier, boundary="fixed"))
-    around, held = build(plan(BASE)), build(plan(fixed))
+    around, held = build(Case.of(BASE)), build(Case.of(fixed))
     assert (faces_inverse(around) > 0.0).mean() > 0.5
     assert faces_inverse(held).max() == 0.0
     free = np.count_nonzero(around.inverse_mass) - np.count_nonzero(faces_inverse(around))
@@ -65,9 +65,9 @@ def test_faces_that_are_held_let_no_waves_out():
     fast = replace(BASE, impact=replace(BASE.impact, v_n=-6.0), effects=effects)
     fixed = replace(fast, barrier=replace(fast.barrier, boundary="fixed"))
     with pytest.raises(SceneError, match="lets no waves out"):
-        plan(fixed)
-    assert "radiation" in plan(replace(fast, effects=("auto",))).active
-    assert "radiation" not in plan(replace(fixed, effects=("auto",))).active
+        Case.of(fixed)
+    assert "radiation" in Case.of(replace(fast, effects=("auto",))).active
+    assert "radiation" not in Case.of(replace(fixed, effects=("auto",))).active
 
 
 def test_hardening_is_linear_where_its_modulus_is_stated():
@@ -75,17 +75,17 @@ def test_hardening_is_linear_where_its_modulus_is_stated():
     scene = replace(
         BASE, projectile=replace(BASE.projectile, material=rod), effects=("rod-plasticity", "barrier-rigid")
     )
-    law = plan(scene).slots.rod_law
+    law = Case.of(scene).slots.rod_law
     assert law.flow_stress(0.1) == pytest.approx(rod.yield_stress + 2e8)
 
 
 def test_building_takes_little_memory():
     """Element matrices alone, if all were kept at once, would take 4.6 kB an element."""
     scene = load("t5b")
-    build(plan(scene))  # the first one also loads the compiled kernels
+    build(Case.of(scene))  # the first one also loads the compiled kernels
     tracemalloc.start()
     try:
-        built = build(plan(scene))
+        built = build(Case.of(scene))
         peak = tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()

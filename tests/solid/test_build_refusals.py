@@ -2,7 +2,7 @@
 
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
@@ -12,37 +12,37 @@ from fem_impact.solid.build import build
 def test_a_tip_too_coarse_to_yield_is_refused(name):
     scene = replace(load(name), "accuracy.tip_size", "2.4 mm")
     with pytest.raises(SceneError, match=r"accuracy\.tip_size.*Give at most 1\.7 mm"):
-        build(plan(scene))
+        build(Case.of(scene))
 
 
 def test_a_side_that_comes_down_before_the_tip_is_refused():
     scene = replace_all(load("t5b"), {"impact.angle": "89.7 deg", "effects": ["vibration", "barrier-rigid"]})
     with pytest.raises(SceneError, match=r"impact\.angle: .*before its tip.*larger accuracy\.across"):
-        build(plan(scene))
+        build(Case.of(scene))
     steeper = replace(scene, "impact.angle", "88.9 deg")
-    assert build(plan(steeper))
+    assert build(Case.of(steeper))
 
 
 def test_steel_that_no_power_law_fits_is_refused():
     scene = replace(load("t5b"), "projectile.material.ultimate_stress", "20 GPa")
     with pytest.raises(SceneError, match=r"ultimate_stress of rod-steel.*must lie between the yield stress"):
-        plan(scene)
+        Case.of(scene)
 
 
 def test_a_block_of_a_million_cells_is_refused():
     thin = {"projectile.diameter": "1 mm", "projectile.length": "10 mm", "projectile.tip_radius": "0.2 mm"}
     scene = replace_all(load("t5b"), {**thin, "accuracy.tip_size": "0.05 mm", "accuracy.across": 12})
     with pytest.raises(SceneError, match=r'accuracy\.block_margin = "6 mm": makes a block of .* cells'):
-        build(plan(scene))
+        build(Case.of(scene))
 
 
 def test_a_rod_without_room_for_its_cells_is_refused():
     stub = {"projectile.tip": "A", "projectile.tip_radius": "0.5 mm", "projectile.length": "19 mm"}
     scene = replace_all(load("t5b"), stub)
     with pytest.raises(SceneError, match=r"projectile: cannot be meshed: .*Give a longer rod"):
-        build(plan(scene))
+        build(Case.of(scene))
 
 
 def test_the_proposed_tip_is_taken():
     scene = replace(load("t5b"), "accuracy.tip_size", "1.6 mm")
-    assert [zone.count > 0 for zone in build(plan(scene)).zones] == [True, True]
+    assert [zone.count > 0 for zone in build(Case.of(scene)).zones] == [True, True]

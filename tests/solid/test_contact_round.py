@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
-from fem_impact.physics.contact import barrier_conforms
+from fem_impact.case.case import Case
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
 from fem_impact.solid.contact.book import ACTIVE
@@ -101,20 +100,19 @@ def test_a_barrier_that_flows_conforms_and_an_elastic_one_does_not():
 
 def test_only_a_barrier_that_flows_under_all_of_the_contact_conforms():
     scene = load("t5b")
-    assert barrier_conforms(plan(scene).bodies)
-    assert not barrier_conforms(
-        plan(replace(scene, "effects", ["vibration", "friction", "barrier-elastic"])).bodies
-    )
-    assert not barrier_conforms(plan(replace(scene, "impact.v_n", "-1e-4 m/s")).bodies)
+    assert Case.of(scene).bodies.contact.barrier_conforms
+    elastic = replace(scene, "effects", ["vibration", "friction", "barrier-elastic"])
+    assert not Case.of(elastic).contact.barrier_conforms
+    assert not Case.of(replace(scene, "impact.v_n", "-1e-4 m/s")).bodies.contact.barrier_conforms
     softer = replace(scene, "projectile.material.yield_stress", "100 MPa")
-    assert not barrier_conforms(plan(softer).bodies)  # the rod flows first
+    assert not Case.of(softer).bodies.contact.barrier_conforms  # the rod flows first
 
 
 def test_a_sharp_edge_sinks_no_deeper_than_the_play():
     """Between two rows of the barrier's nodes only the rod's own nodes can hold it."""
     scene = scenes.scene(*FLOWS, length=0.08, v_n=-4.0, v_t=-4.0, sharp=True)
     scene = replace(scene, "accuracy.grid_shift", 0.25)  # the edge lands beside a row
-    model = build(plan(scene))
+    model = build(Case.of(scene))
     state, contact = model.initial_state(), model.contact
     assert (contact.rod.bend == 0).any()
     deepest, speed = 0.0, 4.0
@@ -141,7 +139,7 @@ def test_a_flat_face_that_comes_down_flat_on_steel_that_yields_touches_with_fini
     """Its bulge is exactly 0, and still its quads take their normals from the rod."""
     flat = {"projectile.tip": "plain", "projectile.tip_radius": "0 mm", "accuracy.tip_size": "1 mm"}
     upright = {"impact.angle": "0 deg", "impact.v_n": "-2 m/s", "impact.v_t": "0 m/s"}
-    model = build(plan(replace_all(load("t5b"), flat | upright)))
+    model = build(Case.of(replace_all(load("t5b"), flat | upright)))
     state = model.initial_state()
     for _ in range(20):
         evaluate(model, state)

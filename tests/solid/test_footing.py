@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.run.simulate import simulate
 from fem_impact.scene.shipped import load, replace_all
@@ -62,7 +62,7 @@ def test_a_free_barrier_takes_the_momentum_that_the_rod_loses(effects):
 def test_a_block_on_a_footing_shares_its_momentum_without_loss():
     """Springs and dashpots between block and footing pass on what they take."""
     scene = replace_all(load("t5b"), {**COARSE, "effects": BLOCK, "barrier.mass": "0.5 kg"})
-    model = build(plan(scene))
+    model = build(Case.of(scene))
     state, mass = model.initial_state(), model.mass
     block, footing, rod = model.layout.barrier_slice, model.layout.footing, model.layout.rod
     assert 2 * (mass[block].sum() / 3 + mass[footing[2]]) == pytest.approx(0.5, rel=1e-12)
@@ -97,7 +97,7 @@ def test_only_the_relative_motion_matters():
 def test_a_block_heavier_than_its_barrier_is_refused():
     scene = replace_all(load("t5b"), {**COARSE, "effects": BLOCK, "barrier.mass": "1 g"})
     with pytest.raises(SceneError, match=r"barrier\.mass = .*less than that of its meshed block"):
-        build(plan(scene))
+        build(Case.of(scene))
 
 
 @pytest.mark.parametrize("effects", [PLANE, [*YIELDING[:-1]]])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from light_barrier import DEPTH, OFFSET, TURNING, J, M
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import known
 from fem_impact.run.simulate import simulate
@@ -84,7 +84,7 @@ def test_on_a_block_momentum_is_kept_and_angular_momentum_but_for_the_gap_of_the
 
 def turning_model(effects):
     scene = replace_all(load("t5b"), {**ROD, **TURNING, "effects": effects})
-    model = build(plan(scene), gap=1e-3)
+    model = build(Case.of(scene), gap=1e-3)
     return scene, model, model.initial_state()
 
 
@@ -156,7 +156,7 @@ def test_without_an_end_to_its_inertia_it_only_translates(effects):
 def test_a_block_with_more_inertia_than_its_barrier_is_refused():
     scene = replace_all(load("t5b"), {**ROD, **TURNING, "effects": BLOCK, "barrier.inertia": "1e-6 kg m2"})
     with pytest.raises(SceneError, match=r"barrier\.inertia = .*less than that of its meshed block"):
-        build(plan(scene))
+        build(Case.of(scene))
 
 
 def test_a_surface_that_has_moved_and_turned():

@@ -5,7 +5,7 @@ from math import cos, pi
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.run.solid import reduce
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve
@@ -15,7 +15,7 @@ PLANE = ("vibration", "friction", "barrier-rigid")
 
 
 def run(*effects, **changes):
-    return solve(plan(scenes.scene(*effects, **changes)))
+    return solve(Case.of(scenes.scene(*effects, **changes)))
 
 
 @pytest.mark.parametrize("barrier", ["barrier-rigid", "barrier-elastic", "barrier-elastoplastic"])

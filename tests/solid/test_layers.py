@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse as sp
 
 import meshes
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem.body import MeshedBodies, assemble_masses, make_body, of_materials, stiffness_of
 from fem_impact.fem.layout import number
 from fem_impact.physics.contact import pressure_speed
@@ -130,7 +130,7 @@ def mean_give(layer, base, thickness, a, b):
 
 def found_give(one):
     """Return the mean displacement of the block of a scene under unit pressure, m/Pa, and the rectangle."""
-    made = MeshedBodies(plan(one))
+    made = MeshedBodies(Case.of(one))
     body, layout, place = made.true_barrier, made.layout, made.layout.barrier_slice
     block = elastic_block(body, layout, made.x)
     quads = body.mesh.faces_with(SKIN)
@@ -177,7 +177,7 @@ def test_a_layered_block_gives_as_a_layered_half_space():
 
 def test_rows_of_cells_end_at_the_interfaces():
     one = scene([("1.5 mm", "steel-4340"), ("3 mm", "copper")])
-    made = MeshedBodies(plan(one))
+    made = MeshedBodies(Case.of(one))
     body = made.true_barrier
     low, high = (
         -body.mesh.points[body.mesh.cells, 2].max(axis=1),
@@ -196,14 +196,14 @@ def test_rows_of_cells_end_at_the_interfaces():
 
 
 def test_each_material_that_yields_has_its_own_zone_and_law():
-    model = build(plan(scene([("1.2 mm", "steel-4340")], base="lead")))
+    model = build(Case.of(scene([("1.2 mm", "steel-4340")], base="lead")))
     zones = [zone for zone in model.zones if zone.body == "barrier"]
     assert [zone.law[0] for zone in zones] == [STEEL.yield_stress, materials()["lead"].yield_stress]
     assert not set(zones[0].cells) & set(zones[1].cells)
     points = model.geometry.barrier.points[model.geometry.barrier.cells]
     assert -points[zones[0].cells][..., 2].min() == pytest.approx(1.2e-3)
     elastic = build(
-        plan(scene([("1.2 mm", "alumina")], base="lead", effects=["auto", "barrier-elastoplastic"]))
+        Case.of(scene([("1.2 mm", "alumina")], base="lead", effects=["auto", "barrier-elastoplastic"]))
     )
     assert [zone.G for zone in elastic.zones if zone.body == "barrier"] == [zones[1].G]
 

@@ -8,7 +8,6 @@ import meshes
 from fem_impact.fem.elements import lumped_mass
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.layout import TWISTING, MassPoints
-from fem_impact.physics.contact import projectile
 
 RADIUS, DENSITY = 9.5e-3, 7850.0
 
@@ -86,7 +85,7 @@ def test_mass_and_inertia_of_a_scenes_rod():
     made = model("vibration", "barrier-rigid", **short)
     places = made.layout.rod[~made.geometry.rod.mesh.is_hanging]
     found = rigid_motion(made.start[0][places], made.start[1][places], made.mass[places[:, 0]])
-    rod = projectile(scene("vibration", "barrier-rigid", **short))
+    rod = scene("vibration", "barrier-rigid", **short).projectile.rigid_body
     assert found.mass == pytest.approx(rod.mass, rel=1e-12)
     assert 0.0 < found.inertia / found.mass - rod.k2 < made.geometry.rod.slice_length**2 / 6.0
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import meshes
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.fem.boundary import plate_edges
 from fem_impact.outcome.keys import or_none
@@ -36,7 +36,7 @@ def scene(**changes):
 
 @pytest.fixture(scope="module")
 def model():
-    return build(plan(scene()))
+    return build(Case.of(scene()))
 
 
 @pytest.fixture(scope="module")
@@ -95,12 +95,12 @@ def test_energy_goes_into_bending_waves_and_the_ledger_closes(yielding):
 
 
 def test_cells_are_split_down_to_the_underside_within_the_fine_zone():
-    thin = build(plan(scene(**{"barrier.thickness": "3.5 mm", "accuracy.across": 8})))
+    thin = build(Case.of(scene(**{"barrier.thickness": "3.5 mm", "accuracy.across": 8})))
     mesh = thin.geometry.barrier
     deepest = mesh.points[mesh.cells[mesh.level == mesh.level.max()], 2].min()
     assert deepest == pytest.approx(-3.5e-3, abs=2e-3)
     with pytest.raises(SceneError, match="rows of cells"):
-        plan(scene(**{"barrier.thickness": "1 mm"}))
+        Case.of(scene(**{"barrier.thickness": "1 mm"}))
 
 
 @pytest.mark.parametrize(
@@ -123,10 +123,10 @@ def test_skin_outside_the_contact_is_held_against_the_plate_where_it_has_gone(
 def test_a_plate_that_takes_nearly_all_is_told_with_a_thickness_that_does_not(thickness, told):
     """The impedance of a plate goes as the square of its thickness."""
     soft = {"accuracy.across": 8, "barrier.material": "aluminium-6061-t6", "projectile.length": "60 mm"}
-    planned = plan(scene(**soft, **{"barrier.thickness": thickness}))
-    sentence = " ".join(planned.validity)
+    planned = Case.of(scene(**soft, **{"barrier.thickness": thickness}))
+    sentence = " ".join(planned.outside)
     assert ("the rod hardly leaves the plate" in sentence) == told
     if told:
         enough = re.search(r"A thickness of (\S+ mm)", sentence)[1]
         thicker = replace_all(planned.scene, {"barrier.thickness": enough})
-        assert zener_number(plan(thicker).bodies) == pytest.approx(2.0, rel=0.06)
+        assert zener_number(Case.of(thicker).contact) == pytest.approx(2.0, rel=0.06)

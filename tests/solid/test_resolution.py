@@ -6,7 +6,7 @@ from math import cos, radians, sin
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
@@ -28,7 +28,7 @@ def result():
     """A gentle blow: one node of the 1.6 mm mesh is pressed; e, mu and Omega depend on its place."""
     short = {"length": 0.06, "v_n": -0.3, "v_t": -0.3, "tip": 1.6e-3, "max_time": 4e-4}
     scene = scenes.scene("vibration", "friction", "barrier-elastic", "contact-heating", **short)
-    return solve(plan(shipped.replace(scene, "accuracy.unresolved", "withhold")))
+    return solve(Case.of(shipped.replace(scene, "accuracy.unresolved", "withhold")))
 
 
 def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(result, tmp_path):
@@ -46,8 +46,8 @@ def test_a_contact_narrower_than_an_element_has_no_coefficients_and_no_shares(re
 
 
 def test_the_scene_may_ask_for_the_numbers_all_the_same(result):
-    asked = shipped.replace(result.plan.scene, "accuracy.unresolved", "report")
-    outcome = reduce(replace(result, plan=plan(asked)))
+    asked = shipped.replace(result.case.scene, "accuracy.unresolved", "report")
+    outcome = reduce(replace(result, case=Case.of(asked)))
     assert outcome.heat.power > 0
     assert 0.0 < outcome.restitution.edge.e < 2.0 and 0.0 < outcome.energy.rigid < 2.0
     assert any("the contact was not resolved" in words for words in outcome.validity.warnings)
@@ -71,16 +71,18 @@ def test_a_contact_that_loses_energy_by_its_mesh_is_not_resolved(result):
 
 
 def test_a_narrow_contact_is_told_before_the_run(result):
-    (told,) = (words for words in result.plan.warnings if "too narrow" in words)
+    (told,) = (words for words in result.case.warnings if "too narrow" in words)
     size = told.partition("accuracy.tip_size = ")[2].partition(" or less")[0]
     assert not [
-        w for w in plan(shipped.replace(result.plan.scene, "accuracy.tip_size", size)).warnings if w == told
+        w
+        for w in Case.of(shipped.replace(result.case.scene, "accuracy.tip_size", size)).warnings
+        if w == told
     ]
 
 
 @pytest.mark.parametrize("name", [*MEASURED_SETS, "quick", "elastic-frictionless"])
 def test_shipped_scenes_resolve_their_contact(name):
-    assert not [words for words in plan(load(name)).warnings if "too narrow" in words]
+    assert not [words for words in Case.of(load(name)).warnings if "too narrow" in words]
 
 
 def test_a_choice_that_differs_is_written_and_another_refused():
@@ -110,13 +112,15 @@ def thick():
 
 def test_a_thick_rod_on_coarse_cells_is_not_resolved(thick):
     """One node slides down the slope of a facet: e = 1.43 where the reduced model has .70, and mu = 2.8 f."""
-    result = solve(plan(thick))
+    result = solve(Case.of(thick))
     told = reduce(result)
     assert told.restitution.edge.e > 1.3
     assert told.restitution.mu > 2.5 * 0.07
     assert any("is above 1" in words for words in told.validity.warnings)
     assert any("beyond f = 0.07" in words for words in told.validity.warnings)
-    withheld = reduce(replace(result, plan=plan(shipped.replace(thick, "accuracy.unresolved", "withhold"))))
+    withheld = reduce(
+        replace(result, case=Case.of(shipped.replace(thick, "accuracy.unresolved", "withhold")))
+    )
     for value in (withheld.restitution.mu, withheld.restitution.edge.e, withheld.energy.rigid):
         assert "the contact was not resolved" in value.reason
         assert "Give accuracy.tip_size = 0.11 mm or less" in value.reason
@@ -126,6 +130,6 @@ def test_a_thick_rod_on_coarse_cells_is_not_resolved(thick):
 @pytest.mark.slow
 def test_a_thick_rod_on_the_advised_cells_is_resolved(thick):
     """Half the size moves e by .018 and mu by 4 %."""
-    outcome = reduce(solve(plan(shipped.replace(thick, "accuracy.tip_size", "0.25 mm"))))
+    outcome = reduce(solve(Case.of(shipped.replace(thick, "accuracy.tip_size", "0.25 mm"))))
     assert outcome.restitution.edge.e == pytest.approx(0.78, abs=0.03)
     assert outcome.restitution.mu == pytest.approx(0.07, abs=0.006)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import NAMES
-from fem_impact.case.plan import plan
 from fem_impact.errors import ResultError
 from fem_impact.files.fields import read_fields
 from fem_impact.files.run_directory import CHECKPOINT
@@ -52,7 +52,7 @@ def stop_at(step):
 
 def kept(scene, out, **options):
     """Run with files in ``out``, as `simulate` does."""
-    return solve(plan(scene), RunOptions(out, stamp=stamp(scene), **options))
+    return solve(Case.of(scene), RunOptions(out, stamp=stamp(scene), **options))
 
 
 def interrupted(scene, out, step):
@@ -92,7 +92,7 @@ def test_resumed_is_uninterrupted(effects, tmp_path):
 def test_a_run_on_a_plate_that_is_meshed_through_goes_on(tmp_path):
     scene = short(SETS[2])
     scene = replace(scene, barrier=replace(scene.barrier, thickness=5e-3))
-    assert plan(scene).slots.bending is not None
+    assert Case.of(scene).slots.bending is not None
     expected = kept(scene, tmp_path / "whole")
     found = kept(scene, interrupted(scene, tmp_path / "parts", 400), resume=True)
     assert found.accounts["plate"] > 0
@@ -195,7 +195,7 @@ class Run:
     """A run laid open: whatever moves in it can be reached from ``roots``."""
 
     def __init__(self, scene, out, go_on):
-        planned = plan(scene)
+        planned = Case.of(scene)
         self.model = build(planned)
         self.state = self.model.initial_state()
         view = RodState.of(self.model)

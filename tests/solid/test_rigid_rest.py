@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 import solid_scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.outcome.keys import Unknown
-from fem_impact.physics.contact import arms, projectile
 from fem_impact.run.solid import reduce
 from fem_impact.solid.build import build
 from fem_impact.solid.rigid_rest import ElasticNose, RigidRest, hold
@@ -41,7 +40,7 @@ def test_slices_and_modes_are_not_built():
 
 
 def test_mass_and_inertia_are_those_of_the_rod(sliding):
-    rod = projectile(sliding.plan.scene)
+    rod = sliding.plan.scene.projectile.rigid_body
     assert sliding.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert sliding.motion.inertia / sliding.motion.mass == pytest.approx(rod.k2, rel=0.01)
 
@@ -63,7 +62,7 @@ def test_a_stiff_oblique_strike_is_that_of_rigid_theory():
     found = outcome(*ELASTIC, length=0.08)
     assert found.restitution.edge.e == pytest.approx(1.0, abs=0.005)
     stated = solid_scenes.scene(*ELASTIC, length=0.08)
-    d_c, k2 = arms(stated)[0], found.motion.k_squared
+    d_c, k2 = Case(stated).contact.arms[0], found.motion.k_squared
     assert found.motion.Omega == pytest.approx(
         (1 + found.restitution.edge.e) * 1.5 * d_c / (k2 + d_c**2), rel=5e-3
     )
@@ -72,7 +71,7 @@ def test_a_stiff_oblique_strike_is_that_of_rigid_theory():
 def test_a_stiff_axial_strike_loses_nothing():
     base = solid_scenes.scene(*ELASTIC, length=0.06, angle=0.0, v_t=0.0)
     stated = replace(base, projectile=replace(base.projectile, tip="A", tip_radius=7e-3))
-    result = solve(plan(stated))
+    result = solve(Case.of(stated))
     assert result.motion.V_n / -stated.impact.v_n == pytest.approx(1.0, abs=0.005)
     assert abs(result.motion.Omega) < 0.02
     assert result.finished
@@ -138,8 +137,8 @@ def test_the_block_barrier_takes_it_too():
     stated = solid_scenes.scene(
         "friction", "barrier-elastoplastic", "radiation", "large-rotation", length=0.06, max_time=3e-5
     )
-    model = build(plan(stated))
+    model = build(Case.of(stated))
     assert type(model.impulses[0]) is RigidRest
-    result = solve(plan(stated))
+    result = solve(Case.of(stated))
     assert result.accounts["plastic_barrier"] > 0
     assert result.worst < 1e-4 * result.E_0

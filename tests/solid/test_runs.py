@@ -8,13 +8,12 @@ import pytest
 import solid_scenes as scenes
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import RunError
 from fem_impact.fem import body
 from fem_impact.fem.flight import rigid_motion
 from fem_impact.fem.geometry import to_barrier_frame
 from fem_impact.outcome.keys import Unknown
-from fem_impact.physics.contact import projectile
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load
@@ -75,7 +74,7 @@ def test_ledger_closes(which, request):
 
 
 def test_energies_are_those_of_the_whole_rod(elastic):
-    rod, impact = projectile(elastic.plan.scene), elastic.plan.scene.impact
+    rod, impact = elastic.plan.scene.projectile.rigid_body, elastic.plan.scene.impact
     assert elastic.motion.mass == pytest.approx(rod.mass, rel=1e-9)
     assert elastic.E_0 == pytest.approx(0.5 * rod.mass * (impact.v_n**2 + impact.v_t**2), rel=1e-6)
     gained = elastic.motion.V_n - impact.v_n
@@ -147,7 +146,7 @@ def test_sliding_rod_has_the_impulse_ratio_of_its_friction(f):
     found = _outcome(result)
     assert found.restitution.mu == pytest.approx(f, rel=0.01)
     worked = found.energy.friction * result.E_0
-    slide = [-result.plan.scene.impact.v_t, -result.motion.V_t]
+    slide = [-result.case.scene.impact.v_t, -result.motion.V_t]
     assert 0 < worked < f * result.model.book.impulse[1] * 2 * max(slide) * 1.5
     assert result.worst < 1e-6 * result.E_0
 
@@ -171,7 +170,7 @@ def vars_of(interval):
 @pytest.mark.parametrize("angle", [pi / 6, pi / 3])
 def test_stiff_short_rod_is_rigid_theory(angle):
     result = scenes.run(*PLANE, "large-rotation", length=0.03, v_n=-0.5, v_t=-0.4, angle=angle)
-    rod = projectile(result.plan.scene)
+    rod = result.case.scene.projectile.rigid_body
     assert rod.gamma < 10
     found = _outcome(result)
     d_c, k2 = found.restitution.impulse.d_c, found.motion.k_squared
@@ -191,7 +190,7 @@ def test_spin_before_the_impact_enters_with_its_sign():
         for omega in (-20.0, 20.0)
     ]
     scene = scenes.scene(*PLANE, length=0.03)
-    rod = projectile(scene)
+    rod = scene.projectile.rigid_body
     d_c, m = float(rod.arms(pi / 4)[0]), rod.mass / (1 + float(rod.arms(pi / 4)[0]) ** 2 / rod.k2)
     exact = [2 * m * (0.5 - omega * d_c) / 2 for omega in (-20.0, 20.0)]
     assert pushes == pytest.approx(exact, rel=2e-2)
@@ -205,7 +204,7 @@ def test_first_contact_comes_at_gap_over_speed(barrier, angle):
     """The lowest point lies on the symmetry plane: a search that drops those nodes comes late."""
     gap = 2e-6
     stated = scenes.scene("vibration", "friction", barrier, length=0.08, v_n=-1.0, v_t=0.0, angle=angle)
-    model = build(plan(stated), gap)
+    model = build(Case.of(stated), gap)
     state = model.initial_state()
     assert model.geometry.rod_points[np.argmin(model.geometry.rod_points[:, 2]), 1] == 0.0
     assert model.contact.clearance(state.x) == pytest.approx(gap, rel=1e-6)
@@ -298,7 +297,7 @@ def _between(share):
         turn = share * h / scene.projectile.tip_radius
         # the middle of a cell is the lowest point of a rod that stands a little steeper
         geometry = real(replace(scene, impact=replace(scene.impact, angle=angle + turn)), zones, gap, meshed)
-        rho, z = projectile(scene).contact_point(angle)
+        rho, z = scene.projectile.rigid_body.contact_point(angle)
         lowest = np.array([float(rho), 0.0, float(z)])
         points = (geometry.rod.mesh.points - lowest) @ to_barrier_frame(angle).T
         points[:, 2] += gap - points[:, 2].min()
@@ -314,7 +313,7 @@ def test_a_contact_in_the_middle_of_a_cell_is_nearest_to_that_of_finer_cells(mon
     finer = _outcome(scenes.run(*PLANE, "friction", **stated, tip=0.4e-3))
     middle = _outcome(scenes.run(*PLANE, "friction", **stated))
     monkeypatch.setattr(body, "build_geometry", _between(0.48))
-    on_node = _outcome(solve(plan(scenes.scene(*PLANE, "friction", **stated))))
+    on_node = _outcome(solve(Case.of(scenes.scene(*PLANE, "friction", **stated))))
     near, far = (abs(run.restitution.edge.e - finer.restitution.edge.e) for run in (middle, on_node))
     assert near < 0.02 < far
     near, far = (abs(run.restitution.mu - finer.restitution.mu) for run in (middle, on_node))
@@ -339,7 +338,7 @@ def test_gravity_is_an_account_of_its_own():
 
 
 def test_a_run_out_of_time_says_so():
-    result = solve(plan(scenes.scene(*PLANE, length=0.08, max_time=2e-5)))
+    result = solve(Case.of(scenes.scene(*PLANE, length=0.08, max_time=2e-5)))
     assert not result.finished
     assert "max_time" in result.reason
     found = _outcome(result)

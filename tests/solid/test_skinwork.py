@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.physics.contact import projectile
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
@@ -63,7 +62,7 @@ def test_work_above_the_depth_counts(height, strain, share):
 def test_the_depth_in_a_round_nose_is_that_under_its_outline():
     """Reference: distances from the meridian; the nearest facet of a mesh is off by less than its bulge."""
     model = scenes.model("vibration", "rod-plasticity", "barrier-rigid", length=0.08, tip=0.4e-3)
-    rod = projectile(load("t5b"))
+    rod = load("t5b").projectile.rigid_body
     outline = np.vstack([rod.meridian(), [rod.diameter / 2, rod.length]])
     exact = below_outline(model.geometry.rod.mesh.points, outline)
     found = depths(model)[model.layout.rod[:, 2]]

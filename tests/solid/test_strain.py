@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.fem.flight import FreeVibration
 from fem_impact.files.waves import read_waves
 from fem_impact.options import RunOptions
@@ -42,7 +42,7 @@ def upright(tmp_path_factory):
         "vibration", "barrier-rigid", length=0.12, v_n=-2.0, v_t=0.0, angle=0.0, max_time=7.2e-5
     )
     scene = replace(scene, save=replace(scene.save, strain_samples=2))
-    return scene, solve(plan(scene), RunOptions(out)), read_waves(out / "waves.h5")
+    return scene, solve(Case.of(scene), RunOptions(out)), read_waves(out / "waves.h5")
 
 
 def test_the_wave_behind_a_blunt_end_has_the_strain_v_over_c0_and_its_front_runs_with_c0(upright):
@@ -83,7 +83,7 @@ def test_the_flight_by_modes_goes_on_from_the_last_state(tmp_path):
     amplitude[[0, 2]] = 2e-6, 1e-6
     state.x[: view.size] += view.modes.shape @ amplitude
     flight = FreeVibration(view.modes, amplitude, 0 * amplitude)
-    watch = StrainWatch.of(plan(scenes.scene(*ELASTIC, length=0.06)), model, tmp_path / "waves.h5")
+    watch = StrainWatch.of(Case.of(scenes.scene(*ELASTIC, length=0.06)), model, tmp_path / "waves.h5")
     watch.observe(state)
     watch.write(watch.ringing(view, state, flight))
     waves = read_waves(tmp_path / "waves.h5")

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 import solid_scenes as scenes
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.case.zones import DRAG, LOW, SLIDE, half_widths
 from fem_impact.fem.geometry import build_geometry
-from fem_impact.physics.contact import contact_estimate
 from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace, replace_all
@@ -20,11 +19,11 @@ SCENE = replace(load("t6-17"), "accuracy.tip_size", "0.6 mm")
 
 
 def _geometry(scene):
-    return build_geometry(scene, plan(scene).zones, 2e-6, True)
+    return build_geometry(Case.of(scene).bodies, Case.of(scene).zones, 2e-6, True)
 
 
 def _estimate(scene):
-    return contact_estimate(plan(scene).bodies)
+    return Case.of(scene).bodies.estimate
 
 
 def _reach(scene):
@@ -69,7 +68,8 @@ def test_the_grid_is_displaced_as_a_whole_and_nothing_else():
 def test_an_elastic_impact_hardly_feels_the_place_of_the_grid():
     still = scenes.scene("vibration", "friction", "barrier-elastic", length=0.08, max_time=3e-4)
     e = [
-        reduce(solve(plan(s))).restitution.edge.e for s in (still, replace(still, "accuracy.grid_shift", 0.5))
+        reduce(solve(Case.of(s))).restitution.edge.e
+        for s in (still, replace(still, "accuracy.grid_shift", 0.5))
     ]
     assert 0 < abs(e[1] - e[0]) < 0.002
 
@@ -91,9 +91,9 @@ def test_rows_are_thin_where_a_plate_that_flows_may_stick(effects, rows):
 
 def test_corners_of_the_fine_zone_stay_elastic_and_never_flow(monkeypatch):
     scene = replace(SCENE, "save.frames", 0)
-    part = solve(plan(scene))
+    part = solve(Case.of(scene))
     monkeypatch.setattr("fem_impact.fem.geometry._round", lambda mesh, *_: mesh.finest)
-    whole = solve(plan(scene))
+    whole = solve(Case.of(scene))
     counts = [[zone.count for zone in found.model.zones] for found in (part, whole)]
     assert max(few / many for few, many in zip(*counts, strict=True)) < 0.75
     few, many = (reduce(found) for found in (part, whole))
@@ -138,8 +138,8 @@ def test_nodes_that_leave_the_barriers_zone_are_told_with_what_makes_it_wider():
     )
     (told,) = doubts(model, watch)
     assert told.startswith("9 rod nodes left the fine zone of the barrier")
-    width = plan(scene).zones.barrier[-1][0]
-    size = plan(scene).zones.barrier_size
+    width = Case.of(scene).zones.barrier[-1][0]
+    size = Case.of(scene).zones.barrier_size
     for key, value in (("accuracy.fine_zone", "even"), ("accuracy.barrier_size", f"{2e3 * size} mm")):
         assert key in told
-        assert plan(replace(scene, key, value)).zones.barrier[-1][0] > 1.2 * width
+        assert Case.of(replace(scene, key, value)).zones.barrier[-1][0] > 1.2 * width

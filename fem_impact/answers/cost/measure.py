@@ -14,7 +14,7 @@ from fem_impact.answers.cost.judge import Judged, front, judge
 from fem_impact.answers.refine.extrapolate import Placed, Truth, truths
 from fem_impact.answers.refine.levels import Mesh, Setting, family, ladder, on_mesh
 from fem_impact.answers.refine.quantities import QUANTITIES
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import RunError, UsageError
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
@@ -137,7 +137,7 @@ def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
 
 def _expected(job: Job) -> float:
     """Return the processor time, s, that a run is expected to take; 0 of a reduced model."""
-    return plan(job.scene).size.time if job.fidelity == "solid" else 0.0
+    return Case.of(job.scene).size.time if job.fidelity == "solid" else 0.0
 
 
 def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Sequence[Mesh] = ()) -> CostStudy:

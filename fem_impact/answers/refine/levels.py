@@ -8,11 +8,9 @@ from functools import lru_cache
 from itertools import combinations, product
 from typing import TYPE_CHECKING, Any, Literal
 
+from fem_impact.case.case import Case
 from fem_impact.case.cells import body_cell, levels_of, rod_cell
-from fem_impact.case.choose import active, resolved
-from fem_impact.case.effects.registry import BARRIERS, grounded
-from fem_impact.case.effects.slots import bodies_of
-from fem_impact.case.plan import plan
+from fem_impact.case.effects.registry import BARRIERS, with_prerequisites
 from fem_impact.errors import SceneError
 from fem_impact.jobs.job import Job
 from fem_impact.scene.projectile import ACROSS
@@ -46,10 +44,10 @@ class Mesh:
     def sizes(self, scene: Scene) -> tuple[float, float]:
         """Return the element sizes of rod and barrier at the contact, m."""
         plain = replace(scene.accuracy, across=_across(scene), tip_size=None, barrier_size=None)
-        plain_scene = replace(scene, accuracy=plain)
-        levels, below = levels_of(bodies_of(resolved(plain_scene)))
-        tip = rod_cell(plain_scene) / 2 ** (levels + self.finer)
-        return tip, body_cell(plain_scene) / 2 ** (below + self.finer)
+        bodies = Case(replace(scene, accuracy=plain)).bodies
+        levels, below = levels_of(bodies)
+        tip = rod_cell(bodies) / 2 ** (levels + self.finer)
+        return tip, body_cell(bodies) / 2 ** (below + self.finer)
 
 
 RUNGS = tuple(Mesh(finer) for finer in (-1, 0, 1, 2))  # from coarse to fine, each with cells half as large
@@ -98,7 +96,7 @@ def can_be_made(scene: Scene) -> bool:
     It cannot where its cells leave a wide contact without a fine zone, or where it needs too much memory.
     """
     try:
-        plan(scene)
+        Case.of(scene)
     except SceneError:
         return False
     return True
@@ -123,7 +121,7 @@ def rungs(scene: Scene) -> tuple[Mesh, ...]:
     """
     made = tuple(mesh for mesh in RUNGS if _makeable(scene, mesh))
     if not made:
-        plan(on_mesh(scene, FAMILY[-1]))
+        Case.of(on_mesh(scene, FAMILY[-1]))
     return made
 
 
@@ -153,7 +151,7 @@ def on_mesh(scene: Scene, mesh: Mesh, place: float = 0.0) -> Scene:
     """Return the scene on a mesh, the grid of the barrier at a place."""
     tip, barrier = (f"{size * 1e3:.9g} mm" for size in mesh.sizes(scene))
     changes: dict[str, Any] = {"across": _across(scene), "tip_size": tip, "grid_shift": place}
-    changes |= {"barrier_size": barrier} if "barrier-rigid" not in active(scene) else {}
+    changes |= {"barrier_size": barrier} if "barrier-rigid" not in Case(scene).active else {}
     changes |= {"unresolved": "report"}  # an unresolved contact is an error of the setting, to be judged too
     changes |= {"element": mesh.element} if mesh.element else {}
     changes |= {"step": mesh.step} if mesh.step else {}
@@ -170,7 +168,7 @@ def placed(scene: Scene, mesh: Mesh, most: int = len(PLACES)) -> list[Scene]:
     A rigid barrier has one.
     """
     own = FEW if mesh.finer >= family(scene)[-1].finer else len(PLACES)
-    count = 1 if "barrier-rigid" in active(scene) else min(own, most)
+    count = 1 if "barrier-rigid" in Case(scene).active else min(own, most)
     return [on_mesh(scene, mesh, place) for place in PLACES[:count]]
 
 
@@ -213,11 +211,12 @@ def _extrapolated(scene: Scene, meshes: Sequence[Mesh]) -> list[Setting]:
 
 def _without(scene: Scene, mesh: Mesh) -> list[Setting]:
     """Return the scene with each effect left out that can be, and with a simpler barrier, on a mesh."""
-    optional = [name for name in active(scene) if name not in BARRIERS]
-    fewer = {f"without {name}": grounded([e for e in active(scene) if e != name]) for name in optional}
-    if "barrier-elastoplastic" in active(scene):
-        softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in active(scene)]
-        fewer["with an elastic barrier"] = grounded(softer)
+    active = Case(scene).active
+    optional = [name for name in active if name not in BARRIERS]
+    fewer = {f"without {name}": with_prerequisites([e for e in active if e != name]) for name in optional}
+    if "barrier-elastoplastic" in active:
+        softer = ["barrier-elastic" if e == "barrier-elastoplastic" else e for e in active]
+        fewer["with an elastic barrier"] = with_prerequisites(softer)
     scenes = {label: replace_all(scene, {"effects": names}) for label, names in fewer.items()}
     return [
         _solid(one, mesh, "effect", label)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from math import hypot, sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.case.choose import active
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError, UsageError
 from fem_impact.outcome.keys import Key, Num, or_none
 from fem_impact.outcome.record import KEY_TABLE, Outcome
@@ -78,7 +78,7 @@ def chosen(asked: Iterable[str], scene: Scene | None = None) -> tuple[str, ...]:
         For one that no run of the ``scene`` knows.
     """
     wanted = tuple(asked)
-    rigid = scene is not None and "vibration" not in active(scene)
+    rigid = scene is not None and "vibration" not in Case(scene).active
     if rigid and "E_vib" in wanted:
         raise SceneError(
             "is not known here: the vibration effect is off.",

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import TypeVar
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.outcome.keys import or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.types import Scene
@@ -40,7 +40,7 @@ def cpu_seconds(run: Outcome) -> float:
 
 def planned_s(scenes: Iterable[Scene], workers: int) -> float:
     """Return the wall time, s, that runs side by side take by the plan, where none of them has run."""
-    return longest_s([plan(one).size.time for one in scenes], workers)
+    return longest_s([Case.of(one).size.time for one in scenes], workers)
 
 
 def pace(scenes: Sequence[Scene], runs: Sequence[Outcome], workers: int) -> float:

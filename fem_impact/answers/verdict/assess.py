@@ -22,6 +22,7 @@ from fem_impact.answers.verdict.change import (
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.screening import Screening, screening
 from fem_impact.answers.verdict.twins import inclined
+from fem_impact.case.case import Case
 from fem_impact.case.limits import FLAT_FACE, not_reduced
 from fem_impact.errors import RunError, SceneError
 from fem_impact.tables.text import plain
@@ -133,9 +134,11 @@ def assess(
         No model gives a restitution at the scene's inclination.
     """
     _check(fidelity, tolerance, budget_s)
-    reduced = fidelity == "modal" or not not_reduced(scene)
-    elsewhere = reduced or not_reduced(scene) == FLAT_FACE  # a face that lands flat does so at 0 deg alone
-    quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(not_reduced(scene))])
+    bodies = Case(scene).bodies
+    lacking = not_reduced(bodies)
+    reduced = fidelity == "modal" or not lacking
+    elsewhere = reduced or lacking == FLAT_FACE  # a face that lands flat does so at 0 deg alone
+    quick, notes = _quick(scene, tell) if reduced else (None, [LACKING.format(lacking)])
     here, used, more = quick, "modal", "--fidelity solid"
     # where nothing like the scene was computed both ways, the reduced model's error is not known well enough
     unlike = quick is not None and not known_error(scene).alike

@@ -12,9 +12,8 @@ from fem_impact.answers.refine.extrapolate import ONE_RUN, pair_limit, vibration
 from fem_impact.answers.refine.levels import FAMILY, RUNGS, Mesh, can_be_made, on_mesh
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.twins import twins
+from fem_impact.case.case import Case
 from fem_impact.case.cells import ERROR, contact_edge, expected_cells, kind
-from fem_impact.case.choose import resolved
-from fem_impact.case.effects.slots import bodies_of
 from fem_impact.case.plates import half_space_error, is_thin
 from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
@@ -24,8 +23,8 @@ from fem_impact.outcome.shares import SHARES
 from fem_impact.run.simulate import simulate
 
 if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
     from fem_impact.outcome.groups import Energy
-    from fem_impact.physics.contact import ContactBodies
     from fem_impact.scene.types import Scene
 
 
@@ -138,7 +137,7 @@ def modal_pair(scene: Scene) -> Pair:
 
 def modal_change(scene: Scene, pair: Pair) -> Change:
     """Return what the reduced model says, with its known error."""
-    error, bodies = known_error(_meshless(scene)), bodies_of(resolved(scene))
+    error, bodies = known_error(_meshless(scene)), Case(scene).bodies
     thin = half_space_error(bodies) * abs(known(pair[0].restitution.edge.e)) if is_thin(bodies) else 0.0
     return Change(
         scene.impact.angle,
@@ -307,8 +306,8 @@ class Ladder:
         share = ERROR[kind(bodies)] / expected_cells(bodies)
         return share, share * max(abs(known(run.restitution.edge.e)) for run in self.pairs[which])
 
-    def _bodies(self, mesh: Mesh) -> ContactBodies:
-        return bodies_of(on_mesh(twins(self.scene)[0], mesh))
+    def _bodies(self, mesh: Mesh) -> Bodies:
+        return Case(on_mesh(twins(self.scene)[0], mesh)).bodies
 
 
 def largest(changes: Sequence[Change]) -> Change:

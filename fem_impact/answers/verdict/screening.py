@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fem_impact.case.choose import resolved
-from fem_impact.case.effects.slots import bodies_of
-from fem_impact.physics.beam import bending_period
-from fem_impact.physics.contact import contact_estimate, lands_flat, projectile
-from fem_impact.physics.wall import ovalling_period
+from fem_impact.case.case import Case
 from fem_impact.tables.text import plain
 from rigid import LIMIT, behaves_rigidly
 
@@ -75,12 +71,12 @@ class Screening:
 
 def screening(scene: Scene) -> Screening:
     """Return the closed-form estimates of a scene with the effects that it calls for."""
-    bodies = bodies_of(resolved(scene))
+    bodies = Case(scene).bodies
     return Screening(
-        bending_period(scene),
-        float(contact_estimate(bodies).duration),
-        ovalling_period(scene.projectile),
-        float(projectile(scene).gamma),
-        scene.impact.angle == 0,
-        lands_flat(scene),
+        bodies.bending_period,
+        float(bodies.estimate.duration),
+        bodies.ovalling_period,
+        float(bodies.body.gamma),
+        bodies.scene.impact.angle == 0,
+        bodies.contact.lands_flat,
     )

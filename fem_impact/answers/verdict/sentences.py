@@ -12,7 +12,6 @@ from fem_impact.answers.verdict.screening import Screening
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
 from fem_impact.outcome.shares import SHARES
-from fem_impact.physics.contact import projectile
 from fem_impact.run.common import RESIDUAL_LIMIT
 from fem_impact.run.doubts import ROUND_OFF
 from fem_impact.scene.barrier import Barrier
@@ -170,7 +169,7 @@ def case_sentence(scene: Scene) -> str:
     rod, impact = scene.projectile, scene.impact
     return (
         f"{scene.id}: {1e3 * rod.length:g} mm x {1e3 * rod.diameter:g} mm rod of {_materials(rod)}, "
-        f"{_form(rod)}, {projectile(scene).mass:.3g} kg, on {struck(scene.barrier)}, "
+        f"{_form(rod)}, {scene.projectile.rigid_body.mass:.3g} kg, on {struck(scene.barrier)}, "
         f"{degrees(impact.angle):.4g} degrees, v_n {impact.v_n:.4g} and v_t {impact.v_t:.4g} m/s, f "
         f"{scene.surface.friction:g} ({scene.surface.state})."
     )

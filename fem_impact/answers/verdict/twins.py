@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from math import cos, hypot, sin
 
-from fem_impact.case.choose import active
-from fem_impact.case.effects.registry import NAMES, grounded
+from fem_impact.case.case import Case
+from fem_impact.case.effects.registry import NAMES, with_prerequisites
 from fem_impact.errors import SceneError
 from fem_impact.scene.types import Scene
 
@@ -28,9 +28,9 @@ def twins(scene: Scene) -> tuple[Scene, Scene]:
     SceneError
         A spin lifts the contact point off the barrier.
     """
-    on = {*active(scene), VIBRATION}
+    on = {*Case(scene).active, VIBRATION}
     free = tuple(name for name in NAMES if name in on)
-    stiff = tuple(grounded([name for name in free if name not in (VIBRATION, UNFELT)]))
+    stiff = tuple(with_prerequisites([name for name in free if name not in (VIBRATION, UNFELT)]))
     plain = replace(scene, measured=None, save=replace(scene.save, frames=0))
     return replace(plain, effects=free), replace(plain, effects=stiff)
 

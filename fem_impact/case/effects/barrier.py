@@ -9,10 +9,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from fem_impact.case.effects.plasticity import SOURCE, buried_yield_ratio, first_yield_ratio, hardening_of
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.case.effects.slots import Effect, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
 LEAST_SHARE = 0.02
@@ -23,38 +23,33 @@ COMPLIANCE = (
 )
 
 
-def compliance_share(scene: Scene) -> float:
+def compliance_share(bodies: Bodies) -> float:
     """Return the barrier's share of the elastic contact compliance."""
-    rod, plate = scene.projectile.material, scene.barrier.struck
+    rod, plate = bodies.contact.rod, bodies.contact.barrier
     soft_rod, soft_plate = (1 - rod.nu**2) / rod.E, (1 - plate.nu**2) / plate.E
     return soft_plate / (soft_rod + soft_plate)
 
 
-def yield_ratio(scene: Scene) -> float:
+def yield_ratio(bodies: Bodies) -> float:
     """Return the peak pressure over that of first yield in the plate, the largest of its layers."""
-    strata = scene.barrier.strata
-    under = [buried_yield_ratio(scene, metal, depth) for (depth, _), (_, metal) in pairwise(strata)]
-    return max([first_yield_ratio(scene, scene.barrier.struck, scene.projectile.material), *under])
+    strata, pair = bodies.barrier.strata, bodies.contact
+    under = [buried_yield_ratio(pair, metal, depth) for (depth, _), (_, metal) in pairwise(strata)]
+    return max([first_yield_ratio(pair, pair.barrier, pair.rod), *under])
 
 
-def no_harm(scene: Scene) -> Harm:
-    """Return no change: the meshed barrier that replaces the plane contains the rigid case."""
-    return Harm(0.0, 0.0)
-
-
-def fill_rigid(scene: Scene, spec: ModelSpec) -> None:
+def fill_rigid(bodies: Bodies, spec: ModelSpec) -> None:
     """Change no slot: the rigid plane is the default."""
 
 
-def fill_elastic(scene: Scene, spec: ModelSpec) -> None:
+def fill_elastic(bodies: Bodies, spec: ModelSpec) -> None:
     """Mesh the block."""
     spec.meshed_barrier = True
 
 
-def fill_elastoplastic(scene: Scene, spec: ModelSpec) -> None:
+def fill_elastoplastic(bodies: Bodies, spec: ModelSpec) -> None:
     """Mesh the block and let it yield."""
     spec.meshed_barrier = True
-    first, *under = (material for _, material in scene.barrier.strata)
+    first, *under = (material for _, material in bodies.barrier.strata)
     some = any(metal.yields for metal in under)  # then the first may be one that never yields
     spec.barrier_law = None if some and not first.yields else hardening_of(first)
     spec.under_laws = tuple(hardening_of(metal) if metal.yields else None for metal in under)
@@ -69,7 +64,6 @@ RIGID = Effect(
     COMPLIANCE,
     compliance_share,
     fill_rigid,
-    no_harm,
 )
 ELASTIC = Effect(
     "barrier-elastic",

@@ -5,12 +5,10 @@ from __future__ import annotations
 from math import pi
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
-from fem_impact.physics.beam import bending_period
-from fem_impact.physics.contact import contact_estimate, normal_share
+from fem_impact.case.effects.slots import Effect, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
 # upper end of 2e-4 to 6e-4 for iron, Cremer, Heckl & Petersson 2005, doi:10.1007/b137728 (read as quoted in
@@ -18,19 +16,13 @@ if TYPE_CHECKING:
 LOSS_FACTOR = 6e-4
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the share of the vibration that is damped while the impact lasts, eta omega_1 (tau + T1)."""
-    period = bending_period(scene)
-    return 2 * pi * LOSS_FACTOR * (contact_estimate(bodies_of(scene)).duration + period) / period
+    period = bodies.bending_period
+    return 2 * pi * LOSS_FACTOR * (bodies.estimate.duration + period) / period
 
 
-def harm(scene: Scene) -> Harm:
-    """Return the vibration energy that damping would take, and the change of e by it."""
-    damped = min(number(scene), 1.0) * quick_impact(scene).E_vib
-    return Harm(min(damped / normal_share(bodies_of(scene)), 1.0), damped)
-
-
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the loss factor."""
     spec.loss_factor = LOSS_FACTOR
 
@@ -44,6 +36,5 @@ EFFECT = Effect(
     "a mode's energy decays like exp(-eta omega t); half of the 10 % that E_vib may be off",
     number,
     fill,
-    harm,
     needs=("vibration",),
 )

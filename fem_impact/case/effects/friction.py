@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from fem_impact.case.effects.slots import Effect, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return f. It matters in an upright impact too: friction restrains the radial spread of the tip."""
-    return scene.surface.friction
+    return bodies.scene.surface.friction
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the Coulomb coefficient."""
-    spec.friction = scene.surface.friction
+    spec.friction = bodies.scene.surface.friction
 
 
 EFFECT = Effect(

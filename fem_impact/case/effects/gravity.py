@@ -5,22 +5,20 @@ from __future__ import annotations
 from math import hypot
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, ModelSpec, bodies_of
-from fem_impact.physics.beam import bending_period
-from fem_impact.physics.contact import contact_estimate
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from rigid import GRAVITY
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return g (tau + T1) over the impact speed; a second contact comes about T1 after the first."""
-    duration = contact_estimate(bodies_of(scene)).duration + bending_period(scene)
-    return GRAVITY * duration / hypot(scene.relative.v_n, scene.relative.v_t)
+    duration = bodies.estimate.duration + bodies.bending_period
+    return GRAVITY * duration / hypot(bodies.scene.relative.v_n, bodies.scene.relative.v_t)
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the acceleration."""
     spec.gravity = GRAVITY
 

@@ -4,28 +4,59 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec, bodies_of
-from fem_impact.physics.flash import expected_rise, halves, thermal
+from fem_impact.case.effects.slots import Effect, ModelSpec
+from fem_impact.errors import SceneError
+from fem_impact.physics.flash import Half, Halves, expected_rise
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def thermal(bodies: Bodies) -> dict[str, float | None]:
+    """Return conductivity and heat capacity of both bodies by the key of [heating] that overrides them."""
+    metals = {"rod": bodies.contact.rod, "barrier": bodies.contact.barrier}
+    own = {
+        f"{body}_{key}": getattr(metal, key)
+        for body, metal in metals.items()
+        for key in ("conductivity", "heat_capacity")
+    }
+    stated = {key: getattr(bodies.scene.heating, key) for key in own}
+    return {key: own[key] if value is None else value for key, value in stated.items()}
+
+
+def halves(bodies: Bodies) -> Halves:
+    """Return the thermal half-spaces of rod and barrier.
+
+    Raises
+    ------
+    SceneError
+        If neither the material nor [heating] states a property.
+    """
+    values = thermal(bodies)
+    for key, value in values.items():
+        if value is None:
+            remedy = "State it, or leave contact-heating out of effects."
+            raise SceneError("is not known: the material states none.", key=f"heating.{key}", remedy=remedy)
+    known = {key: value for key, value in values.items() if value is not None}
+    rod, barrier = bodies.contact.rod, bodies.contact.barrier
+    return (
+        Half(known["rod_conductivity"], rod.rho * known["rod_heat_capacity"]),
+        Half(known["barrier_conductivity"], barrier.rho * known["barrier_heat_capacity"]),
+    )
+
+
+def number(bodies: Bodies) -> float:
     """Return the expected flash temperature rise over the rise to ignition, 0 where it is not known."""
-    if None in thermal(scene).values():
+    heating = bodies.scene.heating
+    if None in thermal(bodies).values():
         return 0.0
-    return expected_rise(bodies_of(scene)) / (scene.heating.ignition - scene.heating.ambient)
+    rise = expected_rise(bodies.contact, bodies.scene.surface.friction, halves(bodies))
+    return rise / (heating.ignition - heating.ambient)
 
 
-def harm(scene: Scene) -> Harm:
-    """Return no change: heat does not act on the motion."""
-    return Harm(0.0, 0.0)
-
-
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Turn on the record of the contact's heat; refuse a scene without conductivity and heat capacity."""
-    halves(scene)
+    halves(bodies)
     spec.heat = True
 
 
@@ -38,6 +69,5 @@ EFFECT = Effect(
     "half-space conduction (Jaeger 1942; Tian & Kennedy 1994, doi:10.1115/1.2927035), ten times as safe",
     number,
     fill,
-    harm,
     needs=("friction",),
 )

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from math import atan, sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, ModelSpec, bodies_of
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import LIMIT_PRESSURE, contact_estimate
+from fem_impact.physics.contact import LIMIT_PRESSURE
 
 if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.physics.contact import ContactPair
     from fem_impact.physics.hardening import Hardening
     from fem_impact.scene.material import Material
-    from fem_impact.scene.types import Scene
 
 
 DEEP = 1.6  # peak Hertz pressure over yield stress at first yield, below the surface (Johnson 1985, eq 6.9)
@@ -23,33 +23,30 @@ SOURCE = (
 )
 
 
-def first_yield_ratio(scene: Scene, material: Material, other: Material) -> float:
+def first_yield_ratio(pair: ContactPair, material: Material, other: Material) -> float:
     """Return the peak pressure over that of first yield, min(1.6, 1/(sqrt(3) f)) sigma_y.
 
     The pressure is the elastic one, or the limit pressure of the ``other`` body where that is less.
     """
-    bodies, peak = bodies_of(scene), _peak(scene, other)
-    first = min(DEEP, 1 / (sqrt(3) * bodies.f)) if bodies.f > 0 else DEEP
-    return peak / (first * material.yield_stress)
+    first = min(DEEP, 1 / (sqrt(3) * pair.f)) if pair.f > 0 else DEEP
+    return _peak(pair, other) / (first * material.yield_stress)
 
 
-def buried_yield_ratio(scene: Scene, material: Material, depth: float) -> float:
+def buried_yield_ratio(pair: ContactPair, material: Material, depth: float) -> float:
     """Return von Mises' stress over the yield stress of a material under layers, at ``depth``, m.
 
     Stresses are those of Hertz's contact on a body of the first layer alone (Johnson 1985, eq 3.45).
     """
-    size = contact_estimate(replace(bodies_of(scene), rod_yields=False, barrier_yields=False))
-    z, nu = depth / sqrt(size.a_t * size.a_b), scene.barrier.struck.nu
+    z, nu = depth / pair.elastic.estimate.radius, pair.barrier.nu
     across = (1 + nu) * (1 - z * atan(1 / z)) - 0.5 / (1 + z * z)
-    stress = abs(1 / (1 + z * z) - across) * _peak(scene, scene.projectile.material)
+    stress = abs(1 / (1 + z * z) - across) * _peak(pair, pair.rod)
     return stress / material.yield_stress
 
 
-def _peak(scene: Scene, other: Material) -> float:
+def _peak(pair: ContactPair, other: Material) -> float:
     """Return the peak pressure, Pa, of the elastic contact, or the limit pressure of ``other`` if less."""
-    bodies = bodies_of(scene)
-    peak = 1.5 * contact_estimate(replace(bodies, rod_yields=False, barrier_yields=False)).pressure
-    if bodies.compliant:
+    peak = 1.5 * pair.elastic.estimate.pressure
+    if pair.compliant:
         peak = min(peak, LIMIT_PRESSURE * max(other.yield_stress, other.ultimate_stress))
     return peak
 
@@ -80,14 +77,14 @@ def hardening_of(material: Material) -> Hardening:
         raise SceneError(str(error), key=f"{key} of {material.name}", value=value) from None
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the peak pressure over that of first yield in the rod."""
-    return first_yield_ratio(scene, scene.projectile.material, scene.barrier.struck)
+    return first_yield_ratio(bodies.contact, bodies.contact.rod, bodies.contact.barrier)
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the rod's tip yield."""
-    spec.rod_law = hardening_of(scene.projectile.material)
+    spec.rod_law = hardening_of(bodies.contact.rod)
 
 
 EFFECT = Effect(

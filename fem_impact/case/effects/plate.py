@@ -4,26 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.physics.plate import LOSS, impedance_of, zener_number
+from fem_impact.physics.plate import plate_impedance, zener_number
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return Zener's lambda, 0 for a barrier that does not bend."""
-    return zener_number(bodies_of(scene))
+    return zener_number(bodies.contact)
 
 
-def harm(scene: Scene) -> Harm:
-    """Return the loss of e by bending waves; E_vib changes like the square of the impulse."""
-    lost = min(LOSS * number(scene), 1.0)
-    return Harm(lost, lost * quick_impact(scene).E_vib)
-
-
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the impedance of the plate; where finite elements mesh it through, the plan takes it back.
 
     Raises
@@ -31,14 +25,14 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
     SceneError
         If the barrier is no plate that bends.
     """
-    if not scene.barrier.bends:
+    if bodies.contact.plate is None:
         raise SceneError(
             'names "plate-bending", but the barrier does not bend.',
             key="effects",
-            value=list(scene.effects),
+            value=list(bodies.effects),
             remedy='Leave it out, or give barrier.support = "infinite" and barrier.thickness.',
         )
-    spec.plate = impedance_of(scene)
+    spec.plate = plate_impedance(*bodies.contact.plate)
 
 
 EFFECT = Effect(
@@ -52,5 +46,4 @@ EFFECT = Effect(
     "2 % that it may be off",
     number,
     fill,
-    harm,
 )

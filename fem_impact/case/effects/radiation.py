@@ -4,31 +4,25 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import approach
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the share of the normal energy that an elastic impact radiates into a half-space (Hunter).
 
     Nothing leaves a block with fixed faces, and what leaves a plate that bends are bending waves.
     """
-    if scene.barrier.boundary == "fixed" or scene.barrier.bends:
+    if bodies.barrier.boundary == "fixed" or bodies.barrier.bends:
         return 0.0
-    plate = scene.barrier.material
-    return float(1.127 * (approach(scene) / (plate.E / plate.rho) ** 0.5) ** 0.6)
+    plate = bodies.barrier.material
+    return float(1.127 * (bodies.contact.approach / (plate.E / plate.rho) ** 0.5) ** 0.6)
 
 
-def harm(scene: Scene) -> Harm:
-    """Return the radiated share as the change of e; the vibration of the rod does not change."""
-    return Harm(number(scene), 0.0)
-
-
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Put dashpots on the outer boundary of the block.
 
     Raises
@@ -36,14 +30,14 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
     SceneError
         If the block's faces are fixed, or the barrier is a plate that bends.
     """
-    if scene.barrier.bends:
+    if bodies.barrier.bends:
         raise SceneError(
             "lets bending waves out, which are the effect plate-bending, not radiation into a half-space.",
             key="barrier.support",
             value="infinite",
             remedy='Leave "radiation" out of the effects.',
         )
-    if scene.barrier.boundary == "fixed":
+    if bodies.barrier.boundary == "fixed":
         raise SceneError(
             "lets no waves out, which radiation asks for.",
             key="barrier.boundary",
@@ -62,6 +56,5 @@ EFFECT = Effect(
     "Hunter 1957, J. Mech. Phys. Solids 5, 162; a share w of the normal energy changes e by about w",
     number,
     fill,
-    harm,
     needs=("barrier-elastic", "barrier-elastoplastic"),
 )

@@ -9,28 +9,27 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, ModelSpec, bodies_of
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.physics.hardening import rate_gain, rate_law, strain_rate
 
 if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
     from fem_impact.physics.hardening import Hardening
     from fem_impact.scene.material import Material
-    from fem_impact.scene.types import Scene
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the largest relative gain of flow stress, of the bodies that yield, or of both if none does."""
-    bodies = bodies_of(scene)
-    metals = bodies.yielding or [scene.projectile.material, scene.barrier.struck]
-    rate = strain_rate(bodies)
+    metals = bodies.contact.yielding or [bodies.contact.rod, bodies.contact.barrier]
+    rate = strain_rate(bodies.estimate)
     return max(rate_gain(metal, rate) for metal in metals)
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Give every material that yields its own rate law."""
-    spec.rod_law = _faster(spec.rod_law, scene.projectile.material)
-    spec.barrier_law = _faster(spec.barrier_law, scene.barrier.struck)
-    under = zip(spec.under_laws, scene.barrier.strata[1:], strict=True) if spec.under_laws else ()
+    spec.rod_law = _faster(spec.rod_law, bodies.contact.rod)
+    spec.barrier_law = _faster(spec.barrier_law, bodies.contact.barrier)
+    under = zip(spec.under_laws, bodies.barrier.strata[1:], strict=True) if spec.under_laws else ()
     spec.under_laws = tuple(_faster(law, metal) for law, (_, metal) in under)
 
 

@@ -57,7 +57,7 @@ _REMEDY = (
 )
 
 
-def grounded(names: Sequence[str]) -> list[str]:
+def with_prerequisites(names: Sequence[str]) -> list[str]:
     """Drop effects whose prerequisite (`Effect.needs`) is absent."""
     return [name for name in names if not EFFECTS[name].needs or set(names) & set(EFFECTS[name].needs)]
 

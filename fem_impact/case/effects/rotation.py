@@ -4,31 +4,33 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
-from fem_impact.physics.beam import bending_period
-from fem_impact.physics.contact import contact_estimate, normal_share
+from fem_impact.case.effects.slots import Effect, ModelSpec
+from rigid import sliding_path
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.physics.contact import ContactPair
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the estimated angle turned during the impact, rad: tau at the mean spin, T1 at the last one.
 
-    A second contact comes about a bending period after the first.
+    A second contact comes about a bending period after the first. The last spin is that of a rigid rod whose
+    contact gives back all that it takes up along the normal.
     """
-    before, after = scene.impact.omega, quick_impact(scene).Omega
-    turned = 0.5 * abs(before + after) * contact_estimate(bodies_of(scene)).duration
-    return turned + abs(after) * bending_period(scene)
+    before, after = bodies.scene.impact.omega, _spin_after(bodies.contact)
+    turned = 0.5 * abs(before + after) * bodies.estimate.duration
+    return turned + abs(after) * bodies.bending_period
 
 
-def harm(scene: Scene) -> Harm:
-    """Return the error of E_vib by the turned direction of forces, a share 2 theta of it, and that of e."""
-    changed = min(2 * number(scene), 1.0) * quick_impact(scene).E_vib
-    return Harm(min(changed / normal_share(bodies_of(scene)), 1.0), changed)
+def _spin_after(pair: ContactPair) -> float:
+    """Return the spin, rad/s, after an impact of a rigid rod with friction and a restitution of 1."""
+    (d_c, d_d), (_, k2) = pair.arms, pair.reduced
+    path = sliding_path(pair.v_n, pair.v_t, omega=pair.omega, e=1.0, f=pair.f, d_c=d_c, d_d=d_d, k2=k2)
+    return float(path.motion.Omega)
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the frame of the linear part turn with the rod."""
     spec.turning_frame = True
 
@@ -43,5 +45,4 @@ EFFECT = Effect(
     "2 theta, a fifth of the 10 % that it may be, for theta is known to a factor of two; arms by theta^2/2",
     number,
     fill,
-    harm,
 )

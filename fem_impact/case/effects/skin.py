@@ -7,16 +7,15 @@ carbon steel could be read, so no shipped state has any, and the effect is off u
 
 from __future__ import annotations
 
-from math import sqrt
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, Harm, ModelSpec, bodies_of, quick_impact
+from fem_impact.case.effects.slots import Effect, ModelSpec
 from fem_impact.errors import SceneError
-from fem_impact.physics.contact import contact_estimate
 from fem_impact.physics.hardening import Skin
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene, Surface
+    from fem_impact.case.bodies import Bodies
+    from fem_impact.scene.types import Surface
 
 
 def layer(surface: Surface) -> Skin | None:
@@ -26,21 +25,15 @@ def layer(surface: Surface) -> Skin | None:
     return Skin(surface.skin_depth, surface.skin_factor)
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the mean gain of the flow stress within a contact radius of the surface; 0 without a layer."""
-    skin = layer(scene.surface)
+    skin = layer(bodies.scene.surface)
     if skin is None:
         return 0.0
-    size = contact_estimate(bodies_of(scene))
-    return (skin.factor - 1) * min(skin.depth / sqrt(size.a_t * size.a_b), 1.0)
+    return (skin.factor - 1) * min(skin.depth / bodies.estimate.radius, 1.0)
 
 
-def harm(scene: Scene) -> Harm:
-    """Return the change of e by that gain; how the layer shares the vibration is not estimated."""
-    return Harm(min(0.625 * number(scene) * abs(quick_impact(scene).e), 1.0), 0.0)
-
-
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Set the layer.
 
     Raises
@@ -48,7 +41,7 @@ def fill(scene: Scene, spec: ModelSpec) -> None:
     SceneError
         If the surface states none.
     """
-    spec.skin = layer(scene.surface)
+    spec.skin = layer(bodies.scene.surface)
     if spec.skin is None:
         raise SceneError(
             'names "machined-skin", but the surface states no hardened layer.',
@@ -66,6 +59,5 @@ EFFECT = Effect(
     "e grows like sigma_y^(5/8) (Thornton 1997, doi:10.1115/1.2787319): 2 % of e are 3 % of sigma_y",
     number,
     fill,
-    harm,
     needs=("rod-plasticity", "barrier-elastoplastic"),
 )

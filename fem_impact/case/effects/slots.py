@@ -6,12 +6,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from fem_impact.physics.beam_impact import BeamImpact, strike
-from fem_impact.physics.contact import ContactBodies
-
 if TYPE_CHECKING:
+    from fem_impact.case.bodies import Bodies
     from fem_impact.physics.hardening import Hardening, Skin
-    from fem_impact.scene.types import Scene
 
 
 @dataclass(slots=True)
@@ -57,14 +54,6 @@ class ModelSpec:
 
 
 @dataclass(frozen=True, slots=True)
-class Harm:
-    """Estimated change by leaving an effect out: of e, and of E_vib as a fraction of E_0."""
-
-    e: float
-    E_vib: float
-
-
-@dataclass(frozen=True, slots=True)
 class Effect:
     """One effect: name, meaning, the number that decides whether it is needed, and the slots it fills.
 
@@ -76,9 +65,8 @@ class Effect:
     measure : name of the dimensionless number
     threshold : number above which the effect is needed
     source : where the number and its threshold come from
-    number : returns the number for a scene that lists its effects explicitly (no "auto")
-    fill : sets its slots in a specification
-    harm : returns the change by leaving the effect out; None: the difference of two quick impacts is taken
+    number : returns the number for bodies with all effects in force that the scene does not force off
+    fill : sets its slots in a specification, for bodies with the effects of the model
     needs : prerequisites, of which at least one must be on; empty: none
     """
 
@@ -88,29 +76,6 @@ class Effect:
     measure: str
     threshold: float
     source: str
-    number: Callable[[Scene], float]
-    fill: Callable[[Scene, ModelSpec], None]
-    harm: Callable[[Scene], Harm] | None = None
+    number: Callable[[Bodies], float]
+    fill: Callable[[Bodies, ModelSpec], None]
     needs: tuple[str, ...] = ()
-
-
-def bodies_of(scene: Scene) -> ContactBodies:
-    """Return the bodies at the contact of a scene that lists the effects of its model."""
-    active = scene.effects
-    return ContactBodies(
-        scene,
-        rod_yields="rod-plasticity" in active,
-        barrier_yields="barrier-elastoplastic" in active,
-        compliant="barrier-rigid" not in active,
-        f=scene.surface.friction if "friction" in active else 0.0,
-    )
-
-
-def quick_impact(scene: Scene) -> BeamImpact:
-    """Return the quick estimate of an impact for a scene that lists the effects of its model."""
-    return strike(
-        bodies_of(scene),
-        vibrating="vibration" in scene.effects,
-        rate="rate-hardening" in scene.effects,
-        gravity="gravity" in scene.effects,
-    )

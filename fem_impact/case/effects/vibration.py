@@ -8,24 +8,21 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from fem_impact.case.effects.slots import Effect, ModelSpec, bodies_of
-from fem_impact.physics.beam import bending_period, stretching_period
-from fem_impact.physics.contact import contact_estimate
-from fem_impact.physics.wall import ovalling_period
+from fem_impact.case.effects.slots import Effect, ModelSpec
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from fem_impact.case.bodies import Bodies
 
 
-def number(scene: Scene) -> float:
+def number(bodies: Bodies) -> float:
     """Return the longest period that the impact can excite over the contact time."""
-    longest = stretching_period(scene)
-    if scene.impact.angle > 0:
-        longest = max(longest, bending_period(scene), ovalling_period(scene.projectile))
-    return longest / contact_estimate(bodies_of(scene)).duration
+    longest = bodies.stretching_period
+    if bodies.scene.impact.angle > 0:
+        longest = max(longest, bodies.bending_period, bodies.ovalling_period)
+    return longest / bodies.estimate.duration
 
 
-def fill(scene: Scene, spec: ModelSpec) -> None:
+def fill(bodies: Bodies, spec: ModelSpec) -> None:
     """Let the body behind the nose deform."""
     spec.vibrating = True
 

@@ -62,10 +62,10 @@ def balance(result: SolidResult, history: Path) -> Balance:
 
 def _momenta(result: SolidResult) -> tuple[float, float]:
     """Return what linear and angular momentum about the origin miss of the contact's impulses."""
-    motion, impact, view = result.motion, result.plan.scene.impact, result.view
+    motion, impact, view = result.motion, result.case.scene.impact, result.view
     x = result.model.start[0][view.places]
     centre = view.mass @ x / view.mass.sum()
-    weight = (result.plan.slots.gravity or 0.0) * result.time
+    weight = (result.case.slots.gravity or 0.0) * result.time
     down = weight * np.array([-np.sin(impact.angle), -np.cos(impact.angle)])
     middle = 0.5 * (centre + np.asarray(motion.centre))  # mean place of the mass centre
     moment = motion.mass * (middle[2] * down[0] - middle[0] * down[1])

@@ -21,7 +21,7 @@ from fem_impact.tables.table import Cell, Column, Table
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from fem_impact.case.plan import Plan
+    from fem_impact.case.case import Case
     from fem_impact.solid.model import Model
     from fem_impact.solid.run import SolidResult
 
@@ -112,12 +112,12 @@ class HardCaseJob:
 
     def _solved(self) -> SolidResult:
         """Run the case from its checkpoint if there is one, else from the start."""
-        from fem_impact.case.plan import plan
+        from fem_impact.case.case import Case
         from fem_impact.files.run_directory import CHECKPOINT
         from fem_impact.run.program import stamp
         from fem_impact.solid.run import solve
 
-        planned = plan(self.case.scene())
+        planned = Case.of(self.case.scene())
         make_directory(self.out)
         options = RunOptions(self.out, checkpoint_s=CHECKPOINT_INTERVAL, stamp=stamp(planned.scene))
         if (self.out / CHECKPOINT).exists():
@@ -128,12 +128,12 @@ class HardCaseJob:
         return solve(planned, options, model_of(self.case, planned))
 
 
-def model_of(case: HardCase, plan: Plan) -> Model:
+def model_of(case: HardCase, planned: Case) -> Model:
     """Return the model of a case, with its own height, shift and step at the start."""
     from fem_impact.fem.stable import SAFETY
     from fem_impact.solid.build import build
 
-    model = build(plan, case.gap)
+    model = build(planned, case.gap)
     x, v = model.start[0].copy(), model.start[1]
     x[model.layout.rod[:, 0]] += case.shifted
     steps = {body: step * case.step / SAFETY for body, step in model.steps.items()}

@@ -12,13 +12,12 @@ from math import pi
 
 import numpy as np
 
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.setups import rod_scene
 from fem_impact.evidence.references.rod_end import bar_speed
-from fem_impact.physics.contact import projectile
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.build import build
 from fem_impact.solid.ledger import Ledger
@@ -74,7 +73,7 @@ def spin(p: Values) -> Solved:
     frozen = dict(p) | {"v_n": 1e-3, "v_t": 0.0, "angle": pi / 4, "max_time": 1e-2}
     effects = ("vibration", "barrier-rigid", "large-rotation")
     # planned without its spin, which may take the tip away from the barrier: a plan refuses that
-    planned = plan(rod_scene(frozen | {"omega": 0.0}, effects))
+    planned = Case.of(rod_scene(frozen | {"omega": 0.0}, effects))
     model = build(replace(planned, scene=rod_scene(frozen, effects))).coasting()
     state, ledger = model.initial_state(), model.ledger()
     watch = _Strain(ledger, p["time"])
@@ -98,11 +97,11 @@ def momentum(p: Values) -> Solved:
         If the tip moves away, or so fast that its cells are squeezed.
     """
     scene = rod_scene(p, ("vibration", "barrier-rigid", "large-rotation"))
-    away = p["omega"] * float(projectile(scene).arms(p["angle"])[0])
+    away = p["omega"] * float(scene.projectile.rigid_body.arms(p["angle"])[0])
     fastest = CLOSING * bar_speed(p["E"], p["rho"])
     within(p, "v_n", max(away, 0.0) + 1e-4, away + fastest, "m/s", "the tip must close in, and slowly.")
-    result = run_solid(plan(scene))
-    rod, motion, book = projectile(scene), result.motion, result.model.book
+    result = run_solid(Case.of(scene))
+    rod, motion, book = scene.projectile.rigid_body, result.motion, result.model.book
     impulse, moment = 2 * book.impulse[1], -2 * book.impulse[2]
     start = result.model.start[0][result.view.places]
     centre = result.view.mass @ start / result.view.mass.sum()

@@ -31,17 +31,17 @@ from math import pi, sqrt
 import numpy as np
 
 import rigid
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.rod_drop import Change, RodDrop
 from fem_impact.evidence.problems.setups import rod_scene
 from fem_impact.evidence.references.oblique import ObliqueRebound
-from fem_impact.physics.contact import plain_rod
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.run import SolidResult
 from fem_impact.solid.run import solve as run_solid
+from rigid import Projectile
 
 LEDGER = 1e-4  # of E_0
 COUPLED = (
@@ -58,7 +58,7 @@ def bending_energy(result: SolidResult) -> float:
     """Return the energy, J, of the modes that move the rod's axis sideways."""
     mesh, layout = result.model.geometry.rod.mesh, result.model.layout
     axis = (np.hypot(mesh.points[:, 0], mesh.points[:, 1]) < 1e-9) & ~mesh.is_hanging
-    shape, alpha = result.view.modes.shape, result.plan.scene.impact.angle
+    shape, alpha = result.view.modes.shape, result.case.scene.impact.angle
     t, n = (shape[layout.rod[axis, c]] for c in (0, 2))
     across = abs(np.cos(alpha) * t - np.sin(alpha) * n).max(axis=0)
     along = abs(np.sin(alpha) * t + np.cos(alpha) * n).max(axis=0)
@@ -91,7 +91,7 @@ def _contacts(result: SolidResult, exact: ObliqueRebound, around: list[ObliqueRe
 
 def _checks(result: SolidResult, drop: RodDrop) -> tuple[Check, ...]:
     """Compare with the reference; the allowed is the sum of what errors of the mesh make of it."""
-    impact, motion = result.plan.scene.impact, result.motion
+    impact, motion = result.case.scene.impact, result.motion
     d_c = drop.rod.arms(impact.angle)[0]
     e = float(rigid.restitution(impact.v_n, motion.V_n, motion.Omega, d_c, impact.omega))
     mu = (motion.V_t - impact.v_t) / (motion.V_n - impact.v_n)
@@ -140,9 +140,11 @@ def solve(p: Values) -> Solved:
     barrier = ("barrier-elastic", "radiation") if p["elastic_barrier"] else ("barrier-rigid",)
     effects = ("vibration", *(("friction",) if p["f"] else ()), *barrier, "large-rotation")
     scene = rod_scene(p, effects)
-    drop = RodDrop(p, plain_rod(scene.projectile))
+    rod = scene.projectile.rigid_body
+    assert isinstance(rod, Projectile), "it is a plain rod"
+    drop = RodDrop(p, rod)
     _allow(p, drop)
-    result = run_solid(plan(scene))
+    result = run_solid(Case.of(scene))
     if result.model.book.touching:
         remedy = "Give a longer time."
         raise SceneError("ends in mid contact.", key="max_time", value=f"{p['max_time']:g} s", remedy=remedy)

@@ -12,7 +12,7 @@ from operator import attrgetter
 import numpy as np
 
 from fem_impact.arrays import Array
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.point_mass import contact_time, spring_drop
@@ -20,7 +20,6 @@ from fem_impact.evidence.studies.rods import BODY, Drop, length_of
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import known
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import projectile
 from fem_impact.physics.contact_law import contact_law
 from fem_impact.physics.flow_law import flow_law
 from rigid import LIMIT
@@ -121,9 +120,9 @@ def rods_of(drops: Iterable[Drop], results: JobResults) -> Rods:
 def whole_ratio(drop: Drop) -> float:
     """Return T1/tau with tau of the rod's whole mass on the contact of 45 degrees (`Rod.whole`)."""
     level = replace(drop, angle=45.0).scene()
-    planned, mass = plan(level, "modal"), projectile(level).mass
-    flow = flow_law(planned.bodies, planned.slots.rod_law, planned.slots.barrier_law)
-    return drop.first_period / contact_time(contact_law(planned.bodies), flow, mass, drop.speed)
+    planned, mass = Case.of(level, "modal"), level.projectile.rigid_body.mass
+    flow = flow_law(planned.contact, planned.slots.rod_law, planned.slots.barrier_law)
+    return drop.first_period / contact_time(contact_law(planned.contact), flow, mass, drop.speed)
 
 
 def modal_restitution(drop: Drop, results: JobResults) -> float | None:
@@ -158,7 +157,7 @@ def _effective(rod: ObliqueRod) -> float:
 def _hertz_time(drop: Drop) -> float:
     """Return Hertz' contact time of a drop, s (Johnson, Contact Mechanics, section 11.4)."""
     scene = drop.scene()
-    stiffness, v_n = contact_law(plan(scene, "modal").bodies).stiffness, -scene.impact.v_n
+    stiffness, v_n = contact_law(Case.of(scene, "modal").contact).stiffness, -scene.impact.v_n
     depth = (5 * _effective(slender(drop)) * v_n**2 / (4 * stiffness)) ** 0.4
     return float(SPAN * depth / v_n)
 
@@ -167,7 +166,7 @@ def _hertz_time(drop: Drop) -> float:
 def slender(drop: Drop) -> ObliqueRod:
     """Return the rod's bending (Timoshenko) and stretching (Love) modes at the contact point."""
     scene = drop.scene()
-    body, steel, alpha = projectile(scene), scene.projectile.material, scene.impact.angle
+    body, steel, alpha = scene.projectile.rigid_body, scene.projectile.material, scene.impact.angle
     d_c, d_d = (float(arm) for arm in body.arms(alpha))
     rho, z = (float(coordinate) for coordinate in body.contact_point(alpha))
     inertia, radius = (body.mass, body.k2), drop.diameter / 2

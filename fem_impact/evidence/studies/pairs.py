@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING
 
 from fem_impact.answers.refine.extrapolate import mesh_limits
 from fem_impact.answers.refine.levels import can_be_made
-from fem_impact.case.choose import resolved
-from fem_impact.case.effects.slots import bodies_of
+from fem_impact.case.case import Case
 from fem_impact.case.zones import zones_of
 from fem_impact.jobs.job import Failure
 from fem_impact.outcome.keys import Unknown, known
@@ -30,7 +29,7 @@ def resized(scene: Scene, factor: float) -> Scene:
 
     A contact that larger elements do not resolve is reported all the same: it counts for the band alone.
     """
-    zones = zones_of(bodies_of(resolved(scene)))
+    zones = zones_of(Case(scene).bodies)
     sizes = {"tip_size": zones.tip_size, "barrier_size": zones.barrier_size}
     changes = {f"accuracy.{key}": f"{factor * size * 1e3:g} mm" for key, size in sizes.items()}
     return replace_all(scene, {**changes, **(COARSE if factor > 1 else {}), "save.frames": 0})

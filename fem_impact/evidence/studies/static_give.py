@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_impact.answers.report import Sheet
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.evidence.studies.criterion_measure import Rod, Rods, of_body
 from fem_impact.evidence.studies.rods import PAPER_RODS, Drop
 from fem_impact.figures.panels import Panel, Picture, Series
@@ -105,11 +105,11 @@ def static_restitution(drop: Drop) -> float:
 
     Impact energy = plastic and elastic work of the contact + F^2/2 times the flexibility of the rod's modes.
     """
-    planned = plan(drop.scene(), "modal")
-    scene, rod = planned.scene, modal_rod(planned.scene)
-    law = flow_law(planned.bodies, planned.slots.rod_law, planned.slots.barrier_law)
+    planned = Case.of(drop.scene(), "modal")
+    scene, rod = planned.scene, modal_rod(planned.bodies)
+    law = flow_law(planned.contact, planned.slots.rod_law, planned.slots.barrier_law)
     mass = rod.mass / (1 + rod.centre_t**2 / rod.k2)
     energy = 0.5 * mass * scene.impact.v_n**2
     flexibility = float((rod.along_n**2 / rod.omega**2).sum())
-    widest = reach(contact_law(planned.bodies), law, energy)
+    widest = reach(contact_law(planned.contact), law, energy)
     return sqrt(1 - indent(law, widest, flexibility, energy)[2] / energy)

@@ -21,7 +21,6 @@ from fem_impact.arrays import Array
 from fem_impact.evidence.studies.sets import limited, mesh_jobs
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
-from fem_impact.physics.contact import projectile
 from fem_impact.run.tests import tests_of
 from fem_impact.tables.table import Cell, Table
 from rigid.experiments import MeasuredSet, measured_set
@@ -76,7 +75,7 @@ def readings() -> tuple[Reading, ...]:
     printed, drawn = measured_set(SETS[0]), []
     for tip, name in TIPS.items():
         scene = load(name.format(SETS[0]))
-        rod = projectile(scene)
+        rod = scene.projectile.rigid_body
         d_c, d_d = rod.arms(scene.impact.angle)
         drawn.append(Reading(f"tip {tip}", float(d_c), float(d_d), float(rod.k2)))
     return Reading("as printed", float(printed.arms.d_c), float(printed.arms.d_d), printed.k2), *drawn

@@ -18,7 +18,7 @@ from fem_impact.answers.refine.levels import FAMILY, FEW, RUNGS, Mesh, family, l
 from fem_impact.answers.refine.loop import ALONE, OwnLadder, achieved_error
 from fem_impact.answers.refine.times import LONGER
 from fem_impact.answers.wanted_error import settle
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError, UsageError
 from fem_impact.options import RunOptions
@@ -119,7 +119,7 @@ def on_plan(monkeypatch):
 
 def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan, monkeypatch):
     sizes = [mesh.sizes(FAR)[0] for mesh in FAMILY]
-    one, both = (sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:n]) for n in (1, 2))
+    one, both = (sum(Case.of(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:n]) for n in (1, 2))
     chosen, places, outcome = asked(monkeypatch, 0.5 * one)
     assert places == [(pytest.approx(sizes[0]), 0.0)]
     assert (chosen.least_s, chosen.pair_s) == pytest.approx((one, both))
@@ -136,7 +136,7 @@ def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan
 
 
 def test_a_budget_below_two_places_of_two_meshes_takes_one_place_each(on_plan, monkeypatch):
-    both = sum(plan(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:2])
+    both = sum(Case.of(on_mesh(FAR, mesh)).size.time for mesh in FAMILY[:2])
     chosen, places, outcome = asked(monkeypatch, 1.5 * both)
     assert {place for _, place in places} == {0.0} and len(places) >= 2
     assert outcome.validity.achieved_error > 0
@@ -148,7 +148,7 @@ def test_a_budget_below_two_places_of_two_meshes_takes_one_place_each(on_plan, m
 
 def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monkeypatch):
     """A rod that leaves earlier than planned leaves time for a second place, or for a finer mesh."""
-    whole = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh, FEW))
+    whole = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh, FEW))
     assert {place for _, place in asked(monkeypatch, 0.5 * whole)[1]} == {0.0}
     monkeypatch.setattr(lanes, "pace", lambda *_: 0.4)
     _, places, outcome = asked(monkeypatch, 0.5 * whole)
@@ -193,7 +193,7 @@ def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkey
     """The budget that is advised lets the next mesh run."""
     monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy", "0.001 %"))
     two, three = (
-        sum(plan(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh, FEW)) for n in (2, 3)
+        sum(Case.of(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh, FEW)) for n in (2, 3)
     )
     outcome = asked(monkeypatch, 1.01 * two)[2]
     (told,) = [text for text in outcome.validity.warnings if "not reached" in text]
@@ -233,7 +233,7 @@ def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
     """Cells twice as large as its own leave the tip of a soft rod as coarse as the rod."""
     assert family(FAR) == FAMILY
     with pytest.raises(SceneError, match="leaves the tip as coarse as the rod"):
-        plan(on_mesh(WIDE, FAMILY[0]))
+        Case.of(on_mesh(WIDE, FAMILY[0]))
     assert family(WIDE) == RUNGS[1:]
     outcome = to_target.simulate(replace(WIDE, "accuracy", "0.001 %"), budget_s=1e9)
     assert outcome.validity.accuracy_setting.startswith("3 meshes of its own")
@@ -262,13 +262,13 @@ def test_a_cost_study_has_no_setting_that_cannot_be_made(fake, tmp_path):
     assert {one.kind for one in study.settings} >= {"numerics", "effect", "extrapolated"}
     for setting in ladder(WIDE):
         for job in (one for runs in setting.runs for one in runs if one.fidelity == "solid"):
-            assert plan(job.scene).size.time > 0
+            assert Case.of(job.scene).size.time > 0
 
 
 def test_a_cost_study_runs_what_its_budget_holds(fake, tmp_path):
     scene = load("t5b")
     whole = ladder(scene)
-    two = sum(plan(one).size.time for mesh in FAMILY[:2] for one in placed(scene, mesh))
+    two = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in placed(scene, mesh))
     kept = affordable(whole, 1.01 * two)
     assert [one.name for one in kept if one.kind == "mesh"] == [
         one.name for one in whole if one.kind == "mesh"

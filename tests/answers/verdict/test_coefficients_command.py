@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from fem_impact import load
-from fem_impact.physics.contact import projectile
 from rigid import Projectile, solve
 from rigid.experiments import measured_set
 
@@ -62,7 +61,7 @@ def test_known_coefficients_are_found(cli, camera_file):
 
 def test_a_scene_states_the_projectile_that_was_tested(cli, camera_file):
     """A tube has other inertia than the solid rod of its size; its own coefficients come back."""
-    body, alpha = projectile(load("tube")), load("tube").impact.angle
+    body, alpha = load("tube").projectile.rigid_body, load("tube").impact.angle
     arms = body.arms(alpha)
     lines = []
     for i, v in enumerate((1.4, 1.5)):

@@ -23,9 +23,8 @@ from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
 from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.answers.wanted_error import settle
+from fem_impact.case.case import Case
 from fem_impact.case.cells import ERROR, expected_cells
-from fem_impact.case.choose import active
-from fem_impact.case.plan import plan
 from fem_impact.case.plates import half_space_error
 from fem_impact.errors import RunError, SceneError
 from fem_impact.outcome.keys import Unknown, known
@@ -65,7 +64,7 @@ def test_twins_differ_by_vibration_alone_and_have_it_where_a_scene_would_leave_i
 
 def test_the_heat_of_the_contact_is_followed_in_the_run_that_vibrates_where_the_scene_has_it():
     """The twin has no need of it: the motion does not feel it."""
-    assert "contact-heating" in active(load("t5b"))
+    assert "contact-heating" in Case(load("t5b")).active
     assert ["contact-heating" in one.effects for one in twins(load("t5b"))] == [True, False]
     without = replace_all(load("t5b"), {"effects": ["auto", "-contact-heating"]})
     assert all("contact-heating" not in one.effects for one in twins(without))
@@ -340,7 +339,7 @@ def test_the_first_mesh_is_the_coarsest_that_can_be_made():
     """Meshes follow the cells of the section that touches, which is small on a sphere-cone."""
     for name in ("sphere-cone", "ogive", "tube"):
         ladder = Ladder.of(load(name), 1.0, 2)
-        assert plan(on_mesh(load(name), ladder.following())).size.rod > 0
+        assert Case.of(on_mesh(load(name), ladder.following())).size.rod > 0
 
 
 @pytest.mark.parametrize("scene", [load("t5b"), WIDE])
@@ -362,7 +361,7 @@ def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_ou
 
 def test_a_spin_that_lifts_the_contact_point_is_refused_before_any_work():
     lifted = replace_all(load("t5b"), {"impact.omega": "150 rad/s"})
-    for work in (lambda: assess(lifted), lambda: ladder(lifted), lambda: plan(lifted)):
+    for work in (lambda: assess(lifted), lambda: ladder(lifted), lambda: Case.of(lifted)):
         with pytest.raises(SceneError, match=r"impact\.omega = .* lifts the contact point off the barrier"):
             work()
 
@@ -551,7 +550,7 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
     change, plain = (modal_change(scene, modal_pair(scene)) for scene in (thin, thick))
     told = known_error(thin).change_of_e
     share = (change.band - told) / known(change.free.restitution.edge.e)
-    assert share == pytest.approx(half_space_error(plan(thin).bodies), rel=1e-12)
+    assert share == pytest.approx(half_space_error(Case.of(thin).bodies), rel=1e-12)
     assert "The plate is thin beside the contact" in change.source
     assert plain.band == known_error(thick).change_of_e
 
@@ -577,7 +576,7 @@ def test_a_mesh_of_the_users_own_is_decided_with_the_error_of_its_own_cells(monk
     found = assess(striker, budget_s=1e5)
     assert (found.answer, len(asked)) == ("no", 2)
     assert asked[1].tip_size < asked[0].tip_size
-    cells = expected_cells(plan(replace(striker, accuracy=asked[1])).bodies)
+    cells = expected_cells(Case.of(replace(striker, accuracy=asked[1])).bodies)
     assert found.here.band == pytest.approx(ERROR["elastic"] / cells * 0.7)
     assert "cells of your file" in found.here.source
 

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from fem_impact.case.choose import active
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.case import Case
 from fem_impact.case.effects.registry import EFFECTS
-from fem_impact.case.plan import plan
 from fem_impact.errors import SceneError
 from fem_impact.physics.hardening import Skin
 from fem_impact.scene.read import read_dict
@@ -23,26 +23,27 @@ def skinned(**more):
 
 
 def test_it_is_off_unless_a_scene_states_a_layer():
-    assert "machined-skin" not in active(T5B)
-    assert plan(T5B).slots.skin is None
+    assert "machined-skin" not in Case(T5B).active
+    assert Case.of(T5B).slots.skin is None
     stated = skinned()
-    assert "machined-skin" in active(stated)
-    assert plan(stated).slots.skin == Skin(pytest.approx(1.1e-4), 1.5)
+    assert "machined-skin" in Case(stated).active
+    assert Case.of(stated).slots.skin == Skin(pytest.approx(1.1e-4), 1.5)
     assert (stated.surface.state, stated.measured) == ("machined", "t5b")
-    assert plan(stated).validity == plan(T5B).validity
+    assert Case.of(stated).outside == Case.of(T5B).outside
     assert read_dict(to_dict(stated)) == stated
     assert digest(stated) != digest(T5B)
     without = replace_all(stated, {"effects": ["auto", "-machined-skin"]})
-    assert plan(without).slots.skin is None
+    assert Case.of(without).slots.skin is None
+
+
+def number(depth):
+    elastic = Bodies(skinned(**{"surface.skin_depth": depth}), ("vibration", "barrier-elastic"))
+    return EFFECTS["machined-skin"].number(elastic)
 
 
 def test_its_number_is_the_mean_gain_within_a_contact_radius():
-    thin, thick = (
-        EFFECTS["machined-skin"].number(replace_all(T5B, LAYER | {"surface.skin_depth": depth}))
-        for depth in ("0.05 mm", "0.1 mm")
-    )
-    assert 0 < thin == pytest.approx(thick / 2)
-    assert EFFECTS["machined-skin"].number(replace_all(T5B, LAYER | {"surface.skin_depth": "1 mm"})) == 0.5
+    assert 0 < number("0.05 mm") == pytest.approx(number("0.1 mm") / 2)
+    assert number("1 mm") == 0.5
 
 
 @pytest.mark.parametrize(
@@ -68,19 +69,19 @@ def test_only_freshly_cut_surfaces_have_one():
 
 def test_it_cannot_be_wanted_without_a_layer():
     with pytest.raises(SceneError, match="states no hardened layer"):
-        plan(replace_all(T5B, {"effects": ["auto", "machined-skin"]}))
+        Case.of(replace_all(T5B, {"effects": ["auto", "machined-skin"]}))
 
 
 def test_a_layer_that_no_gauss_point_can_hold_is_refused_before_any_mesh():
     thin = {"surface.skin_depth": "0.002 mm", "effects": ["auto", "machined-skin"]}
     with pytest.raises(SceneError, match=r"skin_depth = .*0.002 mm.*: is thinner.*accuracy.barrier_size"):
-        plan(skinned(**thin))
+        Case.of(skinned(**thin))
 
 
 def test_rows_of_the_plate_follow_the_layer():
     """The first row is no higher than the layer, unless it would be crushed."""
     for depth in (0.2, 0.1, 0.05):
-        zones = plan(skinned(**{"surface.skin_depth": f"{depth} mm"})).zones
+        zones = Case.of(skinned(**{"surface.skin_depth": f"{depth} mm"})).zones
         assert zones.barrier_size * 0.5**zones.skin_rows <= 1e-3 * depth * 1.001
 
 
@@ -104,7 +105,7 @@ def test_distances_from_an_outline():
 def test_the_model_is_harder_by_the_layer_and_no_more():
     """In the plate gain times volume, over the area that yields at its surface, is gain times depth."""
     coarse = skinned(**{"accuracy.tip_size": "0.7 mm", "surface.skin_depth": "0.2 mm"})
-    soft, hard = (Builder(plan(scene), 1e-10) for scene in (replace_all(coarse, OFF), coarse))
+    soft, hard = (Builder(Case.of(scene), 1e-10) for scene in (replace_all(coarse, OFF), coarse))
     for before, after in zip(soft.zones, hard.zones, strict=True):
         gain = after.blocks.flow / before.blocks.flow - 1
         assert np.unique(before.blocks.flow).size == 1

@@ -8,7 +8,7 @@ import pytest
 from study_fakes import published
 
 from fem_impact.answers.report import Request
-from fem_impact.case.plan import plan
+from fem_impact.case.case import Case
 from fem_impact.case.zones import face_reach
 from fem_impact.errors import ResultError, RunError, SceneError
 from fem_impact.evidence.hard_cases.judge import Balance, balance
@@ -17,7 +17,6 @@ from fem_impact.evidence.hard_cases.study import HardCaseJob, HardCaseResult, co
 from fem_impact.jobs.job import Failure
 from fem_impact.options import RunOptions
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import contact_estimate
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import build
 from fem_impact.solid.run import solve
@@ -75,7 +74,7 @@ def test_a_damaged_result_is_told(tmp_path):
 def test_the_start_and_the_step_of_a_case_are_its_own():
     case = replace(CASES["between-nodes"], step=0.45)
     scene = case.scene()
-    own, plain = model_of(case, plan(scene)), build(plan(scene), case.gap)
+    own, plain = model_of(case, Case.of(scene)), build(Case.of(scene), case.gap)
     moved = own.start[0] - plain.start[0]
     assert moved[own.layout.rod[:, 0]] == pytest.approx(4e-4)
     assert own.step == pytest.approx(0.5 * plain.step)
@@ -86,8 +85,8 @@ def test_a_face_that_lies_flat_is_meshed_as_a_whole(tmp_path):
     outcome = Outcome.read(tmp_path / "upright-edge" / "outcome.json")
     assert not [words for words in outcome.validity.warnings if "outside its fine zone" in words]
     upright, tilted = (replace(CASES[name].scene(), id="x") for name in ("upright-edge", "angle-17"))
-    assert face_reach(plan(upright).bodies) == pytest.approx((13e-3, 6.5e-3))
-    assert face_reach(plan(tilted).bodies) == (0.0, 0.0)
+    assert face_reach(Case.of(upright).bodies) == pytest.approx((13e-3, 6.5e-3))
+    assert face_reach(Case.of(tilted).bodies) == (0.0, 0.0)
 
 
 def test_a_rod_that_comes_down_nearly_flat_is_detected(tmp_path):
@@ -116,19 +115,19 @@ def test_a_spin_is_refused_where_the_contact_point_lifts_off():
         turned = replace_all(scene, {"impact.omega": omega})
         for fidelity in ("rigid", "solid"):
             if fine:
-                plan(turned, fidelity)
+                Case.of(turned, fidelity)
             else:
                 with pytest.raises(SceneError, match="lifts the contact point off"):
-                    plan(turned, fidelity)
+                    Case.of(turned, fidelity)
 
 
 def test_an_indentation_deeper_than_the_radius_is_refused():
     scene = load("t5b")
     fast = replace_all(scene, {"impact.v_n": "-200 m/s"})
-    assert contact_estimate(plan(fast, "modal").bodies).depth > 0.0095
-    assert contact_estimate(plan(scene).bodies).depth < 0.0095
+    assert Case.of(fast, "modal").bodies.estimate.depth > 0.0095
+    assert Case.of(scene).bodies.estimate.depth < 0.0095
     with pytest.raises(SceneError, match="press the tip"):
-        plan(fast, "solid")
+        Case.of(fast, "solid")
 
 
 @pytest.fixture(scope="module")
@@ -136,7 +135,7 @@ def run(tmp_path_factory):
     """A case that closes, with its history."""
     out = tmp_path_factory.mktemp("run")
     scene = CASES["overlap"].scene()
-    return solve(plan(scene), RunOptions(out)), out / "history.csv"
+    return solve(Case.of(scene), RunOptions(out)), out / "history.csv"
 
 
 def test_the_judge_sees_what_is_wrong(run):

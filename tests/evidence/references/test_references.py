@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from fem_impact import reference
+from fem_impact.evidence import references as reference
 from fem_impact.evidence.references.bricks import Bar, rebound, wall_stress
 from fem_impact.evidence.references.free_modes import bending_modes, cylinder_frequencies
 from fem_impact.evidence.references.hertz import (

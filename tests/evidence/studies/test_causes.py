@@ -6,9 +6,9 @@ import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
+from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.case.effects.skin import layer
-from fem_impact.case.plan import plan as plan_of
 from fem_impact.evidence.studies.causes import BASE, STEPS, conclude, plan
 from fem_impact.jobs.job import Failure
 from fem_impact.scene.shipped import load
@@ -28,7 +28,7 @@ def fake(job):
 def test_each_step_switches_on_what_it_says(tmp_path):
     jobs = jobs_of(Request(tmp_path, ("t5b",)))
     assert list(jobs) == list(STEPS)
-    active = {step: plan_of(job.scene).active for step, job in jobs.items()}
+    active = {step: Case.of(job.scene).active for step, job in jobs.items()}
     assert "rate-hardening" not in active[BASE] and "machined-skin" not in active[BASE]
     assert "rate-hardening" in active["rate"]
     assert jobs["rate"].scene.barrier == load("t5b").barrier  # the nominal inputs

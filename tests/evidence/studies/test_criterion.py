@@ -11,7 +11,7 @@ from study_fakes import outcome, published
 from fem_impact.answers import report as document
 from fem_impact.answers.refine.extrapolate import EVEN
 from fem_impact.answers.report import Request
-from fem_impact.case.plan import plan as planned
+from fem_impact.case.case import Case
 from fem_impact.evidence.references.hertz import SPAN
 from fem_impact.evidence.studies import static_give
 from fem_impact.evidence.studies.criterion import FAMILIES, conclude, drops, modal_jobs, plan
@@ -53,12 +53,12 @@ TOUCH = {"start_s": 0.0, "end_s": 1e-4, "impulse_n_Ns": 1.0, "impulse_t_Ns": 0.0
 
 
 def flow_of(drop):
-    made = planned(drop.scene(), "modal")
-    return flow_law(made.bodies, made.slots.rod_law, made.slots.barrier_law)
+    made = Case.of(drop.scene(), "modal")
+    return flow_law(made.contact, made.slots.rod_law, made.slots.barrier_law)
 
 
 def law_of(drop):
-    return contact_law(planned(drop.scene(), "modal").bodies)
+    return contact_law(Case.of(drop.scene(), "modal").contact)
 
 
 def integrated(rod, k, horizon=3e-3, dt=2e-8):
@@ -132,10 +132,10 @@ def test_contact_time_is_that_of_hertz_and_grows_when_the_tip_yields():
 
 def test_a_stiff_rod_gives_nothing_and_bounces_as_a_rigid_one(monkeypatch):
     drop = Drop(0.12, 5.0, yields=True)
-    rod = modal_rod(drop.scene())
+    rod = modal_rod(Case(drop.scene()).bodies)
     stiff = replace(rod, omega=1e3 * rod.omega)
     monkeypatch.setattr(static_give, "modal_rod", lambda scene: stiff)
-    rigid = solve(planned(replace(drop, vibrates=False).scene(), "modal"))
+    rigid = solve(Case.of(replace(drop, vibrates=False).scene(), "modal"))
     e = (rigid.V_n - rigid.Omega * rod.centre_t) / -drop.scene().impact.v_n
     assert static_restitution(drop) == pytest.approx(e, abs=5e-3)
 
@@ -143,7 +143,7 @@ def test_a_stiff_rod_gives_nothing_and_bounces_as_a_rigid_one(monkeypatch):
 @pytest.mark.parametrize("angle", [5.0, 20.0])
 def test_static_give_explains_what_a_short_rod_bounces_more(angle):
     drop = Drop(length_of(10.0), angle, yields=True)
-    free, stiff = (solve(planned(d.scene(), "modal")) for d in (drop, replace(drop, vibrates=False)))
+    free, stiff = (solve(Case.of(d.scene(), "modal")) for d in (drop, replace(drop, vibrates=False)))
     arm = -free.rod.centre_t
     e, e_rigid = ((r.V_n + r.Omega * arm) / -drop.scene().impact.v_n for r in (free, stiff))
     assert free.vibration < 1e-3 * free.E_0

@@ -9,7 +9,7 @@ from study_fakes import outcome, published
 
 from fem_impact.answers import report as document
 from fem_impact.answers.report import Request
-from fem_impact.case.plan import plan as planned
+from fem_impact.case.case import Case
 from fem_impact.evidence.studies.gamma import (
     ANGLES,
     FULL,
@@ -93,9 +93,9 @@ def test_a_drop_says_what_it_is():
 def test_a_drop_has_the_effects_of_a_measured_set_but_for_what_it_states():
     drop = Drop(0.24, friction=STATES["machined"], yields=True)
     watched = {"contact-heating"}
-    assert set(planned(drop.scene()).active) == set(planned(load("t3-machined")).active) - watched
-    assert "vibration" not in planned(replace(drop, vibrates=False).scene()).active
-    elastic = planned(replace(drop, yields=False).scene()).active
+    assert set(Case.of(drop.scene()).active) == set(Case.of(load("t3-machined")).active) - watched
+    assert "vibration" not in Case.of(replace(drop, vibrates=False).scene()).active
+    elastic = Case.of(replace(drop, yields=False).scene()).active
     assert "barrier-elastic" in elastic and "rod-plasticity" not in elastic
 
 
@@ -148,7 +148,7 @@ def test_measured_sets_run_on_the_meshes_of_their_own_study(tmp_path, name):
             other = theirs[kind].scene
             apart = {"accuracy": Accuracy(), "save": Save()}
             assert replace(job.scene, **apart) == replace(other, **apart)
-            assert planned(job.scene).zones == planned(other).zones
+            assert Case.of(job.scene).zones == Case.of(other).zones
             assert job.scene.accuracy.grid_shift == other.accuracy.grid_shift
 
 

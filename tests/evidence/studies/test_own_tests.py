@@ -10,10 +10,10 @@ import pytest
 from study_fakes import published
 
 from fem_impact.answers.compare import compare
+from fem_impact.case.case import Case
 from fem_impact.errors import ResultError, SceneError
 from fem_impact.evidence.studies import sets
 from fem_impact.outcome.record import Outcome
-from fem_impact.physics.contact import arms as contact_arms
 from fem_impact.run.simulate import simulate
 from fem_impact.run.tests import tests_of as measured_by
 from fem_impact.scene.library import stated
@@ -162,7 +162,7 @@ def test_means_may_be_in_units_and_without_arms(tmp_path):
     found = measured_by(scene)
     assert found.statistics()["Omega"].mean == pytest.approx(np.pi)
     assert found.statistics()["Omega"].sd == pytest.approx(np.pi / 10)
-    assert tuple(found.arms) == pytest.approx(tuple(contact_arms(scene)))
+    assert tuple(found.arms) == pytest.approx(tuple(Case(scene).contact.arms))
 
 
 @pytest.mark.parametrize(

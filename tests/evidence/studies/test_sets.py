@@ -9,7 +9,7 @@ from wide_contact import WIDE
 
 from fem_impact.answers.refine.extrapolate import LOWEST, ONE_RUN
 from fem_impact.answers.report import SCHEMA, Request
-from fem_impact.case.plan import plan as plan_of
+from fem_impact.case.case import Case
 from fem_impact.evidence.runner import run_study
 from fem_impact.evidence.studies.inputs import INPUT_CHANGES
 from fem_impact.evidence.studies.pairs import COARSER, finer_and_coarser
@@ -28,7 +28,7 @@ def computed(jobs, broken=()):
 
 
 def fake(job):
-    size = plan_of(job.scene).zones.tip_size
+    size = Case.of(job.scene).zones.tip_size
     return outcome(scene_id=job.scene.id, tip_size_m=size, e_paper=0.3 + 100 * size, E_vib_over_E_0=0.01)
 
 
@@ -121,7 +121,7 @@ def test_the_study_publishes_as_every_other(tmp_path):
 def test_the_coarser_twin(tmp_path):
     group = jobs_of("t5b", False, tmp_path)
     fine, coarse = group["fine"].scene, group["coarse"].scene
-    assert coarse.accuracy.tip_size == pytest.approx(COARSER * plan_of(fine).zones.tip_size, rel=1e-5)
+    assert coarse.accuracy.tip_size == pytest.approx(COARSER * Case.of(fine).zones.tip_size, rel=1e-5)
     assert coarse.save.frames == 0
     assert replace(coarse, accuracy=fine.accuracy, save=fine.save) == fine
 
@@ -131,7 +131,7 @@ def test_a_scene_that_cannot_be_made_coarser_is_the_coarser_twin(tmp_path):
     thin = replace_all(load("t5b"), {"projectile.diameter": "10 mm", "accuracy.tip_size": "0.6 mm"})
     for scene in (WIDE, thin):
         fine, coarse = finer_and_coarser(scene)
-        sizes = [plan_of(one).zones.tip_size for one in (fine, coarse, scene)]
+        sizes = [Case.of(one).zones.tip_size for one in (fine, coarse, scene)]
         assert sizes[1] == sizes[2] == pytest.approx(COARSER * sizes[0])
         assert (fine.save, coarse.save.frames) == (scene.save, 0)
         assert coarse.accuracy.unresolved == "report"

@@ -12,8 +12,8 @@ import pytest
 from study_fakes import outcome, published
 
 from fem_impact.answers.report import Request
+from fem_impact.case.case import Case
 from fem_impact.case.effects.plasticity import hardening_of
-from fem_impact.case.plan import plan as plan_of
 from fem_impact.errors import RunError
 from fem_impact.evidence.studies import validation as study
 from fem_impact.evidence.studies.inputs import (
@@ -30,7 +30,6 @@ from fem_impact.evidence.studies.response import fit
 from fem_impact.evidence.studies.validated import NAMES, Comparison, nominal_place, unit_sample
 from fem_impact.evidence.studies.validation import conclude, plan
 from fem_impact.jobs.job import Failure
-from fem_impact.physics.contact import projectile
 from fem_impact.physics.hardening import rate_gain
 from fem_impact.scene.shipped import load, replace_all
 from rigid.experiments import measured_set
@@ -50,7 +49,7 @@ def fake(job):
     motion = {"v_n_m_per_s": -1.5, "v_t_m_per_s": -1.5, "V_n_m_per_s": 0.4}
     motion |= {"V_t_m_per_s": -1.0 + scene.surface.friction, "k_squared_m2": 5.5e-4}
     spin = {"Omega_rad_per_s": 20 * scene.surface.friction + speed, "E_vib_over_E_0": 0.01 * speed}
-    return outcome(tip_size_m=plan_of(scene).zones.tip_size, **motion, **spin)
+    return outcome(tip_size_m=Case.of(scene).zones.tip_size, **motion, **spin)
 
 
 def results_of(request, broken=()):
@@ -73,7 +72,7 @@ def test_samples_are_seeded_and_stay_within_their_ranges():
 
 def test_the_contact_point_moves_by_what_is_stated():
     rods = [replace(SCENE.projectile, tip_radius=r) for r in _input("contact point").span(SCENE, SET)]
-    points = [projectile(replace(SCENE, projectile=rod)).contact_point(np.pi / 4) for rod in rods]
+    points = [replace(SCENE, projectile=rod).projectile.rigid_body.contact_point(np.pi / 4) for rod in rods]
     assert np.hypot(*np.subtract(*points)) == pytest.approx(2 * CONTACT, rel=1e-6)
 
 

@@ -2,8 +2,7 @@
 
 from math import hypot, pi
 
-from fem_impact.case.effects.slots import Effect, Harm, bodies_of
-from fem_impact.physics.contact import contact_estimate
+from fem_impact.case.effects.slots import Effect
 from rigid import Nose
 
 ALUMINIUM = {
@@ -24,12 +23,12 @@ def ball(radius, tip_radius):
 MOON = 1.62  # m/s2
 
 
-def number(scene):
+def number(bodies):
     """Speed gained during the contact over the impact speed."""
-    return MOON * contact_estimate(bodies_of(scene)).duration / hypot(scene.impact.v_n, scene.impact.v_t)
+    return MOON * bodies.estimate.duration / hypot(bodies.contact.v_n, bodies.contact.v_t)
 
 
-def fill(scene, spec):
+def fill(bodies, spec):
     """Let the Moon pull."""
     spec.gravity = MOON
 
@@ -42,6 +41,5 @@ LUNAR_GRAVITY = Effect(
     threshold=0.005,
     source="a quarter of the 2 % that e may be off",
     number=number,
-    harm=lambda scene: Harm(number(scene), 0.0),
     fill=fill,
 )

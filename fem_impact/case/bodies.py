@@ -1,0 +1,109 @@
+"""Projectile and barrier of a scene under a list of effects: what follows from both, worked out once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from fem_impact.arrays import Array
+from fem_impact.physics.beam import bending_period, latest_time, stretching_period
+from fem_impact.physics.contact import ContactEstimate, ContactPair, Plate
+from fem_impact.physics.wall import ovalling_period
+from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.types import Scene
+from rigid import Body
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Projectile and barrier of a scene under effects that are all listed; numbers are made at first use.
+
+    Attributes
+    ----------
+    scene : as stated; what it says of effects does not count
+    effects : names of the effects in force
+    """
+
+    scene: Scene
+    effects: tuple[str, ...]
+
+    @property
+    def rod(self) -> ProjectileSpec:
+        """The projectile as stated."""
+        return self.scene.projectile
+
+    @property
+    def barrier(self) -> Barrier:
+        """The barrier as stated."""
+        return self.scene.barrier
+
+    @cached_property
+    def body(self) -> Body:
+        """The rigid projectile."""
+        return self.scene.projectile.rigid_body
+
+    @cached_property
+    def contact(self) -> ContactPair:
+        """Both as they touch first."""
+        barrier, seen = self.scene.barrier, self.scene.relative
+        steel, h = barrier.material, barrier.thickness
+        return ContactPair(
+            body=self.body,
+            angle=seen.angle,
+            v_n=seen.v_n,
+            v_t=seen.v_t,
+            omega=seen.omega,
+            rod=self.scene.projectile.material,
+            barrier=barrier.struck,
+            rod_yields="rod-plasticity" in self.effects,
+            barrier_yields="barrier-elastoplastic" in self.effects,
+            compliant="barrier-rigid" not in self.effects,
+            f=self.scene.surface.friction if "friction" in self.effects else 0.0,
+            barrier_mass=barrier.mass,
+            barrier_inertia=barrier.inertia,
+            centre_offset=barrier.centre_offset,
+            plate=Plate(steel.E, steel.nu, steel.rho, h) if barrier.bends and h is not None else None,
+        )
+
+    @property
+    def estimate(self) -> ContactEstimate:
+        """The estimated size of the first contact."""
+        return self.contact.estimate
+
+    @cached_property
+    def bending_period(self) -> float:
+        """The first free-free bending period of the projectile, s."""
+        return bending_period(self.scene.projectile)
+
+    @cached_property
+    def stretching_period(self) -> float:
+        """The first longitudinal period of the projectile, s."""
+        return stretching_period(self.scene.projectile)
+
+    @cached_property
+    def ovalling_period(self) -> float:
+        """The period of the ovalling of a hollow projectile's wall, s; 0 of a solid one."""
+        return ovalling_period(self.scene.projectile)
+
+    @cached_property
+    def max_time(self) -> float:
+        """The latest time at which a run stops, s: stated, or as `latest_time` has it."""
+        stated = self.scene.accuracy.max_time
+        return latest_time(self.scene.projectile, self.estimate.duration) if stated is None else stated
+
+    @property
+    def mesh_inclination(self) -> float:
+        """The angle, rad, between the axis of the projectile's mesh and the barrier's normal.
+
+        It is that of the impact, but a ball has no axis: it is meshed with its pole at the contact.
+        """
+        return 0.0 if self.scene.projectile.is_ball else self.scene.impact.angle
+
+    @cached_property
+    def lowest_point(self) -> Array:
+        """The projectile's lowest point (3,) in the frame of its mesh, m."""
+        rho, z = self.body.contact_point(self.mesh_inclination)
+        return np.array([float(rho), 0.0, float(z)])

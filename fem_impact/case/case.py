@@ -1,0 +1,192 @@
+"""The case of a scene: what it calls for, compiled once before any mesh is made, and handed on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+from fem_impact.case.bodies import Bodies
+from fem_impact.case.cells import coarse_tip, thin_cells
+from fem_impact.case.choose import Decision, all_effects, choices, decide, neglected, require_approach
+from fem_impact.case.effects.registry import AUTO, EFFECTS, NAMES, check_effects
+from fem_impact.case.effects.slots import ModelSpec
+from fem_impact.case.layers import block_of, layer_warning, require_layers
+from fem_impact.case.limits import (
+    require_own_mesh,
+    require_point,
+    require_round,
+    require_shallow,
+    require_still,
+    validity,
+)
+from fem_impact.case.mesh import require_mesh
+from fem_impact.case.metals import unknowns
+from fem_impact.case.plates import is_thin, require_plate, require_plate_mesh
+from fem_impact.case.size import RunSize, require_memory, require_rest, run_size
+from fem_impact.case.zones import Zones, require_fine_zone, require_layer, zones_of
+from fem_impact.errors import UsageError, did_you_mean
+from fem_impact.options import FIDELITIES
+from fem_impact.outcome.groups import EffectChoice
+from fem_impact.physics.contact import ContactEstimate, ContactPair
+from fem_impact.physics.plate import plate_waves
+from fem_impact.scene.types import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """What a scene calls for; each part is worked out when it is first asked for, and kept.
+
+    `Case.of` also refuses what the fidelity cannot compute.
+
+    Attributes
+    ----------
+    scene : as stated
+    fidelity : rigid, modal or solid
+    """
+
+    scene: Scene
+    fidelity: str = "solid"
+
+    @classmethod
+    def of(cls, scene: Scene, fidelity: str = "solid") -> Case:
+        """Return the case of a scene that the fidelity can compute.
+
+        Raises
+        ------
+        UsageError
+            If the fidelity is unknown.
+        SceneError
+            If an effect is unknown, the rod does not come towards the barrier, or the solid
+            fidelity cannot hold it: an indentation as deep as the rod, a tip without a fine zone, a mesh that
+            needs more memory than the machine has, a shape that cannot be meshed.
+        """
+        if fidelity not in FIDELITIES:
+            hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
+            raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
+        case = cls(scene, fidelity)
+        require_still(scene.barrier, fidelity)
+        require_own_mesh(case.bodies, fidelity)
+        require_round(case.bodies, fidelity)
+        require_plate(case.bodies, case.meshed_through)
+        require_point(case.bodies)
+        slots = case.slots
+        require_layers(case.bodies, fidelity)
+        if fidelity == "solid":
+            case._require_mesh(slots)
+        return case
+
+    def _require_mesh(self, slots: ModelSpec) -> None:
+        """Refuse what cannot be meshed, or needs more memory than there is (SceneError)."""
+        require_shallow(self.bodies)
+        require_fine_zone(self.bodies)
+        require_mesh(self.scene.projectile, self.scene.across)
+        if self.meshed_through:
+            require_plate_mesh(self.bodies, self.zones.base, block_of(self.bodies, self.zones))
+        if not slots.vibrating:
+            require_rest(self.bodies, self.zones)
+        if slots.skin and slots.barrier_law:
+            require_layer(slots.skin, self.zones)
+        if self.scene.accuracy.target is None:  # a target chooses its own mesh
+            require_memory(slots, self.bodies, self.zones)
+
+    @cached_property
+    def decision(self) -> Decision:
+        """What is decided of each effect: number, needed, in force.
+
+        Raises
+        ------
+        SceneError
+            If the scene names an effect that is none, none or two barriers, or one without what it needs, or
+            if the contact point does not come towards the barrier: the numbers of the effects are of an
+            approach.
+        """
+        self._require_effects()
+        return decide(self._whole)
+
+    @cached_property
+    def active(self) -> tuple[str, ...]:
+        """The effects in the model, in the order in which they enter it (SceneError: as of `decision`)."""
+        self._require_effects()
+        stated = self.scene.effects
+        on = self.decision.on if AUTO in stated else stated
+        return tuple(name for name in NAMES if name in on)
+
+    def _require_effects(self) -> None:
+        require_approach(self._whole)
+        check_effects(self.scene.effects)
+
+    @cached_property
+    def _whole(self) -> Bodies:
+        """The bodies with all effects in force that the scene does not force off."""
+        return Bodies(self.scene, all_effects(self.scene.effects))
+
+    @cached_property
+    def bodies(self) -> Bodies:
+        """The bodies with the effects in the model."""
+        return self._whole if self._whole.effects == self.active else Bodies(self.scene, self.active)
+
+    @property
+    def contact(self) -> ContactPair:
+        """Projectile and barrier as they touch first."""
+        return self.bodies.contact
+
+    @property
+    def estimate(self) -> ContactEstimate:
+        """The estimated size of the first contact."""
+        return self.bodies.contact.estimate
+
+    @cached_property
+    def meshed_through(self) -> bool:
+        """Whether a plate that bends is meshed through its thickness."""
+        return self.fidelity == "solid" and is_thin(self.bodies)
+
+    @cached_property
+    def slots(self) -> ModelSpec:
+        """What the effects fill."""
+        slots = ModelSpec()
+        for name in self.active:
+            EFFECTS[name].fill(self.bodies, slots)
+        if self.meshed_through:  # the mesh bends by itself: its impedance would count that twice
+            slots.plate, slots.bending = None, plate_waves(self.contact)[0]
+        return slots
+
+    @cached_property
+    def zones(self) -> Zones:
+        """The sizes of the fine zones of the meshes (solid)."""
+        return zones_of(self.bodies)
+
+    @property
+    def max_time(self) -> float:
+        """The latest time at which the run stops, s."""
+        return self.bodies.max_time
+
+    @cached_property
+    def choices(self) -> tuple[EffectChoice, ...]:
+        """Each effect with its number, threshold and verdict."""
+        return choices(self.scene, self.decision)
+
+    @property
+    def outside(self) -> tuple[str, ...]:
+        """A sentence for each way in which the scene leaves the measured range."""
+        return validity(self.bodies, self.slots.bending is not None)
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Sentences on what the materials do not state."""
+        return unknowns(self.bodies)
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Sentences on what the reader should distrust on finite elements."""
+        return (
+            *neglected(self.choices),
+            *coarse_tip(self.bodies),
+            *layer_warning(self.bodies),
+            *thin_cells(self.scene.projectile),
+            *self.unknown,
+        )
+
+    @cached_property
+    def size(self) -> RunSize:
+        """About what a run of the solid fidelity takes: elements, memory, steps, time."""
+        return run_size(self.slots, self.bodies, self.zones)
