@@ -22,7 +22,7 @@ from calculix import Strike, run
 import meshes
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed, rigid_of
 from fem_impact.evidence.problems.catalogue import problem
-from fem_impact.evidence.problems.rod_drop import Change, RodDrop
+from fem_impact.evidence.problems.oblique_rod import ReferenceChange, RodDrop
 from fem_impact.evidence.problems.setups import rod_scene
 from fem_impact.evidence.problems.square_bars import NodeSprings, node_areas
 from fem_impact.evidence.problems.watch import Until
@@ -68,7 +68,7 @@ def main(friction=0.55, across=8, end=2.3e-4, stiffness=3e14):
     """Run the modal reference, the solver with both contacts, and CalculiX where it is installed."""
     p = problem("oblique-rod").values({"f": friction, "across": int(across), "elastic_barrier": 0})
     rod, hard, sprung, touching = models(p, stiffness)
-    exact = RodDrop(p, rod).rebound(Change())
+    exact = RodDrop(p, rod).rebound(ReferenceChange())
     vibration = (exact.bending + exact.stretching) / exact.E_0
     print(f"modes: e {exact.restitution:.4f}, E_vib / E_0 {vibration:.4f}, Omega {exact.Omega:.3f} rad/s")
     for name, model in (("solver, hard contact", hard), ("solver, springs", sprung)):

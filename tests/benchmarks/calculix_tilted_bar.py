@@ -15,8 +15,7 @@ from calculix import Strike, run
 
 from fem_impact.evidence.problems.bodies import placed
 from fem_impact.evidence.problems.catalogue import problem, verify
-from fem_impact.evidence.problems.square_bars import square_bar
-from fem_impact.evidence.problems.tilted_bar import ANGLE, SPEED
+from fem_impact.evidence.problems.square_bars import ANGLE, SPEED, square_bar
 from fem_impact.fem.elements import lumped_mass
 
 END = 3e-4  # s

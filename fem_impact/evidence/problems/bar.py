@@ -9,11 +9,12 @@ from typing import ClassVar
 import numpy as np
 
 import meshes
-from fem_impact.evidence.problems import setups as steel
-from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed, rigid_of
+from fem_impact.evidence.problems import setups
+from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.watch import ForceRecorder, Until
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.plane import PlaneContact
@@ -28,14 +29,13 @@ FASTEST = 0.05  # over c0
 COARSER = 5  # the bar between two walls has so many times fewer slices
 
 
-def _model(p: Values, slices: int, gap: float, across: int) -> Model:
-    radius = p["diameter"] / 2
-    flat = np.array([[0.0, 0.0], [radius, 0.0]])
-    rod = meshes.rod(flat, p["length"], across, slice_length=p["length"] / slices, nose=False)
-    speed = np.zeros_like(rod.mesh.points)
-    speed[:, 2] = -p["speed"]
-    points = placed(rod.mesh.points, 0.0, gap)
-    return body_model(FreeBody(rod, points, speed, p["E"], 0.0, p["rho"], friction=0.0))
+def _model(p: Values, slices: int, across: int) -> Model:
+    """Return a scene's bar on the wall, a mesh of its own: a chain has equal links up to its ends."""
+    flat = np.array([[0.0, 0.0], [p["diameter"] / 2, 0.0]])
+    slab = p["length"] / slices
+    bar = meshes.rod(flat, p["length"], across, slice_length=slab, nose=False).mesh
+    drop = Impact(0.0, -p["speed"], 0.0)
+    return setups.meshed_bar_model({**p, "nu": 0.0}, bar, drop, ("barrier-rigid",))
 
 
 @dataclass(slots=True)
@@ -69,7 +69,7 @@ class Ceiling:
 
 def _one_strike(p: Values, exact: BarImpact) -> tuple[list[Check], int, int]:
     slices = int(p["slices"])
-    model = _model(p, slices, 0.0, int(p["across"]))
+    model = _model(p, slices, int(p["across"]))
     state, force = model.initial_state(), ForceRecorder(model)
     energy = Until(model.ledger(), FOLLOWED * exact.duration)
     march(model, state, [force, energy])
@@ -94,11 +94,12 @@ def _many_strikes(p: Values, exact: BarImpact) -> list[Check]:
     """Bounce for the time that so many bounces without loss would take."""
     slices = max(4, int(p["slices"]) // COARSER)
     gap = FLIGHT * exact.duration * p["speed"]
-    model = _model(p, slices, gap / 2, 6)
-    top = model.geometry.rod_points[:, 2] > gap / 2 + 0.999 * p["length"]
+    model = _model(p, slices, 6)
+    top = model.geometry.rod_points[:, 2] > 0.999 * p["length"]
     ceiling = Ceiling(PlaneContact(model.layout.rod[top], model.inverse_mass, 0.0), p["length"] + gap)
     walled = replace(model, impulses=[*model.impulses, ceiling])
     state = walled.initial_state()
+    state.x[model.layout.rod[:, 2]] += 0.5 * gap
     energy = Until(walled.ledger(), p["bounces"] * (1 + FLIGHT) * exact.duration)
     march(walled, state, [energy])
     return [
@@ -134,12 +135,12 @@ PROBLEM = Problem(
     "bar",
     "a bar without lateral strain on a rigid wall: plateau, duration, one release; then two walls",
     (
-        steel.length(),
-        steel.diameter(),
-        steel.speed("speed", "approach speed", 2.0),
-        *(q for q in steel.elastic() if q.key != "nu"),
+        setups.length(),
+        setups.diameter(),
+        setups.speed("speed", "approach speed", 2.0),
+        *(q for q in setups.elastic() if q.key != "nu"),
         Parameter("slices", "cells along the bar", "", 50, 2000, default=100, whole=True),
-        steel.across(6),
+        setups.across(6),
         Parameter(
             "bounces",
             "bounces between two walls, 0 for none",

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from importlib.resources import files
 from math import atan2, cos, degrees, radians, sin
 
-from fem_impact.evidence.problems.setups import run_strike
 from fem_impact.evidence.problems.spheres import AFTER, ball_mass, plain_hertz, sphere_model
+from fem_impact.evidence.problems.watch import run_strike
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.sphere import oblique_sphere, pair_nu
 from fem_impact.tables.table import Cell, Table

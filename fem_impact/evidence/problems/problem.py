@@ -12,7 +12,7 @@ from fem_impact.errors import SceneError, did_you_mean
 from fem_impact.scene.parameter import Parameter
 
 Values = Mapping[str, float]
-Kind = Literal["relative", "absolute", "at most", "shown"]
+CheckKind = Literal["relative", "absolute", "at most", "shown"]
 
 
 def within(p: Values, name: str, low: float, high: float, unit: str, why: str) -> None:
@@ -41,7 +41,7 @@ class Check:
     computed: float
     reference: float
     tolerance: float
-    kind: Kind = "relative"
+    kind: CheckKind = "relative"
     note: str = ""
 
     @classmethod

@@ -24,22 +24,25 @@ rod.
 
 from __future__ import annotations
 
-from math import inf, pi
+from math import inf
 
 import numpy as np
-from numpy.typing import NDArray
 
-import meshes
 from fem_impact.errors import SceneError
-from fem_impact.evidence.problems import setups as steel
-from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
+from fem_impact.evidence.problems import setups
 from fem_impact.evidence.problems.discretisation import contact_error
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import block_under, contact_zone, levels_for_radius, run_strike
+from fem_impact.evidence.problems.spheres import MARGIN
+from fem_impact.evidence.problems.watch import run_strike
 from fem_impact.evidence.references.hertz import contact_modulus
 from fem_impact.evidence.references.rod_end import AxialImpact, bar_speed, end_law, rod_impact, sears
 from fem_impact.fem.flight import flight
+from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.shapes import Profile
+from fem_impact.scene.types import Accuracy
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
@@ -53,46 +56,32 @@ LARGEST = 1.3  # contact radii over the plain one's that the law of the round en
 PARABOLA = 200  # points of the meridian
 
 
-def _meridian(radius: float, tip: float) -> NDArray[np.float64]:
-    """Return a paraboloid's meridian with the wanted radius of curvature at the pole."""
-    rho = np.linspace(0.0, radius, PARABOLA)
-    return np.stack([rho, rho**2 / (2 * tip)], axis=1)
-
-
-def _rod(p: Values, touch: float) -> tuple[meshes.RodMesh, int, float]:
-    """Return the rod's mesh, split until its cells are fine enough, how often, and their edge, m.
-
-    With its round end the rod is as heavy as a flat cylinder of the length. The edge is measured: the nose
-    draws the section's cells apart, by 1.2 with 8 of them across.
-    """
-    R, tip = p["diameter"] / 2, p["tip_radius"]
-    zones: list[meshes.Zone] = []
-    while True:
-        rod = meshes.rod(_meridian(R, tip), p["length"] + R**2 / (4 * tip), int(p["across"]), zones=zones)
-        skin = rod.mesh.points[rod.mesh.free_skin]
-        edge = float(np.sort(np.hypot(skin[:, 0], skin[:, 1])[skin[:, 2] < 0.5 * p["length"]])[1])
-        if levels_for_radius(edge, touch, p["cells"]) == 0:
-            return rod, len(zones), edge
-        zones.append(contact_zone(touch, touch))
-
-
 def rod_model(p: Values, touch: float) -> tuple[Model, float]:
-    """Return the rod over its barrier, and the edge of the cells that touch, m, for a contact radius, m.
+    """Return the rod of a scene, and the edge of the cells that touch, m, for a contact radius, m.
 
-    It is the larger one of the rod's and the block's.
+    Its end is a paraboloid with the wanted radius of curvature at the pole; with it the rod is as heavy as a
+    flat cylinder of the length. The edge is measured on the rod's skin, for its nose draws cells apart; it is
+    the larger one of the rod's and the block's.
     """
-    R, base = p["diameter"] / 2, p["diameter"] / p["across"]
-    rod, levels, edge = _rod(p, touch)
-    points = placed(rod.mesh.points, 0.0, 0.0)
-    velocity = np.zeros_like(points)
-    velocity[:, 2] = -p["speed"]
-    block = None
-    if p["block"]:
-        size = base / 2**levels
-        edge = max(edge, size)
-        block = Block(block_under(touch, base, levels), size, p["barrier_E"], p["nu"], p["rho"])
-    rho = p["rho"] * pi * R**2 * p["length"] / (2 * float(np.sum(meshes.volume(rod.mesh))))
-    return body_model(FreeBody(rod, points, velocity, p["E"], p["nu"], rho, friction=0.0, block=block)), edge
+    R, tip, across = p["diameter"] / 2, p["tip_radius"], int(p["across"])
+    nose = [(r**2 / (2 * tip), r) for r in np.linspace(0.0, R, PARABOLA).tolist()]
+    shape, metal = Profile((*nose, (p["length"] + R**2 / (4 * tip), R))), setups.steel(p)
+    scene = setups.problem_scene(
+        ProjectileSpec.turned(shape, metal),
+        Barrier(setups.steel({**p, "E": p["barrier_E"]})),
+        ("vibration", *(("barrier-elastic", "radiation") if p["block"] else ("barrier-rigid",))),
+        Impact(0.0, -p["speed"], 0.0),
+        Accuracy(
+            tip_size=setups.fine_tip(touch, p["cells"]),
+            across=across,
+            block_margin=max(MARGIN * touch, 2 * p["diameter"] / across),
+            mass_scaling=1.0,
+        ),
+    )
+    model = setups.scene_model(scene)
+    skin = model.geometry.rod.mesh.points[model.geometry.rod.mesh.free_skin]
+    edge = float(np.sort(np.hypot(skin[:, 0], skin[:, 1])[skin[:, 2] < 0.5 * p["length"]])[1])
+    return model, max(edge, model.geometry.barrier_size * p["block"])
 
 
 def _vibration(model: Model, state: State) -> float:
@@ -115,7 +104,7 @@ def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
 
 def _allow(p: Values) -> None:
     """Refuse a rod that is no rod, or whose round end is a needle."""
-    steel.slender(p, "diameter", *SLENDER)
+    setups.slender(p, "diameter", *SLENDER)
     least = p["diameter"] / 4 / LONGEST
     within(p, "tip_radius", least, inf, "m", f"a nose of more than {LONGEST:g} radii is no end of a rod.")
 
@@ -177,15 +166,15 @@ PROBLEM = Problem(
     "sears",
     "a rod with a round end strikes along its axis: force, contact time, vibration",
     (
-        steel.length(),
-        steel.diameter(),
+        setups.length(),
+        setups.diameter(),
         Parameter("tip_radius", "radius of the round end at its pole", "length", 1e-4, 1.0, default=7e-3),
-        steel.speed("speed", "approach speed", 2.0),
-        *steel.elastic(),
+        setups.speed("speed", "approach speed", 2.0),
+        *setups.elastic(),
         Parameter("block", "1: an elastic block, 0: a rigid plane", "", 0, 1, default=1, whole=True),
         Parameter("barrier_E", "Young's modulus of the block", "stress", 1e6, 2e12, default=206e9),
         Parameter("cells", "cells over the contact radius", "", 2, 20, default=5),
-        steel.across(8),
+        setups.across(8),
     ),
     solve,
 )

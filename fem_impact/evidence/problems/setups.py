@@ -1,26 +1,31 @@
-"""Parameters that many problems share, with the rod steel of the study as default."""
+"""Parameters that many problems share, with the rod steel of the study as default, and their scenes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from math import ceil, log2
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
+import meshio
 import numpy as np
 
-import meshes
-from fem_impact.case.plates import ROWS
-from fem_impact.evidence.problems.bodies import rigid_of
+from fem_impact.case.case import Case
 from fem_impact.evidence.problems.problem import Values, within
-from fem_impact.evidence.problems.watch import ForceRecorder, Until
-from fem_impact.fem.flight import RigidMotion
+from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.fields import Element
+from fem_impact.scene.impact import Impact
 from fem_impact.scene.material import Material
+from fem_impact.scene.own_mesh import OwnMesh
 from fem_impact.scene.parameter import Parameter
-from fem_impact.scene.shipped import load
-from fem_impact.scene.types import Scene
-from fem_impact.solid.march import march
+from fem_impact.scene.projectile import ProjectileSpec
+from fem_impact.scene.shapes import NamedShape
+from fem_impact.scene.types import Accuracy, Save, Scene, Surface
+from fem_impact.solid.build import build
 from fem_impact.solid.model import Model
-from fem_impact.solid.state import State
-from meshes import HexMesh, Zone
+from meshes import HexMesh
+
+WIDER = 1.2  # a nose draws the cells where it touches apart, by so much with 8 of them across
+COARSE = 0.249  # of a bar's width: so large a tip size leaves its cells whole
+NEAREST = 2**0.4  # cells are halved to the size nearest to the stated one, which is to be nearly the largest
 
 
 def length(default: float = 0.24) -> Parameter:
@@ -68,120 +73,71 @@ def slender(p: Values, across: str, low: float, high: float) -> None:
     within(p, "length", low * p[across], high * p[across], "m", f"{low:g} to {high:g} times the {across}.")
 
 
-MARGIN = 16.0  # the block reaches so many contact radii beyond its fine zone; 8 are 0.3 % too soft
-REACH = 1.3  # half-width of the fine zone over the contact radius
-SMOOTHING = 0.05  # window of the peak force over the contact time
+def steel(p: Values) -> Material:
+    """Return the elastic material of a problem's E, nu and rho."""
+    return Material("problem", p["E"], p["nu"], p["rho"])
 
 
-@dataclass(frozen=True, slots=True)
-class TipImpact:
-    """End of a strike.
-
-    Attributes
-    ----------
-    force, duration : largest force, N; contact time, s
-    motion : rigid motion after it
-    radiated, closing : energy that left through the block's boundary, and that closing nodes lost, J
-    most : largest energy on the way over E_0
-    """
-
-    force: float
-    duration: float
-    motion: RigidMotion
-    radiated: float
-    closing: float
-    most: float
-    state: State
-
-    def kept(self, speed: float) -> float:
-        """Return the energy of the rebound and what was radiated over that of the approach at ``speed``."""
-        return (self.motion.kinetic + self.radiated) / (0.5 * self.motion.mass * speed**2)
+def problem_scene(
+    projectile: ProjectileSpec,
+    barrier: Barrier,
+    effects: tuple[str, ...],
+    impact: Impact,
+    accuracy: Accuracy,
+    f: float = 0.0,
+) -> Scene:
+    """Return the scene of a problem."""
+    surface = Surface("custom", f, f, f, "a problem of the verification")
+    title = "a problem of the verification"
+    save = Save(frames=0)
+    return Scene("verify", title, projectile, barrier, surface, impact, effects, accuracy, save)
 
 
-def contact_zone(radius: float, depth: float) -> Zone:
-    """Return the fine zone around the pole at the origin for a contact radius, m."""
-    half = REACH * radius
-    return Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -depth]), np.array([half, half, depth]))
+def fine_tip(touch: float, cells: float) -> float:
+    """Return the ``tip_size``, m, with which so many cells lie over a contact radius ``touch``, m."""
+    return touch / (cells * WIDER * NEAREST)
 
 
-def block_reach(radius: float, base: float) -> float:
-    """Return how far the faces of a block lie from the middle of a contact of ``radius``, m."""
-    return REACH * radius + max(MARGIN * radius, 2 * base)
+def ball(p: Values, metal: Material) -> ProjectileSpec:
+    """Return the ball of a problem's radius."""
+    return ProjectileSpec.turned(NamedShape("ball", (2 * p["radius"],)), metal)
 
 
-def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> HexMesh:
-    """Return a block whose cells of edge ``base`` are split as often as the tip's, for a contact radius.
-
-    The tip moves on by ``slide``, m, towards -t while it touches.
-    """
-    half = REACH * radius
-    around = block_reach(radius, base) - half
-    low, high = np.array([-half - slide, 0.0, -radius]), np.array([half, half, 0.0])
-    zone = Zone(np.zeros(3), np.eye(3), low, high)
-    low, high = low - around, high + around
-    low[1] = high[2] = 0.0
-    return meshes.block(low, high, base, [zone] * levels)
+def scene_model(scene: Scene) -> Model:
+    """Return the model that a user's run of a scene marches."""
+    return build(Case.of(scene))
 
 
-def plate_under(radius: float, base: float, levels: int, thickness: float, edges: float) -> HexMesh:
-    """Return a plate of ``thickness``, m, fine like `block_under`, whose edges are ``edges``, m, away."""
-    rows, half = max(ROWS, round(thickness / base)), REACH * radius
-    depth = rows * base  # before its rows are drawn to the thickness
-    low, high = np.array([-half, 0.0, -radius * depth / thickness]), np.array([half, half, 0.0])
-    zone = Zone(np.zeros(3), np.eye(3), low, high)
-    mesh = meshes.block([-edges, 0.0, -depth], [edges, edges, 0.0], base, [zone] * levels)
-    mesh = meshes.with_free_bottom(mesh)
-    return meshes.with_rows_at(mesh, np.array([0.0, depth]), np.array([0.0, thickness]))
-
-
-def levels_for_radius(base: float, radius: float, cells: float) -> int:
-    """Return how often cells of edge ``base`` are split to have so many over the contact radius."""
-    return max(0, ceil(log2(base * cells / radius) - 0.1))
-
-
-def run_strike(model: Model, end: float, expected: float) -> TipImpact:
-    """March until ``end`` s and read the contact."""
-    state, force = model.initial_state(), ForceRecorder(model)
-    energy = Until(model.ledger(), end, every=20)
-    march(model, state, [force, energy])
-    start, stop = force.span
-    peak = force.peak(SMOOTHING * expected)
-    spent = energy.ledger.sample(state)
-    motion = rigid_of(model, state)
-    return TipImpact(peak, stop - start, motion, spent["radiated"], spent["closing"], energy.most, state)
+def meshed_bar_model(
+    p: Values,
+    half: HexMesh,
+    impact: Impact,
+    effects: tuple[str, ...],
+    f: float = 0.0,
+    element: Element = "incompatible",
+) -> Model:
+    """Return the model of a scene with a bar's mesh of its own, half of it, which touches at time 0."""
+    accuracy = Accuracy(tip_size=COARSE * float(np.ptp(half.points[:, 0])), mass_scaling=1.0, element=element)
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "bar.vtu"
+        meshio.write(path, meshio.Mesh(half.points, [("hexahedron", half.cells)]))
+        bar = ProjectileSpec.meshed(OwnMesh.of(str(path)), steel(p))
+        scene = problem_scene(bar, Barrier(steel(p)), ("vibration", *effects), impact, accuracy, f)
+        return build(Case.of(scene), gap=0.0)
 
 
 def rod_scene(p: Values, effects: tuple[str, ...]) -> Scene:
-    """Return a scene from parameters; absent ones take the values of a frictionless drop.
+    """Return the scene of a rod with a rounded edge; absent values are those of a frictionless drop.
 
     Used are length, diameter, tip_radius, E, nu, rho, barrier_E, angle, v_n, v_t (approach speeds above 0),
     omega, f, tip_size, across, max_time.
     """
-    base = load("t5b")
-    rod = Material("steel", p["E"], p["nu"], p["rho"], 1e9, 1e9)
-    plate = replace(rod, E=p.get("barrier_E", p["E"]))
-    f = p.get("f", 0.0)
-    return replace(
-        base,
-        id="verify",
-        title="a rod of the verification",
-        measured=None,
-        projectile=replace(
-            base.projectile,
-            length=p["length"],
-            diameter=p["diameter"],
-            tip="B",
-            tip_radius=p["tip_radius"],
-            material=rod,
-        ),
-        barrier=replace(base.barrier, material=plate),
-        surface=replace(base.surface, state="custom", friction=f, friction_low=f, friction_high=f),
-        impact=replace(
-            base.impact, angle=p["angle"], v_n=-p["v_n"], v_t=-p["v_t"], omega=p.get("omega", 0.0)
-        ),
-        effects=effects,
-        accuracy=replace(
-            base.accuracy, tip_size=p["tip_size"], across=int(p["across"]), max_time=p["max_time"]
-        ),
-        save=replace(base.save, frames=0),
+    rod = steel(p)
+    return problem_scene(
+        ProjectileSpec(p["length"], p["diameter"], "B", p["tip_radius"], rod),
+        Barrier(steel({**p, "E": p.get("barrier_E", p["E"])})),
+        effects,
+        Impact(p["angle"], -p["v_n"], -p["v_t"], p.get("omega", 0.0)),
+        Accuracy(tip_size=p["tip_size"], across=int(p["across"]), max_time=p["max_time"]),
+        p.get("f", 0.0),
     )

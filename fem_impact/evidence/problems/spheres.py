@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import cos, inf, pi, sin, sqrt
+from math import ceil, cos, inf, log2, pi, sin, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
 
 import meshes
+from fem_impact.case.plates import ROWS
 from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import Block, FreeBody, body_model, placed
 from fem_impact.evidence.problems.discretisation import (
@@ -20,17 +21,7 @@ from fem_impact.evidence.problems.discretisation import (
     lean_error,
 )
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import (
-    REACH,
-    SMOOTHING,
-    TipImpact,
-    block_reach,
-    block_under,
-    contact_zone,
-    levels_for_radius,
-    plate_under,
-    run_strike,
-)
+from fem_impact.evidence.problems.watch import SMOOTHING, TipImpact, run_strike
 from fem_impact.evidence.references.hertz import HertzImpact, contact_modulus, hertz, sliding_ratio
 from fem_impact.evidence.references.sphere import INERTIA, oblique_ball, oblique_sphere
 from fem_impact.evidence.references.vibrating_ball import ball_impact
@@ -38,7 +29,10 @@ from fem_impact.evidence.references.waves import radiated_energy
 from fem_impact.fem.elements import lumped_mass
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model
+from meshes import HexMesh, Zone
 
+MARGIN = 16.0  # the block reaches so many contact radii beyond its fine zone; 8 are 0.3 % too soft
+REACH = 1.3  # half-width of the fine zone over the contact radius
 CONTACT = 5e-3, 0.12  # contact radii over the ball's that the reference covers
 
 
@@ -93,19 +87,58 @@ class Plate:
     speed: float
 
 
+def contact_zone(radius: float, depth: float) -> Zone:
+    """Return the fine zone around the pole at the origin for a contact radius, m."""
+    half = REACH * radius
+    return Zone(np.zeros(3), np.eye(3), np.array([-half, 0.0, -depth]), np.array([half, half, depth]))
+
+
+def block_reach(radius: float, base: float) -> float:
+    """Return how far the faces of a block lie from the middle of a contact of ``radius``, m."""
+    return REACH * radius + max(MARGIN * radius, 2 * base)
+
+
+def block_under(radius: float, base: float, levels: int, slide: float = 0.0) -> HexMesh:
+    """Return a block whose cells of edge ``base`` are split as often as the tip's, for a contact radius.
+
+    The tip moves on by ``slide``, m, towards -t while it touches.
+    """
+    half = REACH * radius
+    around = block_reach(radius, base) - half
+    low, high = np.array([-half - slide, 0.0, -radius]), np.array([half, half, 0.0])
+    zone = Zone(np.zeros(3), np.eye(3), low, high)
+    low, high = low - around, high + around
+    low[1] = high[2] = 0.0
+    return meshes.block(low, high, base, [zone] * levels)
+
+
+def plate_under(radius: float, base: float, levels: int, thickness: float, edges: float) -> HexMesh:
+    """Return a plate of ``thickness``, m, fine like `block_under`, whose edges are ``edges``, m, away."""
+    rows, half = max(ROWS, round(thickness / base)), REACH * radius
+    depth = rows * base  # before its rows are drawn to the thickness
+    low, high = np.array([-half, 0.0, -radius * depth / thickness]), np.array([half, half, 0.0])
+    zone = Zone(np.zeros(3), np.eye(3), low, high)
+    mesh = meshes.block([-edges, 0.0, -depth], [edges, edges, 0.0], base, [zone] * levels)
+    mesh = meshes.with_free_bottom(mesh)
+    return meshes.with_rows_at(mesh, np.array([0.0, depth]), np.array([0.0, thickness]))
+
+
+def levels_for_radius(base: float, radius: float, cells: float) -> int:
+    """Return how often cells of edge ``base`` are split to have so many over the contact radius."""
+    return max(0, ceil(log2(base * cells / radius) - 0.1))
+
+
 def sphere_model(
     p: Values,
     touch: HertzImpact,
     v_n: float,
     v_t: float = 0.0,
     f: float = 0.0,
-    impedance: float | None = None,
     plate: Plate | None = None,
 ) -> Model:
     """Return a ball just above the barrier, fine around its pole, moving down at v_n and along t at -v_t.
 
-    The barrier as a whole gives way at the force over the ``impedance``, N s/m, if there is one; or it is a
-    ``plate`` that is meshed through its thickness.
+    The barrier may be a ``plate`` that is meshed through its thickness.
     """
     R, across = p["radius"], int(p["across"])
     base = 2 * R / across
@@ -124,21 +157,9 @@ def sphere_model(
         E, nu, rho = (p.get(f"barrier_{name}", p[name]) for name in ("E", "nu", "rho"))
         block = Block(under, base / 2**levels, E, nu, rho, bending=plate.speed if plate else None)
     denser = _denser(points, mesh.mesh.cells, p)
-    E, nu, rho = p["E"], p["nu"], p["rho"]
+    metal = p["E"], p["nu"], p["rho"]
     return body_model(
-        FreeBody(
-            mesh,
-            points,
-            velocity,
-            E,
-            nu,
-            rho,
-            denser,
-            friction=f,
-            block=block,
-            turning=f > 0,
-            impedance=impedance,
-        )
+        FreeBody(mesh, points, velocity, *metal, denser, friction=f, block=block, turning=f > 0)
     )
 
 

@@ -86,7 +86,6 @@ def _model(p: Values, slices: float) -> Model:
         points,
         velocity,
         *metal,
-        kind="bbar",
         law=law,
         yields=yields,
         friction=0.0,

@@ -11,11 +11,9 @@ from math import exp, floor, log, log2, pi, sqrt
 
 import numpy as np
 
-import meshes
-from fem_impact.evidence.problems import setups as steel
-from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed, rigid_of
+from fem_impact.evidence.problems import setups
+from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
-from fem_impact.evidence.problems.setups import contact_zone
 from fem_impact.evidence.problems.spheres import ball_mass
 from fem_impact.evidence.problems.watch import Until, follow
 from fem_impact.evidence.references.hertz import (
@@ -27,8 +25,11 @@ from fem_impact.evidence.references.hertz import (
     thornton_restitution,
     yield_speed,
 )
-from fem_impact.physics.hardening import linear_hardening
+from fem_impact.scene.barrier import Barrier
+from fem_impact.scene.impact import Impact
+from fem_impact.scene.material import Material
 from fem_impact.scene.parameter import Parameter
+from fem_impact.scene.types import Accuracy
 from fem_impact.solid.model import Model
 
 SLOPE, SLOPE_TOLERANCE, CONVERGED = -0.25, 0.05, 0.03
@@ -38,7 +39,6 @@ SPEEDS = 4
 LARGE = 0.35  # contact radius over the sphere's
 ACROSS = 8  # least cells over the diameter
 FINER = 1.5
-WIDTH, DEPTH = 1.6, 2.2  # the plastic zone over the contact radius
 LONGEST, APART = 6.0, 0.1  # over the time of the indentation: when a run ends, how long it must be free
 
 
@@ -51,28 +51,17 @@ def _indentation(p: Values, v: float) -> tuple[float, float]:
 
 def _model(p: Values, v: float, cells: float) -> Model:
     R, touch = p["radius"], _indentation(p, v)[0]
-    # the same cells over the contact radius at every speed: halvings, then the base mesh for the rest
+    # about the same cells over the contact radius at every speed: halvings, then the base mesh for the rest
     levels = max(0, floor(log2(2 * R * cells / (touch * ACROSS))))
-    across = 2 * round(R * cells / touch / 2**levels)
-    mesh = meshes.sphere(R, max(across, ACROSS), [contact_zone(WIDTH * touch, DEPTH * touch)] * levels)
-    points = placed(mesh.points, 0.0, 0.0)
-    velocity = np.zeros_like(points)
-    velocity[:, 2] = -v
-    rho = ball_mass(p) / (2 * float(np.sum(meshes.volume(mesh))))
-    law = linear_hardening(p["yield_stress"], p["hardening"])
-    yields = mesh.level == levels
-    return body_model(
-        FreeBody(
-            meshes.RodMesh.plain(mesh),
-            points,
-            velocity,
-            p["E"],
-            p["nu"],
-            rho,
-            law=law,
-            yields=yields,
-            friction=0.0,
-        )
+    across = max(2 * round(R * cells / touch / 2**levels), ACROSS)
+    metal = Material(
+        "problem", p["E"], p["nu"], p["rho"], p["yield_stress"], p["yield_stress"], hardening=p["hardening"]
+    )
+    accuracy = Accuracy(tip_size=touch / cells / setups.WIDER, across=across, mass_scaling=1.0)
+    effects = ("vibration", "rod-plasticity", "barrier-rigid")
+    drop = Impact(0.0, -v, 0.0)
+    return setups.scene_model(
+        setups.problem_scene(setups.ball(p, metal), Barrier(metal), effects, drop, accuracy)
     )
 
 
@@ -145,9 +134,9 @@ PROBLEM = Problem(
     "a yielding sphere on a rigid plane: restitution falls as speed to the power -1/4",
     (
         Parameter("radius", "radius of the sphere", "length", 1e-4, 1.0, default=9.5e-3),
-        steel.speed("slowest", "lowest approach speed", 2.5),
-        steel.speed("fastest", "highest approach speed", 10.0),
-        *steel.elastic(),
+        setups.speed("slowest", "lowest approach speed", 2.5),
+        setups.speed("fastest", "highest approach speed", 10.0),
+        *setups.elastic(),
         Parameter("yield_stress", "yield stress", "stress", 1e5, 1e10, default=546e6),
         Parameter("hardening", "plastic modulus", "stress", 0.0, 1e11, default=0.0),
         Parameter("cells", "cells over the contact radius", "", 2, 20, default=7),

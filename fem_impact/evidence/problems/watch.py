@@ -1,12 +1,15 @@
-"""Observers of the verification: contact force and mechanical energy; runs of bodies that yield."""
+"""Runs of the verification, and their observers: contact force and mechanical energy."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_impact.errors import RunError
+from fem_impact.evidence.problems.bodies import rigid_of
+from fem_impact.fem.flight import RigidMotion
 from fem_impact.solid.contact.book import IMPULSE_N
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
@@ -14,6 +17,7 @@ from fem_impact.solid.model import Model
 from fem_impact.solid.state import State
 from fem_impact.solid.stepguard import SMALLEST, StepGuard
 
+SMOOTHING = 0.05  # window of the peak force over the contact time
 MECHANICAL = ("kinetic_rod", "strain_rod", "kinetic_barrier", "strain_barrier")
 
 
@@ -88,3 +92,40 @@ def follow(model: Model, state: State, until: Until, every: int, crushed: float 
     march(model, state, [guard, until])
     if guard.reason:
         raise RunError(guard.reason)
+
+
+@dataclass(frozen=True, slots=True)
+class TipImpact:
+    """End of a strike.
+
+    Attributes
+    ----------
+    force, duration : largest force, N; contact time, s
+    motion : rigid motion after it
+    radiated, closing : energy that left through the block's boundary, and that closing nodes lost, J
+    most : largest energy on the way over E_0
+    """
+
+    force: float
+    duration: float
+    motion: RigidMotion
+    radiated: float
+    closing: float
+    most: float
+    state: State
+
+    def kept(self, speed: float) -> float:
+        """Return the energy of the rebound and what was radiated over that of the approach at ``speed``."""
+        return (self.motion.kinetic + self.radiated) / (0.5 * self.motion.mass * speed**2)
+
+
+def run_strike(model: Model, end: float, expected: float) -> TipImpact:
+    """March until ``end`` s and read the contact."""
+    state, force = model.initial_state(), ForceRecorder(model)
+    energy = Until(model.ledger(), end, every=20)
+    march(model, state, [force, energy])
+    start, stop = force.span
+    peak = force.peak(SMOOTHING * expected)
+    spent = energy.ledger.sample(state)
+    motion = rigid_of(model, state)
+    return TipImpact(peak, stop - start, motion, spent["radiated"], spent["closing"], energy.most, state)

@@ -22,7 +22,7 @@ STATIC = 16  # polynomials of a beam under a force at its end, whose deflection 
 
 
 @dataclass(frozen=True, slots=True)
-class BeamModes:
+class BarModes:
     """Bending modes of unit modal mass.
 
     Attributes
@@ -74,7 +74,7 @@ def _ritz(E: float, nu: float, rho: float, length: float, radius: float, n: int)
     return square, shape
 
 
-def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BeamModes:
+def bending_modes(E: float, nu: float, rho: float, length: float, radius: float, count: int = 8) -> BarModes:
     """Return the lowest elastic bending modes.
 
     Examples
@@ -85,7 +85,7 @@ def bending_modes(E: float, nu: float, rho: float, length: float, radius: float,
     n = 2 * count + 12
     square, shape = _ritz(E, nu, rho, length, radius, n)
     chosen = slice(RIGID, RIGID + count)
-    return BeamModes(np.sqrt(square[chosen]), shape[:n, chosen].T, shape[n:, chosen].T)
+    return BarModes(np.sqrt(square[chosen]), shape[:n, chosen].T, shape[n:, chosen].T)
 
 
 @cache
