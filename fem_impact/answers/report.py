@@ -97,8 +97,8 @@ class Sheet:
     brief: Table | None = None
 
     @property
-    def told(self) -> Table:
-        """What the summary shows."""
+    def summary(self) -> Table:
+        """The table that the summary shows."""
         return self.brief or self.table
 
 
@@ -153,7 +153,12 @@ def publish(report: StudyReport, request: Request, results: JobResults) -> Study
             contacts = None if intervals is None else len(intervals)
             values = {**run.to_dict(), "run": name, "contacts": contacts}
             ledger.append([values[column] for column in LEDGER])
-    report = replace(report, title=_title(report, request, results), pictures=_telling(report.pictures))
+    look = f" (quick look: {len(results)} runs, not a result)" if request.quick else ""
+    # panels with more than one place along x; no picture without any
+    cut = (
+        replace(p, panels=tuple(panel for panel in p.panels if panel.informative)) for p in report.pictures
+    )
+    report = replace(report, title=report.title + look, pictures=[p for p in cut if p.panels])
     document = _document(report, request, results)
     if _stands_another(request.out, document):
         set_aside(request.out)
@@ -180,18 +185,6 @@ def _stands_another(out: Path, document: Mapping[str, Any]) -> bool:
     return any(old.get(key, "") != document[key] for key in ("study", "about"))
 
 
-def _title(report: StudyReport, request: Request, results: JobResults) -> str:
-    return (
-        f"{report.title} (quick look: {len(results)} runs, not a result)" if request.quick else report.title
-    )
-
-
-def _telling(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return the pictures with the panels that have more than one place along x; none without any."""
-    cut = (replace(one, panels=tuple(panel for panel in one.panels if panel.informative)) for one in pictures)
-    return [one for one in cut if one.panels]
-
-
 def _document(report: StudyReport, request: Request, results: JobResults) -> dict[str, Any]:
     drawn = {picture.name for picture in report.pictures}
     return {
@@ -212,8 +205,8 @@ def _document(report: StudyReport, request: Request, results: JobResults) -> dic
             {
                 "name": sheet.name,
                 "caption": sheet.caption,
-                "columns": [column.title for column in sheet.told.columns],
-                "rows": list(map(list, sheet.told.rows)) if sheet.shown else [],
+                "columns": [column.title for column in sheet.summary.columns],
+                "rows": list(map(list, sheet.summary.rows)) if sheet.shown else [],
             }
             for sheet in report.sheets
         ],
@@ -237,7 +230,7 @@ def _markdown(report: StudyReport, document: Mapping[str, Any]) -> str:
     parts += [f"![{p.caption}](figures/{p.name}.png)\n\n{p.caption}" for p in report.pictures]
     for sheet in report.sheets:
         parts += [f"{sheet.caption} (`{sheet.name}.csv`)"]
-        parts += [sheet.told.markdown()] if sheet.shown else []
+        parts += [sheet.summary.markdown()] if sheet.shown else []
     parts += ["What it rests on:", _bullets(report.assumptions)] if report.assumptions else []
     parts += [f"failed: {f['scene_id']}: {f['error']}" for f in document["failures"]]
     return "\n\n".join(part for part in parts if part) + "\n"

@@ -89,15 +89,15 @@ def sweep(
     if fidelity not in FIDELITIES:
         hint = did_you_mean(fidelity, FIDELITIES, f"Use one of {', '.join(FIDELITIES)}.")
         raise UsageError("is not a fidelity.", key="fidelity", value=fidelity, remedy=hint)
-    made = cases(scene, vary)
-    jobs = [Job(case.name, case.scene, fidelity) for case in made if case.scene is not None]
+    every = cases(scene, vary)
+    jobs = [Job(case.name, case.scene, fidelity) for case in every if case.scene is not None]
     with tempfile.TemporaryDirectory() as spare:
         place = Path(out) if out is not None else Path(spare)
         make_directory(place)
         # an executor that is lent stays open
         with directory_lock(place), nullcontext(executor) if executor else _engine(workers) as engine:
-            found = run_jobs(jobs, place / STORE, progress or NullMeter(), engine)
-    return Results(dict(vary), tuple(row_of(case, found.get(case.name)) for case in made))
+            results = run_jobs(jobs, place / STORE, progress or NullMeter(), engine)
+    return Results(dict(vary), tuple(row_of(case, results.get(case.name)) for case in every))
 
 
 def _engine(workers: int) -> Executor:

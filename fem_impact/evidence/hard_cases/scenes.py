@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from fem_impact.scene.shipped import load, replace_all
+from fem_impact import load, replace_all
 from fem_impact.scene.types import Scene
 
 Expected = Literal["closed", "refused", "detected"]

@@ -22,8 +22,6 @@ from rigid.experiments import (
     set_ids,
 )
 
-Document = Mapping[str, Any]
-
 SCATTER = (*Coefficients._fields, "E_ln_over_E_0", "E_lt_over_E_0", "E_r_over_E_0")
 CSV_COLUMNS = ("set", "table", "row", "column", "printed", "recomputed", "tolerance", "agrees", "explanation")
 
@@ -171,13 +169,13 @@ def _scatter(s: MeasuredSet) -> dict[str, Any]:
     }
 
 
-def audit_text(document: Document) -> str:
+def audit_text(document: Mapping[str, Any]) -> str:
     """Return the document of `audit_document` as text."""
     parts = (_summary_text, _constants_text, _disagreements_text, _scatter_text, _correlations_text)
     return "\n".join(line for part in parts for line in part(document)) + "\n"
 
 
-def _summary_text(document: Document) -> Iterator[str]:
+def _summary_text(document: Mapping[str, Any]) -> Iterator[str]:
     s = document["summary"]
     yield from wrapped(
         f"{s['agree']} of {s['numbers']} printed numbers follow from the printed velocities within rounding."
@@ -195,7 +193,7 @@ def _summary_text(document: Document) -> Iterator[str]:
             yield from wrapped(f"{which}: {counts}", "  ")
 
 
-def _constants_text(document: Document) -> Iterator[str]:
+def _constants_text(document: Mapping[str, Any]) -> Iterator[str]:
     yield ""
     yield "What the columns were worked out with (mm, kg, mm2)"
     rows: list[tuple[Cell, ...]] = []
@@ -207,7 +205,7 @@ def _constants_text(document: Document) -> Iterator[str]:
     yield Table(CONSTANT_COLUMNS, tuple(rows)).terminal(indent="  ")
 
 
-def _disagreements_text(document: Document) -> Iterator[str]:
+def _disagreements_text(document: Mapping[str, Any]) -> Iterator[str]:
     yield ""
     yield "Disagreements, by reason"
     apart = document["disagreements"]
@@ -221,7 +219,7 @@ def _disagreements_text(document: Document) -> Iterator[str]:
         yield "  none"
 
 
-def _scatter_text(document: Document) -> Iterator[str]:
+def _scatter_text(document: Mapping[str, Any]) -> Iterator[str]:
     yield ""
     yield from wrapped(
         "Scatter, mean (SD); e_m of the mean motion with its 95 % interval for a contact point known "
@@ -239,7 +237,7 @@ def _scatter_text(document: Document) -> Iterator[str]:
     yield Table.of(head, rows, left=(0, 2, 3, 4, 5)).terminal(indent="  ")
 
 
-def _correlations_text(document: Document) -> Iterator[str]:
+def _correlations_text(document: Mapping[str, Any]) -> Iterator[str]:
     """Yield the pairs of coefficients whose 95 % interval of correlation excludes zero."""
     pairs = [(s["set"], c) for s in document["scatter"] for c in s["correlations"]]
     real = [f"{name}: {c['pair']} r = {c['r']:+.2f}" for name, c in pairs if c["low"] > 0 or c["high"] < 0]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from fem_impact import replace_all
 from fem_impact.answers.compare import COMPARED, MEASURED, UNSEEN, ComparisonRow
 from fem_impact.case.effects.plasticity import hardening_of
 from fem_impact.jobs.job import Failure, Job
@@ -23,7 +24,6 @@ from fem_impact.outcome.record import Outcome
 from fem_impact.physics.hardening import TABOR_STRAIN, rate_gain, tabor_stress
 from fem_impact.scene.library import intervals_of
 from fem_impact.scene.material import JohnsonCookRate
-from fem_impact.scene.shipped import replace_all
 from rigid import Errors
 from rigid.experiments import MeasuredSet
 

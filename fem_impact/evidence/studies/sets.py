@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from fem_impact import load, replace_all
 from fem_impact.answers.compare import COMPARED, ComparisonRow, compare
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.evidence.studies.inputs import (
@@ -26,7 +27,6 @@ from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
 from fem_impact.outcome.shares import ADDED, EnergyShare, shares
 from fem_impact.run.tests import tests_of
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import COMPARISON, DASH, Table
 from fem_impact.tables.text import plain
@@ -56,12 +56,10 @@ def mesh_jobs(name: str, quick: bool, out: Path) -> dict[str, Job]:
     meshes = {"fine": Job(set_id, fine, out=out / set_id), "coarse": coarse_job}
     if quick:
         return meshes
-    return meshes | {f"{kind}-{HALF_CELL}": _half_cell(job) for kind, job in meshes.items()}
-
-
-def _half_cell(job: Job) -> Job:
-    """Return the job with the grid of the barrier half a cell further along t, without fields."""
-    return Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, PLACES[1]))
+    return meshes | {
+        f"{kind}-{HALF_CELL}": Job(f"{job.name}-{HALF_CELL}", shifted(job.scene, PLACES[1]))
+        for kind, job in meshes.items()
+    }
 
 
 def chosen(request: Request) -> tuple[str, ...]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from fem_impact import replace_all
 from fem_impact.answers.report import Request, StudyReport
 from fem_impact.evidence.studies.inputs import UNCERTAIN_INPUTS, changes, sample_values
 from fem_impact.evidence.studies.response import fit
@@ -28,7 +29,6 @@ from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
-from fem_impact.scene.shipped import replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from rigid.experiments import measured_set
 

@@ -186,9 +186,12 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
         for at, name in enumerate(OUTPUTS):
             model, tests = (values[:, at] + found.shift[at] for values in (found.all_inputs, found.tests))
             seen = measured.get(name)
-            own = (None, None, None) if seen is None else _seen(seen, model)
+            tested: tuple[Cell, ...] = (None, None, None)
+            if seen is not None:
+                area = wasserstein_distance(seen, model)
+                tested = (float(seen.mean()), float(seen.std(ddof=1)), float(area))
             moments = (float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1)))
-            rows.append((found.name, TITLES[name], *moments, *own))
+            rows.append((found.name, TITLES[name], *moments, *tested))
     head = (
         "set",
         "quantity",
@@ -205,10 +208,6 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
         "area between computed and measured distributions (area metric, in the unit of the quantity)"
     )
     return Sheet("spread", caption, Table.of(head, rows))
-
-
-def _seen(measured: Array, model: Array) -> tuple[float, float, float]:
-    return float(measured.mean()), float(measured.std(ddof=1)), float(wasserstein_distance(measured, model))
 
 
 def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:

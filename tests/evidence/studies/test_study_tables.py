@@ -136,7 +136,7 @@ def test_a_missing_library_costs_a_film_only(tmp_path, monkeypatch):
     def no_film(place, **_):
         raise MissingLibraryError("install libegl1")
 
-    monkeypatch.setattr("fem_impact.films.film.render", no_film)
+    monkeypatch.setattr("fem_impact.pages.write.render", no_film)
     assert film(run, 3) == ["t4: install libegl1"]
 
 
