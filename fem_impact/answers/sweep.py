@@ -134,10 +134,10 @@ def publish_sweep(
         sheets=[_sheet(results, columns)],
         sources=sorted(effects),
     )
-    made = publish(report, Request(out, line=line, cases=cases), runs)
+    published = publish(report, Request(out, line=line, cases=cases), runs)
     if find_spec("pyarrow"):
         results.to_dataframe().to_parquet(out / "sweep.parquet")
-    return made
+    return published
 
 
 def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
@@ -145,8 +145,8 @@ def _sheet(results: Results, columns: Sequence[str]) -> Sheet:
     whole = results.table()
     names = columns or [name for name in SHORT if any(whole.texts(name))]
     stopped = ["reason"] if any(whole.texts("reason")) else []
-    own = [name for name in whole.names if name not in (*COLUMNS, "reason")]
-    places = [whole.names.index(name) for name in (*own, *stopped, *names)]
+    varied = [name for name in whole.names if name not in (*COLUMNS, "reason")]
+    places = [whole.names.index(name) for name in (*varied, *stopped, *names)]
     rows = tuple(tuple(row[at] for at in places) for row in whole.rows[:MOST_ROWS])
     brief = replace(whole, columns=tuple(whole.columns[at] for at in places), rows=rows)
     caption = "All cases" if len(whole) <= MOST_ROWS else f"The first {MOST_ROWS} of {len(whole)} cases"
@@ -218,9 +218,9 @@ def _pictures(results: Results, drawn: Sequence[str]) -> list[Picture]:
         curves.setdefault(_stated(row, key) or "all", []).append(at)
     label = f"{key}, {unit}" if unit else key
     panels = [_panel(results, name, label, along, curves) for name in drawn]
-    told = tuple(panel for panel in panels if panel.series)
+    shown = tuple(panel for panel in panels if panel.series)
     left_out = "" if len(curves) <= MOST_CURVES else f" The first {MOST_CURVES} of {len(curves)} curves."
-    return [Picture("sweep", f"What changes with {key}.{left_out}", told)] if told else []
+    return [Picture("sweep", f"What changes with {key}.{left_out}", shown)] if shown else []
 
 
 def _panel(

@@ -122,11 +122,11 @@ def cases(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> list[Variation]:
         Nothing varies, there are too many combinations, or each of them is refused.
     """
     _check(vary)
-    made = list(_made(scene, vary))
-    if all(case.scene is None for case in made):
-        which = "The only combination" if len(made) == 1 else f"Each of the {len(made)} combinations"
-        raise SceneError(f"{which} is refused: {made[0].refused}", key="--vary")
-    return made
+    every = list(_made(scene, vary))
+    if all(case.scene is None for case in every):
+        which = "The only combination" if len(every) == 1 else f"Each of the {len(every)} combinations"
+        raise SceneError(f"{which} is refused: {every[0].refused}", key="--vary")
+    return every
 
 
 def _check(vary: Mapping[str, Sequence[Any]]) -> None:
@@ -145,11 +145,11 @@ def _check(vary: Mapping[str, Sequence[Any]]) -> None:
 
 def _made(scene: Scene, vary: Mapping[str, Sequence[Any]]) -> Iterator[Variation]:
     for number, values in enumerate(product(*vary.values()), 1):
-        stated = dict(zip(vary, values, strict=True))
+        by_key = dict(zip(vary, values, strict=True))
         try:
-            yield Variation(f"case-{number:05d}", stated, replace_all(scene, stated, source=""))
+            yield Variation(f"case-{number:05d}", by_key, replace_all(scene, by_key, source=""))
         except FemImpactError as error:
-            yield Variation(f"case-{number:05d}", stated, None, str(error))
+            yield Variation(f"case-{number:05d}", by_key, None, str(error))
 
 
 def measure(value: Any) -> tuple[float | str, str]:
@@ -164,10 +164,10 @@ def measure(value: Any) -> tuple[float | str, str]:
 
 def in_unit(value: Any, unit: str) -> float | str:
     """Return a stated value as a number in a unit; texts stay as they are."""
-    number, own = measure(value)
-    if isinstance(number, str) or own == unit:
+    number, given = measure(value)
+    if isinstance(number, str) or given == unit:
         return number
-    pairs = ((kind.unit(own), kind.unit(unit)) for kind in DIMENSIONS.values())
+    pairs = ((kind.unit(given), kind.unit(unit)) for kind in DIMENSIONS.values())
     of, to = next(((of, to) for of, to in pairs if of and to), (None, None))
     if of is None or to is None:
         return str(value)

@@ -228,8 +228,8 @@ def _scatter_text(document: Mapping[str, Any]) -> Iterator[str]:
     head = ("set", "tests", "e", "mu", "loss/E_0", "e_m of the mean motion")
     rows: list[tuple[Cell, ...]] = []
     for s in document["scatter"]:
-        e, mu, kept, e_m = (s[name] for name in ("e", "mu", "E_r_over_E_0", "e_m_of_mean"))
-        means = ((e["mean"], e["sd"]), (mu["mean"], mu["sd"]), (1 - kept["mean"], kept["sd"]))
+        e, mu, remaining, e_m = (s[name] for name in ("e", "mu", "E_r_over_E_0", "e_m_of_mean"))
+        means = ((e["mean"], e["sd"]), (mu["mean"], mu["sd"]), (1 - remaining["mean"], remaining["sd"]))
         moment = f"{e_m['value']:+.2f} ({e_m['low']:+.2f} to {e_m['high']:+.2f})"
         mark = "" if e_m["low"] <= -1 <= e_m["high"] else "  leaves out -1"
         spreads = (f"{mean:.3f} ({sd:.3f})" for mean, sd in means)

@@ -96,9 +96,9 @@ def _draw_6(axes: Axes, curve: dict[str, Any], s: MeasuredSet, colour: str) -> N
     axes.plot(MU[possible], total[0][possible], color=colour, lw=1.6, label=f"{curve['alpha']:.0f}°")
     axes.plot(MU[beyond], total[0][beyond], color=colour, lw=1.0, ls=(0, (1, 1.6)))
     axes.plot(curve["mu_c"], np.interp(curve["mu_c"], MU, total[0]), "s", color=colour, markersize=5)
-    mu, kept = s.statistics()["mu"], s.statistics()["E_r_over_E_0"]
-    bars: dict[str, Any] = {"xerr": mu.high - mu.mean, "yerr": kept.high - kept.mean}
-    axes.errorbar(mu.mean, 1 - kept.mean, **bars, fmt="o", color=colour, mec="black", mew=0.6, capsize=2)
+    mu, remaining = s.statistics()["mu"], s.statistics()["E_r_over_E_0"]
+    bars: dict[str, Any] = {"xerr": mu.high - mu.mean, "yerr": remaining.high - remaining.mean}
+    axes.errorbar(mu.mean, 1 - remaining.mean, **bars, fmt="o", color=colour, mec="black", mew=0.6, capsize=2)
 
 
 def _furnish(axes: Axes) -> None:

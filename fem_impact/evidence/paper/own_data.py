@@ -82,7 +82,7 @@ def _estimates(motion: Mapping[str, Floats], body: Mapping[str, Any]) -> dict[st
 def _notes(camera: Camera, tests: Mapping[str, Floats], document: Mapping[str, Any]) -> list[str]:
     """Return warnings about the data and the moment restitution."""
     notes = [f"columns not used: {', '.join(camera.ignored)}"] if camera.ignored else []
-    gains = [t for t, kept in zip(camera.tests, tests["E_r_over_E_0"], strict=True) if kept > 1]
+    gains = [t for t, remaining in zip(camera.tests, tests["E_r_over_E_0"], strict=True) if remaining > 1]
     if gains:
         notes.append(
             f"more kinetic energy after than before impact in test {', '.join(gains)}: check its row"

@@ -120,8 +120,8 @@ def _sum(keys: Sequence[Key], run: Outcome) -> float | None:
 def report_of(table: pandas.DataFrame) -> StudyReport:
     """Return the study of scenes: near or not, and a panel a quantity; ``table`` as `DeclaredSweep.table`."""
     rows = [(name, group_of(name), *row) for name, row in zip(table.index, table.to_numpy(), strict=True)]
-    groups = {group: own.astype(float) for group, own in table.groupby(group_of, sort=False)}
-    sentences = [_near(group, own) for group, own in groups.items()]
+    groups = {group: members.astype(float) for group, members in table.groupby(group_of, sort=False)}
+    sentences = [_near(group, members) for group, members in groups.items()]
     panels = tuple(_panel(name, groups) for name in KEYS)
     return StudyReport(
         "reduced",
@@ -149,9 +149,10 @@ def _near(group: str, table: pandas.DataFrame) -> str:
 def _panel(name: str, groups: dict[str, pandas.DataFrame]) -> Panel:
     """Return one quantity by both models, a colour a group."""
     series = [
-        Series(group, own[name, "solid"], own[name, "modal"], "points") for group, own in groups.items()
+        Series(group, members[name, "solid"], members[name, "modal"], "points")
+        for group, members in groups.items()
     ]
-    solid = np.concatenate([own[name, "solid"] for own in groups.values()])
+    solid = np.concatenate([members[name, "solid"] for members in groups.values()])
     ends = np.array([np.nanmin(solid), np.nanmax(solid)])
     unit = KEYS[name][0].unit
     label = name if unit in ("", "-", "1") else f"{name}, {unit}"

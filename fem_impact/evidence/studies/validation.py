@@ -45,7 +45,7 @@ def plan(request: Request, results: JobResults) -> list[Job]:
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: comparison errors, their uncertainties, and what causes them."""
-    sets = [found for name in _sets(request) if (found := _validated(name, request, results))]
+    sets = [study_set for name in _sets(request) if (study_set := _validated(name, request, results))]
     return study_report(sets)
 
 

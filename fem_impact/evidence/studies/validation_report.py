@@ -25,10 +25,10 @@ TERMS = (len(UNCERTAIN_INPUTS) + 1) * (len(UNCERTAIN_INPUTS) + 2) // 2  # of a s
 
 def study_report(sets: Sequence[ValidatedSet]) -> StudyReport:
     """Return the study of the validated sets."""
-    compared = [c for found in sets for c in found.comparisons]
+    compared = [c for study_set in sets for c in study_set.comparisons]
     sentences = _verdict_sentences(compared)
     takes = [_surface_sentence(sets)] if sets else []
-    takes += [sentence for found in sets for sentence in reach_sentences(found)]
+    takes += [sentence for study_set in sets for sentence in reach_sentences(study_set)]
     return StudyReport(
         "validation",
         "Validation: error of the model, and how well it is known (ASME V&V 20)",
@@ -86,7 +86,9 @@ def _verdict_sentences(compared: Sequence[Comparison]) -> list[str]:
 def _surface_sentence(sets: Sequence[ValidatedSet]) -> str:
     """Return how well the response surfaces give runs that they were not fitted to."""
     at = [NAMES.index(name) for name in SHOWN]
-    off = [100 * found.surface.error[i] / found.comparisons[i].u_input for found in sets for i in at]
+    off = [
+        100 * study_set.surface.error[i] / study_set.comparisons[i].u_input for study_set in sets for i in at
+    ]
     return (
         "What each miss of e, mu and Omega would take, by response surfaces that give runs left out of them "
         f"within {np.median(off):.0f} % of u_input (median; worst {max(off):.0f} %):"
@@ -115,14 +117,16 @@ def _errors(compared: Sequence[Comparison]) -> Picture:
 def _distributions(sets: Sequence[ValidatedSet], name: str) -> Picture:
     """Return the distribution of a quantity in each set: model over all inputs, test to test, measured."""
     at, panels = NAMES.index(name), []
-    for found in sets:
-        model, tests = (values[:, at] + found.shift[at] for values in (found.all_inputs, found.tests))
+    for study_set in sets:
+        model, tests = (
+            values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
+        )
         series = (
             _steps("model, all inputs", model, "line", 5),
             _steps("model, test to test", tests, "dashed", 0),
-            _steps("measured tests", found.measured.recomputed()[name], "points", 1),
+            _steps("measured tests", study_set.measured.recomputed()[name], "points", 1),
         )
-        panels.append(Panel(found.name, AXES[name], "share below", series))
+        panels.append(Panel(study_set.name, AXES[name], "share below", series))
     caption = f"{name}: share of tests below a value, computed and measured."
     return Picture(f"distribution-{name}", caption, tuple(panels), 3)
 
@@ -155,9 +159,11 @@ def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     """Return the share of each input in the variance of each quantity: total Sobol indices."""
     names = [i.name for i in UNCERTAIN_INPUTS]
     rows: list[tuple[Cell, ...]] = [
-        (found.name, TITLES[output], float(error), *map(float, shares))
-        for found in sets
-        for output, shares, error in zip(OUTPUTS, _total_indices(found), found.surface.error, strict=True)
+        (study_set.name, TITLES[output], float(error), *map(float, shares))
+        for study_set in sets
+        for output, shares, error in zip(
+            OUTPUTS, _total_indices(study_set), study_set.surface.error, strict=True
+        )
         if output in (*SHOWN, "E_vib_over_E_0")
     ]
     caption = (
@@ -167,10 +173,10 @@ def _cause_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     return Sheet("causes", caption, Table.of(("set", "quantity", "surface_error", *names), rows))
 
 
-def _total_indices(found: ValidatedSet) -> Array:
+def _total_indices(study_set: ValidatedSet) -> Array:
     """Return total Sobol indices (outputs, inputs), none below zero."""
     sample = sobol_indices(
-        func=lambda unit: found.surface(unit.T).T,
+        func=lambda unit: study_set.surface(unit.T).T,
         n=SOBOL_POINTS,
         dists=[uniform()] * len(UNCERTAIN_INPUTS),
         rng=np.random.default_rng(SEED),
@@ -181,17 +187,19 @@ def _total_indices(found: ValidatedSet) -> Array:
 def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     """Return spreads by test-to-test inputs and by all, the measured one, and the area metric."""
     rows: list[tuple[Cell, ...]] = []
-    for found in sets:
-        measured = found.measured.recomputed()
+    for study_set in sets:
+        measured = study_set.measured.recomputed()
         for at, name in enumerate(OUTPUTS):
-            model, tests = (values[:, at] + found.shift[at] for values in (found.all_inputs, found.tests))
+            model, tests = (
+                values[:, at] + study_set.shift[at] for values in (study_set.all_inputs, study_set.tests)
+            )
             seen = measured.get(name)
             tested: tuple[Cell, ...] = (None, None, None)
             if seen is not None:
                 area = wasserstein_distance(seen, model)
                 tested = (float(seen.mean()), float(seen.std(ddof=1)), float(area))
             moments = (float(f) for v in (tests, model) for f in (v.mean(), v.std(ddof=1)))
-            rows.append((found.name, TITLES[name], *moments, *tested))
+            rows.append((study_set.name, TITLES[name], *moments, *tested))
     head = (
         "set",
         "quantity",
@@ -212,12 +220,12 @@ def _spread_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
 
 def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     rows = []
-    for found in sets:
-        tests = {name: found.tests[:, NAMES.index(name)] for name in SHOWN}
-        measured = {name: found.measured.recomputed()[name] for name in SHOWN}
+    for study_set in sets:
+        tests = {name: study_set.tests[:, NAMES.index(name)] for name in SHOWN}
+        measured = {name: study_set.measured.recomputed()[name] for name in SHOWN}
         model = correlations(tests)
         for pair, seen in correlations(measured).items():
-            rows.append((found.name, ", ".join(pair), model[pair].r, seen.r, seen.low, seen.high, seen.n))
+            rows.append((study_set.name, ", ".join(pair), model[pair].r, seen.r, seen.low, seen.high, seen.n))
     head = ("set", "pair", "model_r", "measured_r", "measured_low", "measured_high", "tests")
     caption = "Correlation within a set, with Fisher's 95 % interval of the measured one"
     return Sheet("correlations", caption, Table.of(head, rows))
@@ -226,12 +234,12 @@ def _correlation_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
 def _surface_sheet(sets: Sequence[ValidatedSet]) -> Sheet:
     """Return the response surfaces of e, mu and Omega, from which other constants can be judged."""
     rows: list[tuple[Cell, ...]] = []
-    for found in sets:
+    for study_set in sets:
         for at in (NAMES.index(name) for name in SHOWN):
-            c, coefficients = found.comparisons[at], found.surface.coefficients[:, at]
-            known = (c.D, c.u_num, c.u_D, found.surface.error[at], found.shift[at])
+            c, coefficients = study_set.comparisons[at], study_set.surface.coefficients[:, at]
+            known = (c.D, c.u_num, c.u_D, study_set.surface.error[at], study_set.shift[at])
             second = np.zeros(TERMS - len(coefficients))  # of a surface of first order
-            rows.append((found.name, c.quantity, *map(float, (*known, *coefficients, *second))))
+            rows.append((study_set.name, c.quantity, *map(float, (*known, *coefficients, *second))))
     head = (
         "set",
         "quantity",
