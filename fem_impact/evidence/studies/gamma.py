@@ -2,24 +2,53 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise, product
 from math import degrees, hypot
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from fem_impact.answers.report import Request, StudyReport
-from fem_impact.evidence.studies.gamma_findings import PLAIN, Curves
-from fem_impact.evidence.studies.gamma_points import Member, Meshes, first_jobs, more_jobs, point_of
-from fem_impact.evidence.studies.gamma_report import study_report
+import numpy as np
+
+from fem_impact.answers.report import Request, Sheet, StudyReport
+from fem_impact.evidence.studies import gamma_figures as figures
+from fem_impact.evidence.studies.gamma_figures import plain_line
 from fem_impact.evidence.studies.pairs import COARSER, PLACES
-from fem_impact.evidence.studies.rods import PAPER_RODS, STATES, Drop, length_of
+from fem_impact.evidence.studies.rod_runs import (
+    CLOSE,
+    LEAST,
+    RESTITUTION,
+    VIBRATION,
+    RodRun,
+    among,
+    as_table,
+    longest_first,
+    mesh_runs,
+    more_jobs,
+    points_of,
+    run_table,
+)
+from fem_impact.evidence.studies.rods import (
+    DROP_NOTES,
+    KINDS,
+    MODAL_NOTE,
+    PAPER_RODS,
+    PLAIN,
+    STATES,
+    DroppedRod,
+    length_of,
+)
 from fem_impact.jobs.job import Job
 from fem_impact.jobs.run import JobResults
 from fem_impact.scene.shipped import load
+from fem_impact.tables.table import Table
+from fem_impact.tables.text import rounded_up
 from rigid import LIMIT
 
 if TYPE_CHECKING:
-    from fem_impact.scene.types import Scene
+    from pandas import DataFrame
 
+    from fem_impact.scene.types import Scene
 
 SETS = ("t3-machined", "t4", "t5b")  # tip B at 45 degrees, one of each rod
 BETWEEN = (10.0, 14.0, 23.0, LIMIT, 35.0, 45.0, 70.0, 85.0, 100.0, 120.0)  # beside the paper's rods
@@ -29,92 +58,332 @@ DIAMETERS, SPEEDS = (0.010, 0.030), (1.3, 4.2)  # m and m/s, beside those of the
 ANGLES = (5.0, 15.0, 25.0, 35.0, 60.0, 75.0)  # degrees, beside that of the curve
 REDUCED = tuple(10.0 + 2.0 * i for i in range(56))  # gammas of the modal fidelity
 QUICK_REDUCED = REDUCED[::11]
-FULL, QUICK = Meshes(1.0, COARSER, (0.5, 0.25)), Meshes(COARSER, COARSER**2)
-MOST = 400.0  # s of processor time that a finer mesh may be expected to take
+SIZES, QUICK_SIZES = (COARSER, 1.0, 0.5, 0.25), (COARSER**2, COARSER)
+"""Sizes of the elements at the contact over the scene's own, coarsest first.
+
+Every point has the first two, and its rod that cannot vibrate the first. Each further one is for points whose
+band of vibration is wider than wanted on the meshes before it.
+"""
+ONE_PERCENT = 0.01  # of E_0: beyond it vibration counts as large
+ALIKE = 0.1  # m^-0.3815, difference of gammas that are called one
+
+NOTES = (
+    *DROP_NOTES,
+    "The paper's rods have tip B here, as in its Tables 3 to 6; tip A (nose) of Table 2 is another contact.",
+    "Limits of vanishing elements and their bands by the rule of the measured sets, from the two finest "
+    "meshes of a point: all orders of convergence from 3/4 up.",
+    "tau: contact time of the same rod if it could not vibrate, on the coarser mesh. T1: first bending "
+    "period.",
+    "Measured sets: their own scenes, with their own speeds, on the meshes of the study of the sets; the "
+    "curve is that of one speed, 2.1 m/s.",
+    MODAL_NOTE,
+)
 
 
-def line(quick: bool) -> list[Drop]:
-    """Return the drops of the curve: 19 mm, 2.1 m/s, 45 degrees, elastic and yielding, every state."""
+def line(quick: bool) -> list[DroppedRod]:
+    """Return the rods of the curve: 19 mm, 2.1 m/s, 45 degrees, elastic and yielding, every state."""
     lengths = [*(length_of(g) for g in (QUICK_BETWEEN if quick else BETWEEN)), *PAPER_RODS.values()]
-    every = [
-        Drop(length, friction=f, yields=y)
+    return [
+        DroppedRod(length, friction=f, yields=yields)
         for length in sorted(lengths)
-        for y in (False, True)
-        for f in STATES.values()
+        for yields, kind in KINDS.items()
+        for state, f in STATES.items()
+        if not quick or state == PLAIN[kind]
     ]
-    return [drop for drop in every if not quick or drop.friction == STATES[PLAIN[drop.yields]]]
 
 
-def others(quick: bool) -> list[Drop]:
-    """Return the drops with another diameter, speed, angle or flow curve than the curve's."""
+def others(quick: bool) -> list[DroppedRod]:
+    """Return the rods with another diameter, speed, angle or flow curve than the curve's."""
     if quick:
         return []
     changed = [
-        *(Drop(length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
-        *(Drop(length_of(g), speed=v) for g in FEWER for v in SPEEDS),
-        *(Drop(length, angle) for length in PAPER_RODS.values() for angle in ANGLES),
+        *(DroppedRod(length_of(g, d), diameter=d) for g in FEWER for d in DIAMETERS),
+        *(DroppedRod(length_of(g), speed=v) for g in FEWER for v in SPEEDS),
+        *(DroppedRod(length, angle) for length in PAPER_RODS.values() for angle in ANGLES),
     ]
-    harder = [Drop(length_of(g), law="hardness") for g in FEWER]
+    harder = [DroppedRod(length_of(g), law="hardness") for g in FEWER]
     return [
-        replace(drop, friction=STATES[PLAIN[y]], yields=y)
-        for y in (False, True)
-        for drop in (*changed, *(harder if y else []))
+        replace(rod, friction=STATES[PLAIN[kind]], yields=yields)
+        for yields, kind in KINDS.items()
+        for rod in (*changed, *(harder if yields else []))
     ]
 
 
-def members(quick: bool) -> list[Member]:
-    """Return every point by finite elements: the curve, other inputs, and the measured sets."""
-    places = (0.0,) if quick else PLACES
+def reduced(quick: bool) -> list[DroppedRod]:
+    """Return the rods of the modal fidelity: over the same slendernesses, closer together."""
+    lengths = {length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
+    lengths |= {rod.length for rod in line(quick)}
+    states = {(rod.friction, rod.yields) for rod in line(quick)}
     return [
-        *(Member(drop.name, drop.scene(), drop, places) for drop in (*line(quick), *others(quick))),
-        *(Member(name, load(name), _like(load(name)), places) for name in SETS),
+        DroppedRod(length, friction=f, yields=yields)
+        for length in sorted(lengths)
+        for f, yields in sorted(states)
     ]
 
 
-def _like(scene: Scene) -> Drop:
-    """Return the yielding drop with rod, angle, speed and friction of a scene."""
+def families(quick: bool) -> dict[str, list[RodRun]]:
+    """Return all runs of vibrating rods, also on meshes that only some points need, by family."""
+    sizes, offsets = (QUICK_SIZES, (0.0,)) if quick else (SIZES, PLACES)
+    rods = {"curve": line(quick), "other inputs": others(quick)}
+    solid = {name: [r for rod in of for r in mesh_runs(rod, sizes, offsets)] for name, of in rods.items()}
+    # measured sets keep the meshes of their own study
+    sets = [r for name in SETS for r in mesh_runs(_most_like(load(name)), sizes[:2], offsets, name)]
+    return {**solid, "measured sets": sets, "modes": [RodRun(rod) for rod in reduced(quick)]}
+
+
+def _most_like(scene: Scene) -> DroppedRod:
+    """Return the yielding rod with length, diameter, tip, angle, speed and friction of a scene."""
     rod, impact = scene.projectile, scene.impact
     speed, angle = hypot(impact.v_n, impact.v_t), round(degrees(impact.angle), 9)
-    return Drop(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
-
-
-def reduced(quick: bool) -> list[Drop]:
-    """Return the drops of the modal fidelity: over the same slendernesses, closer together."""
-    lengths = {length_of(g) for g in (QUICK_REDUCED if quick else REDUCED)}
-    lengths |= {drop.length for drop in line(quick)}
-    states = {(drop.friction, drop.yields) for drop in line(quick)}
-    return [
-        Drop(length, friction=f, yields=yields) for length in sorted(lengths) for f, yields in sorted(states)
-    ]
+    return DroppedRod(rod.length, angle, scene.surface.friction, True, rod.diameter, rod.tip_radius, speed)
 
 
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs, the longest first; with results also those that these call for."""
-    quick = request.quick
-    meshes, jobs = QUICK if quick else FULL, [Job(d.name, d.scene(), "modal") for d in reduced(quick)]
-    for one in members(quick):
-        jobs += first_jobs(one, meshes)
-        jobs += _more(one, meshes, results) if results else []
-    unique = {job.name: job for job in jobs}.values()
-    return sorted(unique, key=lambda job: job.planned_s, reverse=True)
-
-
-def _more(one: Member, meshes: Meshes, results: JobResults) -> list[Job]:
-    """Return the jobs that the results of a point call for; measured sets keep the meshes of their study."""
-    only = replace(meshes, finer=()) if one.name in SETS else meshes
-    wanted = (job for job in more_jobs(one, only, results) if job.kind[1])  # a mesh that is not refused
-    return [job for job in wanted if job.planned_s <= MOST]
+    runs_of = families(request.quick)
+    coarse, own = (QUICK_SIZES if request.quick else SIZES)[:2]
+    every = [run for family in runs_of.values() for run in family]
+    runs = [run for run in every if run.fidelity == "modal" or run.size >= own]
+    twins = [run.twin for run in runs if (run.fidelity, run.size, run.offset) == ("solid", coarse, 0.0)]
+    more = []
+    if results:
+        table = run_table(runs_of, results)
+        points = table[table.fidelity == "solid"].groupby("point")
+        more = [job for _, runs in points for job in more_jobs(runs, results)]
+    return longest_first([*runs, *twins], more)
 
 
 def conclude(request: Request, results: JobResults) -> StudyReport:
     """Return the study: curves with bands, where the energy went, and the modal fidelity beside them."""
-    quick = request.quick
-    meshes = QUICK if quick else FULL
-    points = {one.name: point_of(one, meshes, results) for one in members(quick)}
-    curves = Curves(
-        [points[drop.name] for drop in line(quick)],
-        [points[drop.name] for drop in others(quick)],
-        [points[name] for name in SETS],
-        [(drop, results.get(drop.name)) for drop in reduced(quick)],
+    table = run_table(families(request.quick), results)
+    points, modes = points_of(table, results), table[table.family == "modes"]
+    sentences = findings(points)
+    pictures = [figures.curve(points, modes), figures.later_contacts(points)]
+    pictures += [figures.other_inputs(points)] if (points.family == "other inputs").any() else []
+    gaps = points[points.reason != ""]
+    gaps_sheet = Sheet(
+        "gaps", "Points without a value or a band", as_table(gaps.loc[:, :"law"].assign(reason=gaps.reason))
     )
-    return study_report(curves)
+    sheets = [
+        Sheet("rods", "The paper's rods at 45 degrees and 2.1 m/s, by finite elements", rod_table(points)),
+        *([gaps_sheet] if len(gaps) else []),
+        Sheet("points", "Every point by finite elements", as_table(points.loc[:, :"reason"]), shown=False),
+        Sheet("contacts", "Every contact of every point", contact_table(points), shown=False),
+        Sheet("reduced", "The reduced model (modal)", as_table(modes.loc[:, :RESTITUTION]), shown=False),
+    ]
+    return StudyReport(
+        "gamma",
+        "Vibration against slenderness",
+        sentences,
+        pictures,
+        sheets,
+        NOTES,
+        ["modal", "thornton", "slenderness"],
+        [("vibration", sentence) for sentence in sentences],
+    )
+
+
+def rod_table(points: DataFrame) -> Table:
+    """Return one row per paper's rod, kind of contact and surface state."""
+    curve = points[points.family == "curve"]
+    rows = [
+        {
+            "rod": rod,
+            "contact": kind,
+            "surface": state,
+            "E_vib/E_0, %": _with_band(p.E_vib_over_E_0, p.E_vib_over_E_0_band, 100.0, 2),
+            "e": _with_band(p.e_edge, p.e_edge_band, 1.0, 3),
+            "e if rigid": p.e_edge_rigid,
+            "contacts": p.contacts,
+            "peak force, kN": _with_band(p.peak_force_N, p.peak_force_N_band, 1e-3, 1),
+            "T1/tau": p.T1_over_tau,
+            "E_vib/E_0 by modes, %": None if p.by_modes is None else 100 * p.by_modes,
+        }
+        for (rod, length), kind, (state, f) in product(PAPER_RODS.items(), KINDS.values(), STATES.items())
+        for p in among(curve, length_m=length, contact=kind, f=f).itertuples()
+    ]
+    return Table.of(tuple(rows[0]), rows)
+
+
+def _with_band(value: float | None, band: float | None, scale: float, places: int) -> str | None:
+    if value is None:
+        return None
+    return f"{scale * value:.{places}f}" + ("" if band is None else f" ± {rounded_up(scale * band, places)}")
+
+
+def contact_table(points: DataFrame) -> Table:
+    """Return one row per contact of every point, of its finest mesh."""
+    rows = [
+        [p.point, p.gamma, at, touch.start, touch.end, touch.impulse_n, touch.impulse_t]
+        for p in points.itertuples()
+        for at, touch in enumerate(p.intervals, 1)
+    ]
+    head = ("point", "gamma", "contact", "start_s", "end_s", "impulse_n_Ns", "impulse_t_Ns")
+    return Table.of(head, rows)
+
+
+def findings(points: DataFrame) -> list[str]:
+    """Return the sentences of the study."""
+    curve = points[points.family == "curve"]
+    sentences = [
+        *(how_much(curve, kind) for kind in PLAIN),
+        *(where_it_peaks(curve, kind) for kind in PLAIN),
+        what_the_limit_says(curve),
+        *(other_inputs(points, kind) for kind in PLAIN),
+        measured_sets(points),
+        *(modes_less_elements(curve, kind) for kind in PLAIN),
+        how_sure(points),
+    ]
+    return [sentence for sentence in sentences if sentence]
+
+
+def how_much(curve: DataFrame, kind: str) -> str:
+    """Return vibration of the paper's rods, in the surface state of `PLAIN`."""
+    shares = {p.length_m: share(p) for p in _known(plain_line(curve, kind))}
+    rods = [f"{shares[length]} ({rod} rod)" for rod, length in PAPER_RODS.items() if length in shares]
+    tip = f"A{'n' if kind == 'elastic' else ''} {kind} tip ({PLAIN[kind]}, 45 degrees, 2.1 m/s)"
+    return f"{tip} leaves as vibration, of E_0: {', '.join(rods)}." if rods else ""
+
+
+def where_it_peaks(curve: DataFrame, kind: str) -> str:
+    """Return the slenderness of most vibration, and what makes it fall beyond."""
+    points = [p for p in _known(plain_line(curve, kind)) if p.E_vib_over_E_0_own_mesh is not None]
+    if len(points) < 2:
+        return ""
+    top = max(points, key=_vibration)
+    after = points[points.index(top) + 1 :]
+    peak = f"{kind.capitalize()}, {PLAIN[kind]}: vibration is largest at gamma {top.gamma:.0f} with "
+    peak += f"{share(top)} of E_0"
+    if not after:
+        return f"{peak}, the longest rod."
+    low, last = min(after, key=_vibration), after[-1]
+    bands = [p.E_vib_over_E_0_band or 0.0 for p in (top, low)]
+    if _vibration(top) - _vibration(low) <= sum(bands):
+        return f"{peak}; beyond it stays within the bands (least {share(low)} at gamma {low.gamma:.0f})."
+    again = f" At gamma {last.gamma:.0f} it is {share(last)}." if last is not low else ""
+    return f"{peak}; it falls {_fall(top, low)}{again}"
+
+
+def _fall(top: Any, low: Any) -> str:
+    """Return how far vibration falls, and which part of that later contacts make."""
+    last, fall = low.E_vib_over_E_0_own_mesh, _vibration(top) - _vibration(low)
+    first = last if low.E_vib_over_E_0_first_contact is None else low.E_vib_over_E_0_first_contact
+    back = first - last
+    mostly = "later contacts give energy back" if back > fall / 2 else "the first contact itself leaves less"
+    return (
+        f"to {share(low)} at gamma {low.gamma:.0f}, mostly because {mostly}: the first contact leaves "
+        f"{100 * first:.2g} % there, "
+        + (f"later contacts change that by {-100 * back:+.2g} % of E_0." if back else "no later one follows.")
+    )
+
+
+def what_the_limit_says(curve: DataFrame) -> str:
+    """Return vibration and e at the limit of Eq 29, and where vibration passes `ONE_PERCENT`."""
+    sentences = []
+    for kind, state in PLAIN.items():
+        points = _known(plain_line(curve, kind))
+        for p in [p for p in points if abs(p.gamma - LIMIT) < 1e-6]:
+            change = ""
+            if p.e_edge is not None and p.e_edge_rigid is not None:
+                change = f" and e is {p.e_edge:.3f} where a rod that cannot vibrate has {p.e_edge_rigid:.3f}"
+            where = f"{kind.capitalize()}, {state}: vibration there takes {share(p)} of E_0{change}"
+            sentences.append(f"{where}; {_passes(points)}.")
+    rods = ", ".join(name for name, length in PAPER_RODS.items() if DroppedRod(length).gamma <= LIMIT)
+    called = f"The limit gamma <= {LIMIT} calls the {rods} rod rigid and the longer ones not."
+    return " ".join([called, *sentences]) if sentences else ""
+
+
+def _passes(points: Sequence[Any]) -> str:
+    """Return from which slenderness on vibration takes more than `ONE_PERCENT`, by linear interpolation."""
+    first = points[0]
+    if _vibration(first) > ONE_PERCENT:
+        return (
+            f"it takes more than {ONE_PERCENT:.0%} of E_0 from gamma {first.gamma:.0f} on, the shortest rod"
+        )
+    for low, high in pairwise(points):
+        below, above = _vibration(low), _vibration(high)
+        if above > ONE_PERCENT:
+            gamma = low.gamma + (high.gamma - low.gamma) * (ONE_PERCENT - below) / (above - below)
+            return f"it passes {ONE_PERCENT:.0%} of E_0 at gamma {gamma:.1f}"
+    return f"it never reaches {ONE_PERCENT:.0%} of E_0"
+
+
+def other_inputs(points: DataFrame, kind: str) -> str:
+    """Return vibration of rods as slender as the longest of the paper with one input changed."""
+    usual = DroppedRod(max(PAPER_RODS.values()))
+    changed = [
+        f"{_changed(p, usual)} {share(p)}"
+        for p in _known(points[(points.family == "other inputs") & (points.contact == kind)])
+        if abs(p.gamma - usual.gamma) < ALIKE
+    ]
+    curve = among(plain_line(points[points.family == "curve"], kind), length_m=usual.length)
+    if not changed or curve.empty:
+        return ""
+    return (
+        f"Other inputs at gamma {usual.gamma:.0f}, {kind}, {PLAIN[kind]}: vibration is "
+        f"{share(next(curve.itertuples()))} of E_0 on the curve ({usual.diameter * 1e3:g} mm, "
+        f"{usual.speed:g} m/s, {usual.angle:g} degrees), and with {', '.join(changed)}."
+    )
+
+
+def _changed(point: Any, usual: DroppedRod) -> str:
+    """Return the input of a point that is not the usual one."""
+    if point.law != usual.law:
+        return f"strength from {point.law}"
+    if point.angle_deg != usual.angle:
+        return f"{point.angle_deg:g} degrees"
+    speed, diameter = point.speed_m_per_s, point.diameter_m
+    return f"{speed:g} m/s" if speed != usual.speed else f"{diameter * 1e3:g} mm"
+
+
+def measured_sets(points: DataFrame) -> str:
+    """Return vibration of the measured sets' own scenes."""
+    sets = [
+        f"{p.point} (gamma {p.gamma:.1f}, {p.speed_m_per_s:.2f} m/s) {share(p)}"
+        for p in _known(points[points.family == "measured sets"])
+    ]
+    return f"The measured sets' own scenes keep as vibration, of E_0: {', '.join(sets)}." if sets else ""
+
+
+def modes_less_elements(curve: DataFrame, kind: str) -> str:
+    """Return how far the modal fidelity lies from the points of the curve."""
+    points = _known(curve[(curve.contact == kind) & curve.by_modes.notna()])
+    differences = [p.by_modes - p.E_vib_over_E_0 for p in points]
+    if not differences:
+        return ""
+    return (
+        f"{kind.capitalize()} tips: vibration by modes less by finite elements, of E_0: root mean square "
+        f"{100 * np.linalg.norm(differences) / len(differences) ** 0.5:.2g} %, largest "
+        f"{100 * max(differences, key=abs):+.2g} %, over {len(differences)} points of the curve."
+    )
+
+
+def how_sure(points: DataFrame) -> str:
+    """Return how many points have a band as narrow as wanted, and how many are gaps."""
+    close = points.band_as_wanted == "yes"
+    residuals = points.residual_over_E_0.dropna().astype(float).abs()
+    return (
+        f"Two meshes give vibration of {close.sum()} of {len(points)} points within {CLOSE:.0%} of itself or "
+        f"{LEAST:g} of E_0; in {(close & points.doubted).sum()} of them its two counts, by modes and without "
+        f"them, differ by more. {(points.reason != '').sum()} points have no value or no band. The largest "
+        f"residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
+    )
+
+
+def share(point: Any) -> str:
+    """Return vibration of a point with its band, rounded up to 0.01, in per cent."""
+    value, band = 100 * (point.E_vib_over_E_0 or 0.0), point.E_vib_over_E_0_band
+    if band is None:
+        return f"{value:.2g} %"
+    if value < 0.0:
+        return f"less than {value + 100 * band:.2f} %"
+    return f"{value:.2f} ± {rounded_up(100 * band, 2)} %"
+
+
+def _known(points: DataFrame) -> list[Any]:
+    """Return the points whose vibration is known, each with the columns as attributes."""
+    return list(points[points[VIBRATION].notna()].itertuples())
+
+
+def _vibration(point: Any) -> float:
+    return float(point.E_vib_over_E_0)

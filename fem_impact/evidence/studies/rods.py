@@ -1,4 +1,4 @@
-"""Scenes of the studies over slenderness: drops over diameter, tip, speed, angle, friction, yielding."""
+"""Scenes of the studies over slenderness: rods over diameter, tip, speed, angle, friction, yielding."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ PAPER_RODS = {"0.24 m": 0.24, "0.12 m": 0.12, "0.08 m": 0.08}
 """Lengths, m, of the three rods of 19 mm."""
 
 PAPER = load("t5b")
-"""Scene whose steels, barrier and tip all drops have: tip B, the edge of the face, rounded by 3 mm."""
+"""Scene whose steels, barrier and tip all dropped rods have: tip B, the edge of the face, rounded by 3 mm."""
 
 READINGS: dict[FlowLaw, Scene] = {
     "tensile": PAPER,
@@ -27,8 +27,16 @@ READINGS: dict[FlowLaw, Scene] = {
 }
 """That scene with the flow curve of both steels from their ultimate stress, and from their hardness."""
 
-STATES = {"frictionless": 0.0} | dict(sorted((name, one.friction) for name, one in surfaces().items()))
+STATES = {"frictionless": 0.0} | dict(
+    sorted((name, surface.friction) for name, surface in surfaces().items())
+)
 """f of no friction and of the shipped surface states, in the order of their names."""
+
+KINDS = {False: "elastic", True: "yielding"}
+"""Kind of contact by whether both bodies yield."""
+
+PLAIN = {"yielding": "machined", "elastic": "frictionless"}
+"""Surface state, by kind of contact, at which other inputs are changed and the partition is drawn."""
 
 BODY, TIP = 0.019, 0.003  # m: diameter and edge radius of the paper's rods
 DROP_NOTES = (
@@ -47,7 +55,7 @@ def length_of(gamma: float, diameter: float = BODY) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class Drop:
+class DroppedRod:
     """A rod that falls on the plate without spin: lengths in m, angle in degrees, speed in m/s.
 
     With ``yields`` both bodies yield, on the flow curve that ``law`` names (see `Material`); without
@@ -80,6 +88,20 @@ class Drop:
         return "-".join([kind, *(str(round(n)) for n in numbers)])
 
     @property
+    def inputs(self) -> dict[str, float | str]:
+        """Columns of a table: slenderness and inputs, units in their names, angle in degrees."""
+        return {
+            "gamma": self.gamma,
+            "diameter_m": self.diameter,
+            "length_m": self.length,
+            "speed_m_per_s": self.speed,
+            "angle_deg": self.angle,
+            "f": self.friction,
+            "contact": KINDS[self.yields],
+            "law": self.law,
+        }
+
+    @property
     def radius(self) -> float:
         """Edge radius of the tip, m."""
         return TIP * self.diameter / BODY if self.tip_radius is None else self.tip_radius
@@ -92,13 +114,13 @@ class Drop:
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Effects by their numbers but for what the drop states: vibration, yielding, no gravity.
+        """Effects by their numbers but for vibration, yielding and gravity, which the study sets.
 
         The contact's heat does not act on the motion, so it is not watched.
         """
-        stated = "vibration" if self.vibrates else "-vibration"
+        vibration = "vibration" if self.vibrates else "-vibration"
         bodies = () if self.yields else ("-rod-plasticity", "barrier-elastic")
-        return ("auto", stated, *bodies, "-gravity", "-contact-heating")
+        return ("auto", vibration, *bodies, "-gravity", "-contact-heating")
 
     def scene(self) -> Scene:
         """Return the scene, on the mesh that it gets by itself."""
@@ -119,6 +141,6 @@ class Drop:
 
 
 def surface_of(f: float) -> Surface:
-    """Return the shipped surface state with this coefficient of friction, or one of its own."""
+    """Return the shipped surface state with a coefficient of friction, or a surface made for it."""
     shipped = (surface for surface in surfaces().values() if surface.friction == f)
     return next(shipped, Surface("custom", f, f, f, "point of a study"))
