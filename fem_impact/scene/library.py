@@ -41,7 +41,7 @@ ALL_MATERIALS = "All: `fem-impact scenes --materials`; or give a table of values
 
 def materials() -> dict[str, Material]:
     """Return the shipped materials by name, SI units."""
-    return {name: _material(name, table) for name, table in _table("materials.toml").items()}
+    return {name: _material(name) for name in _table("materials.toml")}
 
 
 def material(name: str) -> Material:
@@ -109,7 +109,13 @@ def nearest_scene(name: str) -> str:
     return did_you_mean(name, shipped(), "`fem-impact scenes` lists the shipped scenes.")
 
 
-def _material(name: str, table: dict[str, Any]) -> Material:
+@cache
+def _material(name: str) -> Material:
+    """Return a material of the table, read once."""
+    return _material_of(name, _table("materials.toml")[name])
+
+
+def _material_of(name: str, table: dict[str, Any]) -> Material:
     law = {"law": table["law"]} if "law" in table else {}
     return Material(name, **_values(table, fields.MATERIAL), **law, rate=_rate(table.get("rate")))
 
@@ -138,7 +144,7 @@ def _added_materials(ours: dict[str, Any]) -> dict[str, Any]:
     tables = added("materials", ours)
     for name, table in tables.items():
         try:
-            _material(name, table)
+            _material_of(name, table)
         except (SceneError, TypeError, ValueError, AttributeError) as error:
             raise wrong(name, "materials", f"is no table of a material ({error}).") from None
     return tables
