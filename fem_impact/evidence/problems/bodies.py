@@ -109,9 +109,14 @@ def body_model(body: FreeBody) -> Model:
     """Return the model of one body over the rigid plane n = 0, or over its block."""
     block = body.block
     layout = number(body.mesh, block.mesh if block else None)
-    parts = [_part(body, layout), *([_block_part(block, layout)] if block else [])]
+    parts = [_part(body, layout)]
+    if block:
+        yields = block.mesh.finest & (block.law is not None)
+        parts.append(make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields))
     mass = assemble_masses(parts, layout)
-    inverse = _inverse(body, parts, mass, layout)
+    inverse = invert(mass, parts)
+    if body.driven:
+        inverse[: layout.rod_size] = 0.0
     drawn = MassPoints.of_rod(body.mesh, parts[0].mass, body.rho)
     x, v = _start(body, parts, layout, drawn)
     zones = _zones(body, parts, layout)
@@ -166,18 +171,6 @@ def _part(body: FreeBody, layout: DofLayout) -> Meshed:
     yields = body.yields if body.yields is not None else np.zeros(len(mesh.cells), dtype=bool)
     part = make_body("rod", mesh, body.points, layout.rod, body, yields)
     return replace(part, mass=part.mass * body.denser[:, None])
-
-
-def _block_part(block: Block, layout: DofLayout) -> Meshed:
-    yields = block.mesh.finest & (block.law is not None)
-    return make_body("barrier", block.mesh, block.mesh.points, layout.barrier, block, yields)
-
-
-def _inverse(body: FreeBody, parts: list[Meshed], mass: Array, layout: DofLayout) -> Array:
-    inverse = invert(mass, parts)
-    if body.driven:
-        inverse[: layout.rod_size] = 0.0
-    return inverse
 
 
 def _start(body: FreeBody, parts: list[Meshed], layout: DofLayout, drawn: MassPoints) -> tuple[Array, Array]:

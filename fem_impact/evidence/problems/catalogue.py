@@ -1,7 +1,7 @@
 """Problems with known answers, run through the solver's own parts.
 
 Every problem takes its physical parameters and returns computed values beside a reference made by other
-means (`fem_impact.evidence.problems.reference`), with error, tolerance, verdict and cost.
+means (`fem_impact.evidence.references`), with error, tolerance, verdict and cost.
 """
 
 from __future__ import annotations

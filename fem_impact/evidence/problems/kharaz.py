@@ -1,7 +1,7 @@
 """An alumina sphere on glass beside measured rebounds: Kharaz, Gorham and Salman 2001.
 
 Nothing is fitted: elastic constants and friction are those with which the experiment is quoted
-(``verify/data/kharaz2001.csv``), the density of the glass is a handbook value.
+(``problems/data/kharaz2001.csv``), the density of the glass is a handbook value.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """``oblique-rod``: an elastic rod with a rounded edge striking obliquely, beside modes and Hertz.
 
-The reference (`reference.oblique`) takes bending and stretching modes of the beam of the rod's volume, the
-static flexibility of the rounded edge that they leave out (`reference.rod_edge`), Hertz' elliptical contact
+The reference (`references.oblique`) takes bending and stretching modes of the beam of the rod's volume, the
+static flexibility of the rounded edge that they leave out (`references.rod_edge`), Hertz' elliptical contact
 with friction and local slip on an interface that leans, waves into the barrier, and the rod's turning. What
 each matters, in e of 0.24 m rods (37 degrees: 2.1 m/s straight down) and in the bending of an 0.08 m rod:
 

@@ -46,7 +46,6 @@ from fem_impact.scene.types import Accuracy
 from fem_impact.solid.march import evaluate
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import modes_of
-from fem_impact.solid.state import State
 
 FORCE, TIME, VIBRATION = 0.04, 0.02, 5e-4  # the first for the coarsest cells
 AFTER = 1.1  # contact times that are followed
@@ -84,13 +83,6 @@ def rod_model(p: Values, touch: float) -> tuple[Model, float]:
     return model, max(edge, model.geometry.barrier_size * p["block"])
 
 
-def _vibration(model: Model, state: State) -> float:
-    """Return the energy of the rod's free vibration, J, by modal projection."""
-    n = model.layout.rod_size
-    evaluate(model, state)
-    return flight(modes_of(model), state.v[:n], state.force[:n]).energy
-
-
 def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
     """Return the delay equation's impact with the stiffness of the round end."""
     R, tip = p["diameter"] / 2, p["tip_radius"]
@@ -100,13 +92,6 @@ def _round_end(p: Values, E_star: float, touch: float) -> AxialImpact:
         return float(np.interp(d, approach, force))
 
     return rod_impact(p["E"], p["rho"], p["length"], R, law, p["speed"])
-
-
-def _allow(p: Values) -> None:
-    """Refuse a rod that is no rod, or whose round end is a needle."""
-    setups.slender(p, "diameter", *SLENDER)
-    least = p["diameter"] / 4 / LONGEST
-    within(p, "tip_radius", least, inf, "m", f"a nose of more than {LONGEST:g} radii is no end of a rod.")
 
 
 def _small(p: Values, touch: float) -> None:
@@ -140,7 +125,9 @@ def solve(p: Values) -> Solved:
     SceneError
         If the rod is too stubby or slender, its end too sharp, or the contact too small or large.
     """
-    _allow(p)
+    setups.slender(p, "diameter", *SLENDER)
+    needle = f"a nose of more than {LONGEST:g} radii is no end of a rod."
+    within(p, "tip_radius", p["diameter"] / 4 / LONGEST, inf, "m", needle)
     E_star = contact_modulus(p["E"], p["nu"], p["barrier_E"] if p["block"] else inf, p["nu"])
     plain = sears(p["E"], p["rho"], p["length"], p["diameter"] / 2, E_star, p["tip_radius"], p["speed"])
     touch = (3 * plain.force * p["tip_radius"] / (4 * E_star)) ** (1 / 3)
@@ -148,7 +135,10 @@ def solve(p: Values) -> Solved:
     exact = _round_end(p, E_star, touch)
     model, edge = rod_model(p, touch)
     found = run_strike(model, AFTER * plain.duration, plain.duration)
-    vibration = _vibration(model, found.state) / (0.5 * found.motion.mass * p["speed"] ** 2)
+    n, state = model.layout.rod_size, found.state
+    evaluate(model, state)
+    free = flight(modes_of(model), state.v[:n], state.force[:n]).energy
+    vibration = free / (0.5 * found.motion.mass * p["speed"] ** 2)
     note = f"for a / R far below 1, here {2 * touch / p['diameter']:.3f}"
     checks = (
         Check("largest force", "N", found.force, exact.force, _force_error(p, touch, edge, exact)),

@@ -8,7 +8,7 @@ tenth as stiff. The same mesh on such springs (`NodeSprings`, CalculiX' stiffnes
 1.5 %.
 
 Hard contact differs from them, with friction by 4 to 6 % on any mesh, and the springs are why: a third of the
-impulse sticks, and these springs give back what they stored. An explicit code of bricks (`reference.bricks`)
+impulse sticks, and these springs give back what they stored. An explicit code of bricks (`references.bricks`)
 that gives the printed numbers on those springs goes to the hard contact with stiffer ones, so at all
 parameters its springs of 20 E / cell decide. They differ from hard contact by what goes with the root of
 their give, which softer ones (6 E / cell) tell, and by the mass of half a cell that stops dead. Normal
@@ -44,6 +44,7 @@ from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values,
 from fem_impact.evidence.problems.watch import Until
 from fem_impact.evidence.references.bricks import Bar, rebound, spring_force, wall_stress
 from fem_impact.evidence.references.rod_end import bar_speed
+from fem_impact.physics.contact import pressure_speed
 from fem_impact.scene.fields import Element
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
@@ -197,12 +198,6 @@ class _WallStress:
         return float(np.array(self.values)[(t >= start) & (t <= end)].mean())
 
 
-def _step(p: Values) -> float:
-    """Return the step, s, that is printed for the printed bar."""
-    modulus = p["E"] * (1 - p["nu"]) / ((1 + p["nu"]) * (1 - 2 * p["nu"]))
-    return STEP * p["side"] / p["cells"] / sqrt(modulus / p["rho"])
-
-
 def _model(p: Values, angle: float, effects: tuple[str, ...], f: float = 0.0) -> Model:
     """Return the bar of a scene that flies along its axis, which is inclined to the normal by ``angle``."""
     impact = Impact(angle, -p["speed"] * cos(angle), -p["speed"] * sin(angle))
@@ -213,7 +208,8 @@ def solve_wall(p: Values) -> Solved:
     """Run the bar with one kind of element in the solver and in the reference's code of bricks."""
     kind = int(p["element"])
     start, end = (share * 2 * p["length"] / bar_speed(p["E"], p["rho"]) for share in WINDOW)
-    model = replace(_model(p, 0.0, ("barrier-rigid",)), steps={"rod": _step(p)})
+    step = STEP * p["side"] / p["cells"] / pressure_speed(setups.steel(p))
+    model = replace(_model(p, 0.0, ("barrier-rigid",)), steps={"rod": step})
     state = model.initial_state()
     wall = _WallStress(model, p["side"] ** 2, end)
     march(model, state, [wall])

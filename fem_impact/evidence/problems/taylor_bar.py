@@ -3,7 +3,7 @@
 Printed: final length 21.42 to 21.43 mm and foot radius 7.22 to 7.23 mm for copper of 32.4 mm, 3.2 mm, 227
 m/s, E 117 GPa, nu .35, rho 8930, yield 400 MPa, hardening 100 MPa, 80 us (Foulk et al. 2021, Simo 1992). A
 law without rate has no length of its own, so a larger bar of the same shape ends in the same shape. Any other
-bar is held to an axisymmetric code (`reference.taylor`) that gives 21.46 and 7.20 mm for the printed one.
+bar is held to an axisymmetric code (`references.axisymmetric`), 21.46 and 7.20 mm for the printed one.
 
 Without hardening nothing keeps the foot from thinning: its cells at the axis end at a hundredth of their
 height, and the foot is a lip that grows with finer rows. The bar of Abaqus' benchmark manual (impact of a
@@ -36,9 +36,8 @@ from fem_impact.evidence.problems import setups as steel
 from fem_impact.evidence.problems.bodies import FreeBody, body_model, placed
 from fem_impact.evidence.problems.problem import Check, Problem, Solved, Values, within
 from fem_impact.evidence.problems.watch import Until, follow
-from fem_impact.evidence.references.axisymmetric import Metal
+from fem_impact.evidence.references.axisymmetric import Metal, taylor_bar
 from fem_impact.evidence.references.rod_end import bar_speed
-from fem_impact.evidence.references.taylor import taylor_bar
 from fem_impact.physics.hardening import linear_hardening
 from fem_impact.scene.parameter import Parameter
 from fem_impact.solid.model import Model

@@ -187,3 +187,30 @@ def grid(r: Array, z: Array) -> tuple[Array, NDArray[np.int64]]:
     n = np.arange(out.size).reshape(out.shape)
     corners = [n[:-1, :-1], n[:-1, 1:], n[1:, 1:], n[1:, :-1]]
     return np.stack([out.ravel(), up.ravel()], axis=1), np.stack([c.ravel() for c in corners])
+
+
+def taylor_bar(
+    metal: Metal, length: float, radius: float, speed: float, time: float, cells: int = 4
+) -> tuple[float, float]:
+    """Return length and foot radius, m, of a round bar on a frictionless rigid wall after ``time``, s.
+
+    So many ``cells`` lie over the radius; nodes stop at the wall.
+
+    Examples
+    --------
+    >>> copper = Metal(117e9, 0.35, 8930.0, 400e6, slope=0.25)
+    >>> [round(1e3 * size, 1) for size in taylor_bar(copper, 32.4e-3, 3.2e-3, 227.0, 80e-6, 2)]
+    [21.5, 6.9]
+    """
+    along = max(2, round(cells * length / radius))
+    x, corners = grid(np.linspace(0, radius, cells + 1), np.linspace(0, length, along + 1))
+    bar = Body(metal, x, np.tile([0.0, -speed], (len(x), 1)), corners)
+    axis = x[:, 0] == 0.0
+
+    def stop(bar: Body) -> None:
+        bar.v[axis, 0] = 0.0
+        bar.v[:, 1] = np.maximum(bar.v[:, 1], -bar.x[:, 1] / bar.dt)
+
+    while bar.time < time:
+        bar.advance(stop)
+    return float(np.ptp(bar.x[:, 1])), float(bar.x[: cells + 1, 0].max())
