@@ -12,7 +12,7 @@ import numpy as np
 from fem_impact import load, replace_all
 from fem_impact.answers.compare import MEASURED, ComparedQuantity
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.evidence.studies.declared import DeclaredSweep
+from fem_impact.evidence.studies.declared import DeclaredSweep, Runs, table_of
 from fem_impact.evidence.studies.sets import QUICK
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.tables.table import Table
@@ -50,8 +50,9 @@ def _scenes(request: Request) -> dict[str, Scene]:
     return {name: replace_all(load(name), coarse) for name in names}
 
 
-def _report(table: pandas.DataFrame) -> StudyReport:
-    """Return what each cause changes in each set, beside the tests; ``table`` as `DeclaredSweep.table`."""
+def _report(runs: Runs) -> StudyReport:
+    """Return what each cause changes in each set, beside the tests; a set with a failed run is left out."""
+    table = table_of(runs, {quantity.name: quantity.key.of for quantity in SHOWN}, STEPS)
     sentences = [_sentence(name, row) for name, row in table.iterrows()]
     rows = [
         (name, q.name, *(row[q.name, step] for step in STEPS), measured.mean, measured.low, measured.high)
@@ -124,8 +125,7 @@ def _sentence(name: str, row: pandas.Series) -> str:
 
 _SWEEP = DeclaredSweep(
     _scenes,
-    lambda scene: {step: (replace_all(scene, changes), "solid") for step, changes in STEPS.items()},
-    {quantity.name: quantity.key.of for quantity in SHOWN},
+    lambda _, scene: {step: (replace_all(scene, changes), "solid") for step, changes in STEPS.items()},
     _report,
     "{scene}: {variant}",
 )

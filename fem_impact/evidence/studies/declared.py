@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -17,6 +17,10 @@ if TYPE_CHECKING:
     from fem_impact.scene.types import Scene
 
 
+Runs = Mapping[str, Mapping[str, Outcome]]
+"""Outcomes by scene and variant; failed runs are left out."""
+
+
 @dataclass(frozen=True, slots=True)
 class DeclaredSweep:
     """Scenes, each run in some variants.
@@ -24,16 +28,14 @@ class DeclaredSweep:
     Attributes
     ----------
     scenes : function of the request to the scenes by name
-    variants : function of a scene to its variants by name: changed scene and fidelity
-    columns : functions of an outcome to a number, by the name of the column
-    report : function of `table` to the study's report
+    variants : function of a scene's name and the scene to its variants by name: changed scene and fidelity
+    report : function of the `Runs` to the study's report
     label : name of a job by ``scene`` and ``variant``
     """
 
     scenes: Callable[[Request], Mapping[str, Scene]]
-    variants: Callable[[Scene], Mapping[str, tuple[Scene, str]]]
-    columns: Mapping[str, Callable[[Outcome], Any]]
-    report: Callable[[pandas.DataFrame], StudyReport]
+    variants: Callable[[str, Scene], Mapping[str, tuple[Scene, str]]]
+    report: Callable[[Runs], StudyReport]
     label: str = "{scene}-{variant}"
 
     def jobs(self, request: Request) -> dict[str, dict[str, Job]]:
@@ -41,7 +43,7 @@ class DeclaredSweep:
         return {
             name: {
                 variant: Job(self.label.format(scene=name, variant=variant), *changed)
-                for variant, changed in self.variants(scene).items()
+                for variant, changed in self.variants(name, scene).items()
             }
             for name, scene in self.scenes(request).items()
         }
@@ -50,21 +52,29 @@ class DeclaredSweep:
         """Return all jobs."""
         return [job for variants in self.jobs(request).values() for job in variants.values()]
 
-    def table(self, request: Request, results: JobResults) -> pandas.DataFrame:
-        """Return one row a scene all of whose runs have an outcome, with columns (column, variant)."""
-        import pandas
-
-        rows = {}
-        for scene, variants in self.jobs(request).items():
-            finished = {
-                v: run for v, job in variants.items() if isinstance(run := results[job.name], Outcome)
-            }
-            if len(finished) == len(variants):
-                rows[scene] = {
-                    (name, v): of(run) for name, of in self.columns.items() for v, run in finished.items()
-                }
-        return pandas.DataFrame.from_dict(rows, orient="index", dtype=object)  # what is not known stays None
-
     def conclude(self, request: Request, results: JobResults) -> StudyReport:
         """Return the report of the results."""
-        return self.report(self.table(request, results))
+        return self.report(
+            {
+                scene: {v: run for v, job in jobs.items() if isinstance(run := results[job.name], Outcome)}
+                for scene, jobs in self.jobs(request).items()
+            }
+        )
+
+
+def table_of(
+    runs: Runs, columns: Mapping[str, Callable[[Outcome], Any]], variants: Iterable[str]
+) -> pandas.DataFrame:
+    """Return one row a scene that has all variants, columns (column, variant); what is not known is None.
+
+    ``columns`` are functions of an outcome to a number, by the name of the column.
+    """
+    import pandas
+
+    named = [*variants]
+    rows = {
+        scene: {(name, variant): of(finished[variant]) for name, of in columns.items() for variant in named}
+        for scene, finished in runs.items()
+        if set(named) <= set(finished)
+    }
+    return pandas.DataFrame.from_dict(rows, orient="index", dtype=object)

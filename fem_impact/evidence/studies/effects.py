@@ -10,16 +10,15 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from fem_impact import load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.case.case import Case
 from fem_impact.case.cells import widest_tip_size
 from fem_impact.case.choose import all_effects
 from fem_impact.case.effects.registry import BARRIERS, NAMES
-from fem_impact.jobs.job import Job
-from fem_impact.jobs.run import JobResults
+from fem_impact.evidence.studies.declared import DeclaredSweep, Runs
 from fem_impact.outcome.keys import known, or_none
 from fem_impact.outcome.record import Outcome
-from fem_impact.scene.shipped import load, replace_all
 from fem_impact.scene.types import MEASURED_SETS
 from fem_impact.tables.table import Cell, Table
 
@@ -31,6 +30,7 @@ TIP = 0.8e-3  # m, tip size: coarse, the same for both runs of a pair
 WITHIN_E, WITHIN_VIB, LEAST_VIB = 0.02, 0.1, 1e-4  # accepted changes: of e, of E_vib, of E_0
 COST_COLUMNS = ("run", "CPU, of auto", "a step, of auto", "change of e", "change of E_vib/E_0")
 COSTED = ("t5b", "t3-machined", "t6-17")  # scenes that run with single effects changed
+PAIR = ("auto", "everything")
 BASE = "t5b"  # scene that the designed ones change
 
 
@@ -70,35 +70,6 @@ DESIGNED: Mapping[str, Mapping[str, Any]] = {
     "stub-on-lead": {"projectile.length": "30 mm", **_speed(0.2), **_yield("barrier", 10.0)},
     "hard-gentle": {**_speed(0.05), **_yield("projectile", 3000.0), **_yield("barrier", 3000.0)},
 }
-
-
-def plan(request: Request, results: JobResults) -> list[Job]:
-    """Return the runs of every scene with ``auto`` and all effects; of `COSTED`, those with one changed."""
-    jobs = []
-    for name, scene in _scenes(request).items():
-        jobs += [Job(f"{name}-auto", scene), Job(f"{name}-everything", all_on(scene))]
-        if name in COSTED:
-            jobs += [Job(f"{name}{change}", replace(scene, effects=e)) for change, e in _changes(scene)]
-    return jobs
-
-
-def conclude(request: Request, results: JobResults) -> StudyReport:
-    """Return the study: where ``auto`` differs from all effects, and what each effect costs."""
-    scenes = _scenes(request)
-    pairs = {name: (results[f"{name}-auto"], results[f"{name}-everything"]) for name in scenes}
-    rows = [
-        row(name, auto, whole)
-        for name, (auto, whole) in pairs.items()
-        if isinstance(auto, Outcome) and isinstance(whole, Outcome)
-    ]
-    costs = [
-        cost_row(f"{name}{change}", run, base)
-        for name, scene in scenes.items()
-        if name in COSTED and isinstance(base := results[f"{name}-auto"], Outcome)
-        for change, _ in _changes(scene)
-        if isinstance(run := results[f"{name}{change}"], Outcome)
-    ]
-    return _study_report(rows, costs)
 
 
 def all_on(scene: Scene) -> Scene:
@@ -162,21 +133,27 @@ def _scenes(request: Request) -> dict[str, Scene]:
     return coarse
 
 
-def _changes(scene: Scene) -> list[tuple[str, tuple[str, ...]]]:
-    """Return each change of one effect: its suffix in the job's name, and the scene's ``effects``."""
-    changes: list[tuple[str, tuple[str, ...]]] = []
-    for choice in Case(scene).choices:
-        if choice.name in _impossible(scene):
+def _variants(name: str, scene: Scene) -> dict[str, tuple[Scene, str]]:
+    """Return the scene with ``auto`` and with all effects; of `COSTED` also with each effect changed."""
+    variants = {"auto": scene, "everything": all_on(scene)}
+    for choice in Case(scene).choices if name in COSTED else ():
+        if choice.name in _impossible(scene) or (choice.name in BARRIERS and choice.on):
             continue
-        if choice.name in BARRIERS and not choice.on:
-            changes.append((f"-with-{choice.name}", ("auto", choice.name)))
-        elif choice.name not in BARRIERS:
-            mark, word = ("-", "without") if choice.on else ("", "with")
-            changes.append((f"-{word}-{choice.name}", ("auto", f"{mark}{choice.name}")))
-    return changes
+        mark, word = ("-", "without") if choice.on else ("", "with")
+        variants[f"{word}-{choice.name}"] = replace(scene, effects=("auto", f"{mark}{choice.name}"))
+    return {variant: (changed, "solid") for variant, changed in variants.items()}
 
 
-def _study_report(rows: list[list[Cell]], costs: list[list[Cell]]) -> StudyReport:
+def _report(runs: Runs) -> StudyReport:
+    """Return where ``auto`` differs from all effects, and what each effect costs."""
+    rows = [row(name, r["auto"], r["everything"]) for name, r in runs.items() if {*PAIR} <= set(r)]
+    costs = [
+        cost_row(f"{name}-{variant}", run, finished["auto"])
+        for name, finished in runs.items()
+        if "auto" in finished
+        for variant, run in finished.items()
+        if variant not in PAIR
+    ]
     beyond = [str(line[0]) for line in rows if line[-1] == "beyond"]
     cheaper = [line for line in rows if isinstance(line[6], float) and line[6] < 1]
     columns = (
@@ -204,3 +181,7 @@ def _study_report(rows: list[list[Cell]], costs: list[list[Cell]]) -> StudyRepor
             f"Tips of {TIP * 1e3:g} mm, less under a smaller contact: differences count here, not values."
         ],
     )
+
+
+_SWEEP = DeclaredSweep(_scenes, _variants, _report)
+plan, conclude = _SWEEP.plan, _SWEEP.conclude

@@ -17,7 +17,7 @@ from scipy.stats import qmc
 
 from fem_impact import load, replace_all
 from fem_impact.answers.report import Request, Sheet, StudyReport
-from fem_impact.evidence.studies.declared import DeclaredSweep
+from fem_impact.evidence.studies.declared import DeclaredSweep, table_of
 from fem_impact.evidence.studies.rods import BODY, length_of
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.outcome.keys import Key, Unknown
@@ -118,7 +118,7 @@ def _sum(keys: Sequence[Key], run: Outcome) -> float | None:
 
 
 def report_of(table: pandas.DataFrame) -> StudyReport:
-    """Return the study of scenes: near or not, and a panel a quantity; ``table`` as `DeclaredSweep.table`."""
+    """Return the study of scenes: near or not, and a panel a quantity; ``table`` as `table_of`."""
     rows = [(name, group_of(name), *row) for name, row in zip(table.index, table.to_numpy(), strict=True)]
     groups = {group: members.astype(float) for group, members in table.groupby(group_of, sort=False)}
     sentences = [_near(group, members) for group, members in groups.items()]
@@ -162,8 +162,9 @@ def _panel(name: str, groups: dict[str, pandas.DataFrame]) -> Panel:
 
 _SWEEP = DeclaredSweep(
     scenes,
-    lambda scene: {model: (scene, model) for model in MODELS},
-    {name: partial(_sum, keys) for name, keys in KEYS.items()},
-    report_of,
+    lambda _, scene: {model: (scene, model) for model in MODELS},
+    lambda runs: report_of(
+        table_of(runs, {name: partial(_sum, keys) for name, keys in KEYS.items()}, MODELS)
+    ),
 )
 plan, conclude = _SWEEP.plan, _SWEEP.conclude
