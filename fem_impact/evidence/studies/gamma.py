@@ -141,9 +141,9 @@ def _most_like(scene: Scene) -> DroppedRod:
 def plan(request: Request, results: JobResults) -> list[Job]:
     """Return the jobs, the longest first; with results also those that these call for."""
     runs_of = families(request.quick)
-    coarse, own = (QUICK_SIZES if request.quick else SIZES)[:2]
+    coarse, scene_size = (QUICK_SIZES if request.quick else SIZES)[:2]
     every = [run for family in runs_of.values() for run in family]
-    runs = [run for run in every if run.fidelity == "modal" or run.size >= own]
+    runs = [run for run in every if run.fidelity == "modal" or run.size >= scene_size]
     twins = [run.twin for run in runs if (run.fidelity, run.size, run.offset) == ("solid", coarse, 0.0)]
     more = []
     if results:
