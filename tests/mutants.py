@@ -46,8 +46,8 @@ MUTANTS = (
     Mutant(
         "contact work with velocities after the update, rigid plane",
         "fem_impact/solid/contact/plane.py",
-        "record[CLOSING] -= 0.5 * p * (old_n + v[n])",
-        "record[CLOSING] -= p * v[n]",
+        "closing -= 0.5 * p * (old_n + v[n])",
+        "closing -= p * v[n]",
         "tests/solid/test_plane_contact.py::test_booked_work_is_the_energy_that_is_missing",
     ),
     Mutant(

@@ -52,11 +52,11 @@ def mass_factors(crossing: Array, wanted: float) -> Array:
 def scaled_rod(
     mass: Array, place: Array, free: Bools, crossing: Array, reference: float, scaling: float
 ) -> tuple[Array, float]:
-    """Return a rod's masses (m, 8), kg, with the largest mass scaling it can make up for, and that scaling.
+    """Add mass to a free rod's small cells and take as much off its large ones.
 
-    Mass, both first moments and the moment of inertia about the b axis stay. The share that a cell loses
-    varies with 1, t, n and t^2 + n^2 of its centre, and with how much it may lose before it sets the step
-    itself; none loses more than `MOST_REMOVED`.
+    The rod's mass, mass centre and moment of inertia about the b axis stay. The share of its mass that a cell
+    loses is a combination of 1, t, n and t^2 + n^2 at its centre, times how much it may lose before it sets
+    the step itself. Where a cell would have to lose more than `MOST_REMOVED`, a smaller scaling is tried.
 
     Parameters
     ----------
@@ -64,7 +64,13 @@ def scaled_rod(
     place : (m, 8, 3) their positions (t, b, n), m
     free : (m,) cells whose mass may change
     crossing : (m,), s, as `crossing_times` gives it; reference : s, as `reference_time`
-    scaling : largest mass scaling
+    scaling : largest one to try, 1 or more: free cells get so much mass that a wave takes at least
+        reference sqrt(scaling) to cross each
+
+    Returns
+    -------
+    masses : (m, 8) of each cell at its nodes, kg
+    reached : the scaling that they have, at most the one asked for; 1 where nothing was changed
     """
     moments = np.stack(
         [np.ones(mass.shape), place[:, :, 0], place[:, :, 2], (place[:, :, ::2] ** 2).sum(axis=2)]

@@ -97,9 +97,9 @@ class Builder:
 
     def __init__(self, case: Case, gap: float) -> None:
         self.case, self.scene, self.spec, self.meshed = case, case.scene, case.slots, MeshedBodies(case)
-        self.meshed.move_rod(*self.way_to(gap))
+        self.meshed.move_rod(*self.initial_shift(gap))
 
-    def way_to(self, gap: float) -> tuple[float, float]:
+    def initial_shift(self, gap: float) -> tuple[float, float]:
         """Return the rod's shift along t and n, m, without rotation, until the skins are a ``gap``, m, apart.
 
         The shift along t is limited to one cell, for rods that come down almost tangentially.

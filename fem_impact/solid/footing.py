@@ -15,7 +15,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.layout import DofLayout
-from fem_impact.solid.contact.book import IMPULSE_N, ContactBook
+from fem_impact.solid.contact.book import ContactBook
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
 from fem_impact.solid.items import Impulse
@@ -95,7 +95,7 @@ class BendingPlate:
         """Bring the rod back from the plate's frame and book the work of the contact on the plate."""
         state.x[self.rows] += state.x[self.place]
         state.v[self.rows] += self.speed
-        impulse = float(self.book.step[IMPULSE_N])
+        impulse = self.book.step.impulse_n
         self.taken -= impulse * self.speed
         self.later = -impulse / (self.impedance * state.kick)
 

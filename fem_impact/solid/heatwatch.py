@@ -8,7 +8,6 @@ from typing import ClassVar
 import numpy as np
 
 from fem_impact.arrays import Array, Ints
-from fem_impact.solid.contact.book import IMPULSE_T
 from fem_impact.solid.contact.moving_plane import MovingPlane
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.contact.surface import SurfaceContact
@@ -76,7 +75,7 @@ class HeatWatch:
     def observe(self, state: State) -> bool:
         """Add the last step; close the window when it is full."""
         book = self.model.book
-        self.pushed += abs(float(book.step[IMPULSE_T]))
+        self.pushed += abs(book.step.impulse_t)
         self.surface.add(state)
         span = state.time - self.t[-1]
         if span >= WINDOW:

@@ -12,7 +12,7 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.files.fields_write import FieldWriter
 from fem_impact.progress import Progress
-from fem_impact.solid.contact.book import ACTIVE, ContactBook
+from fem_impact.solid.contact.book import ContactBook
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.model import Model
 from fem_impact.solid.rodview import FieldSampler, RodState
@@ -90,7 +90,7 @@ class History:
         force_t, force_n = self._force(state)
         row: dict[str, float] = {history_column(k): v for k, v in self.watch.accounts.items()}
         row |= {"time_s": state.time, "force_n_N": force_n, "force_t_N": force_t}
-        row |= {"contact_nodes": int(self.model.book.step[ACTIVE])}
+        row |= {"contact_nodes": self.model.book.step.active}
         row |= {"V_n_m_per_s": motion.V_n, "V_t_m_per_s": motion.V_t, "Omega_rad_per_s": motion.Omega}
         self.writer.append(row)
         return False
@@ -151,7 +151,7 @@ class ProgressObserver:
         """Report the progress."""
         end = self._end(state.time)
         eta = self._eta(state.time, end)
-        nodes = int(self.model.book.step[ACTIVE])
+        nodes = self.model.book.step.active
         contact = f"{nodes} nodes touch" if nodes else "no contact"
         self.show(
             Progress(state.time, max(end, state.time), state.step, self.watch.drift, contact, eta, self.note)
@@ -221,7 +221,7 @@ class PeakForce:
 
     def observe(self, state: State) -> bool:
         """Close a window when it is long enough."""
-        span, self._nodes = state.time - self._time, max(self._nodes, int(self.book.step[ACTIVE]))
+        span, self._nodes = state.time - self._time, max(self._nodes, self.book.step.active)
         if span >= WINDOW:
             impulse = float(self.book.impulse[1])
             force = 2 * (impulse - self._impulse) / span

@@ -56,7 +56,11 @@ def zone_step(zone: YieldingZone, model: Model, x: Array) -> float:
 
 
 def _trial(zone: YieldingZone) -> YieldingZone:
-    """Return a copy of the zone with an infinite flow stress and work arrays of its own."""
+    """Return a copy of the zone that may be advanced without changing it, and that stays elastic.
+
+    Its flow stress is infinite; stress, pressure and nodal forces are arrays of its own, not yet filled.
+    Everything else is shared.
+    """
     old = zone.blocks
     own = {name: np.empty_like(getattr(old, name)) for name in ("stress", "pressure", "nodal")}
     blocks = old._replace(flow=np.full_like(old.flow, np.inf), **own)

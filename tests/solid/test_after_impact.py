@@ -20,11 +20,13 @@ from fem_impact.run.simulate import simulate
 from fem_impact.run.solid import reduce
 from fem_impact.scene.shipped import load, replace_all
 from fem_impact.solid.build import START_GAP, build
+from fem_impact.solid.contact.book import StepRecord
 from fem_impact.solid.march import advance, evaluate
 from fem_impact.solid.run import solve
 from fem_impact.solid.separation import Separation, flight_heights, flown
 from fem_impact.solid.stepguard import StepGuard
 
+TOUCH = StepRecord(1.0, 1.0, 1.0, 1.0, 1.0, active=1)
 PLANE = ("vibration", "barrier-rigid", "large-rotation")
 SHORT = {"length": 0.08, "v_n": -1.0, "v_t": -1.0}
 
@@ -63,9 +65,8 @@ class Stop:
         self.state.x[tip] += height - self.state.x[tip].min()
         self.state.time = time
         if touched is not None:
-            model.book.step[:] = 1.0
-            model.book.close_step(touched)
-            model.book.step[:] = 0.0
+            model.book.close_step(TOUCH, touched)
+            model.book.step = StepRecord()
         places = model.layout.rod[~model.geometry.rod.mesh.is_hanging]
         low = model.layout.rod[np.argsort(model.geometry.rod_points[:, 2])[:20]]
         motion = RigidMotion(1.0, 1.0, self.state.x[places].mean(axis=0), V_n, 0.0, Omega)
@@ -186,9 +187,8 @@ def _in_crater(V_n, V_t, swing=0.0, barrier="barrier-elastic"):
     state.x[heights[radius < 2.2e-3]] -= 50e-6
     state.x[model.layout.rod[:, 2]] -= 40e-6 + START_GAP
     state.time = 1.5e-4
-    model.book.step[:] = 1.0
-    model.book.close_step(1e-4)
-    model.book.step[:] = 0.0
+    model.book.close_step(TOUCH, 1e-4)
+    model.book.step = StepRecord()
     motion = RigidMotion(1.0, 1.0, np.array([0.0, 0.0, 0.04]), V_n, V_t, 0.0)
 
     def displacement(rows, t):

@@ -7,7 +7,6 @@ import solid_scenes as scenes
 from fem_impact.case.case import Case
 from fem_impact.scene.shipped import load, replace, replace_all
 from fem_impact.solid.build import build
-from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.patch import lowest_gap, make_patch, vertex_normals
 from fem_impact.solid.march import advance, evaluate
 
@@ -146,4 +145,4 @@ def test_a_flat_face_that_comes_down_flat_on_steel_that_yields_touches_with_fini
         advance(model, state)
     assert model.contact.rod.sag == 0.0
     assert np.isfinite(state.v).all()
-    assert model.book.step[ACTIVE] > 0
+    assert model.book.step.active > 0

@@ -6,17 +6,7 @@ import solid_shapes as shapes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from fem_impact.solid.contact.book import (
-    ACTIVE,
-    ARM,
-    CLOSING,
-    FRICTION,
-    IMPULSE_N,
-    IMPULSE_T,
-    MERGE_GAP,
-    RECORD,
-    ContactBook,
-)
+from fem_impact.solid.contact.book import MERGE_GAP, ContactBook, StepRecord
 from fem_impact.solid.contact.plane import PlaneContact, touch_plane
 
 DT = 2e-8
@@ -40,8 +30,8 @@ def _swarm(seed, count=40, kick=DT):
 @settings(max_examples=40, deadline=None)
 def test_every_node_obeys_signorini_and_coulomb(seed, f):
     nodes, x, v, force, inverse, mass, _ = _swarm(seed)
-    kicked, record = v.copy(), np.ones(RECORD)
-    touch_plane(nodes, x, v, force, inverse, DT, DT, f, record)
+    kicked = v.copy()
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, f)
     t, b, n = nodes.T
     p = (v - kicked) * mass
     p_n, p_t = p[n], np.hypot(p[t], p[b])
@@ -56,9 +46,9 @@ def test_every_node_obeys_signorini_and_coulomb(seed, f):
     slides = held & (slip > 1e-9)
     assert p_t[slides] == pytest.approx(f * p_n[slides], rel=1e-9)
     assert (p[t] * v[t] + p[b] * v[b] <= 1e-18).all()
-    assert record[[IMPULSE_T, IMPULSE_N]] == pytest.approx([p[t].sum(), p_n.sum()], rel=1e-9, abs=1e-18)
-    assert record[ARM] == pytest.approx((x[t] * p_n - x[n] * p[t]).sum(), rel=1e-9, abs=1e-20)
-    assert record[ACTIVE] == held.sum()
+    assert [step.impulse_t, step.impulse_n] == pytest.approx([p[t].sum(), p_n.sum()], rel=1e-9, abs=1e-18)
+    assert step.moment == pytest.approx((x[t] * p_n - x[n] * p[t]).sum(), rel=1e-9, abs=1e-20)
+    assert step.active == held.sum()
 
 
 @given(st.integers(0, 10**6))
@@ -66,22 +56,21 @@ def test_every_node_obeys_signorini_and_coulomb(seed, f):
 def test_booked_work_is_the_energy_that_is_missing(seed):
     """Kinetic energy gained = work of the forces - friction - closing, all with mean velocities."""
     nodes, x, v, force, inverse, mass, before = _swarm(seed)
-    record = np.zeros(RECORD)
-    touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4, record)
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4)
     gained = 0.5 * (mass * (v**2 - before**2)).sum()
     worked = 0.5 * DT * (force * (v + before)).sum()
-    assert record[FRICTION] > 0
-    assert gained - worked == pytest.approx(-record[FRICTION] - record[CLOSING], rel=1e-9)
+    assert step.friction > 0
+    assert gained - worked == pytest.approx(-step.friction - step.closing, rel=1e-9)
 
 
 def test_without_forces_nothing_is_created():
     nodes, x, v, force, inverse, mass, _ = _swarm(1, count=200)
     force[:] = 0.0
-    before, record = v.copy(), np.zeros(RECORD)
-    touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4, record)
+    before = v.copy()
+    step = touch_plane(nodes, x, v, force, inverse, DT, DT, 0.4)
     lost = 0.5 * (mass * (before**2 - v**2)).sum()
-    assert lost == pytest.approx(record[FRICTION] + record[CLOSING], rel=1e-12)
-    assert min(record[FRICTION], record[CLOSING]) > 0
+    assert lost == pytest.approx(step.friction + step.closing, rel=1e-12)
+    assert min(step.friction, step.closing) > 0
 
 
 @pytest.mark.parametrize(("f", "sticks"), [(0.2, False), (0.49, False), (0.51, True), (2.0, True)])
@@ -99,15 +88,13 @@ def test_one_node_sticks_or_slips(f, sticks):
 
 def test_friction_turns_in_the_plane():
     nodes, v = np.array([[0, 1, 2]]), np.array([3.0, 4.0, -10.0])
-    touch_plane(nodes, np.zeros(3), v, np.zeros(3), np.ones(3), DT, DT, 0.1, np.zeros(RECORD))
+    touch_plane(nodes, np.zeros(3), v, np.zeros(3), np.ones(3), DT, DT, 0.1)
     assert v == pytest.approx([3.0 * 0.8, 4.0 * 0.8, 0.0])
 
 
 def _touches(book, times):
     for time in times:
-        book.step[:] = 0.0
-        book.step[[IMPULSE_N, IMPULSE_T, ACTIVE, CLOSING]] = 1.0, 0.5, 2.0, 0.25
-        book.close_step(time)
+        book.close_step(StepRecord(impulse_t=0.5, impulse_n=1.0, closing=0.25, active=2), time)
 
 
 def test_short_releases_are_one_contact():
@@ -120,7 +107,6 @@ def test_short_releases_are_one_contact():
     assert book.impulse == pytest.approx([2.5, 5.0, 0.0])
     assert book.closing == pytest.approx(1.25)
     assert book.touching
-    book.step[:] = 0.0
-    book.close_step(2e-4)
+    book.close_step(StepRecord(), 2e-4)
     assert not book.touching
     assert len(book.intervals) == 2

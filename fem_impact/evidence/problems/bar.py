@@ -16,7 +16,6 @@ from fem_impact.evidence.problems.watch import ForceRecorder, Until
 from fem_impact.evidence.references.rod_end import FOLLOWED, BarImpact, bar_speed, chain_restitution, strike
 from fem_impact.scene.impact import Impact
 from fem_impact.scene.parameter import Parameter
-from fem_impact.solid.contact.book import ACTIVE
 from fem_impact.solid.contact.plane import PlaneContact
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
@@ -52,12 +51,12 @@ class Ceiling:
 
     def resolve(self, state: State) -> None:
         """Turn the wall's own nodes upside down, let them touch, turn them back."""
-        n, before = self.wall.nodes[:, 2], self.wall.book.step[ACTIVE]
+        n, before = self.wall.nodes[:, 2], self.wall.book.step.active
         for vector in (state.v, state.force):
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]
         self.wall.resolve(state)
-        self.bounces += int(self.wall.book.step[ACTIVE] > 0 and before == 0)
+        self.bounces += int(self.wall.book.step.active > 0 and before == 0)
         for vector in (state.v, state.force):
             vector[n] *= -1
         state.x[n] = self.height - state.x[n]

@@ -10,7 +10,6 @@ import numpy as np
 from fem_impact.errors import RunError
 from fem_impact.evidence.problems.bodies import rigid_of
 from fem_impact.fem.flight import RigidMotion
-from fem_impact.solid.contact.book import IMPULSE_N
 from fem_impact.solid.ledger import Ledger
 from fem_impact.solid.march import march
 from fem_impact.solid.model import Model
@@ -35,7 +34,7 @@ class ForceRecorder:
         """Take the impulse of the step that led here."""
         if state.step:
             self.times.append(state.time - 0.5 * state.dt)
-            self.values.append(2 * float(self.book.step[IMPULSE_N]) / state.kick)
+            self.values.append(2 * self.book.step.impulse_n / state.kick)
         return False
 
     @property

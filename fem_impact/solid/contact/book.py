@@ -3,22 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.physics.contact_law import FAINT, MERGE_GAP
 
-# places in the step record that the kernels fill (half model)
-IMPULSE_T, IMPULSE_N, ARM, FRICTION, CLOSING, ACTIVE, OUTSIDE, SWEEPS = range(8)
-RECORD = 8
-
-
 # what a checkpoint keeps of a contact
 MOVING = tuple(
     f"book.{name}"
     for name in (
-        "step",
+        "last_step",
         "friction",
         "closing",
         "impulse",
@@ -28,6 +24,27 @@ MOVING = tuple(
         "table",
     )
 )
+
+
+class StepRecord(NamedTuple):
+    """What a contact did to the rod in one step, half model (a named tuple, so that kernels can return it).
+
+    Attributes
+    ----------
+    impulse_t, impulse_n : sums p_t and p_n of the impulses on the rod, N s
+    moment : sum of x_t p_n - x_n p_t, about the origin, N m s
+    friction, closing : energy taken by friction and by stopping lumped nodes, J
+    active : number of pressed nodes
+    outside : number of rod nodes below the barrier's surface that lie beside its patch
+    """
+
+    impulse_t: float = 0.0
+    impulse_n: float = 0.0
+    moment: float = 0.0
+    friction: float = 0.0
+    closing: float = 0.0
+    active: int = 0
+    outside: int = 0
 
 
 @dataclass(slots=True)
@@ -46,12 +63,12 @@ class ContactBook:
 
     Attributes
     ----------
-    step : (RECORD,) what the last step did
+    step : what the last step did
     friction, closing : energy taken by friction and by stopping lumped nodes, J
     impulse : (3,) sums of p_t, p_n and of the moment x_t p_n - x_n p_t about the origin
     """
 
-    step: Array = field(default_factory=lambda: np.zeros(RECORD))
+    step: StepRecord = StepRecord()  # noqa: RUF009
     friction: float = 0.0
     closing: float = 0.0
     impulse: Array = field(default_factory=lambda: np.zeros(3))
@@ -71,23 +88,31 @@ class ContactBook:
         self.intervals = [Interval(*map(float, row)) for row in rows]
 
     @property
+    def last_step(self) -> Array:
+        """Return ``step`` as an array, for a checkpoint."""
+        return np.array(self.step, dtype=np.float64)
+
+    @last_step.setter
+    def last_step(self, values: Array) -> None:
+        self.step = StepRecord(*values[:5].tolist(), *values[5:].astype(int).tolist())
+
+    @property
     def touching(self) -> bool:
         """Return whether the last step had a compressed node."""
-        return bool(self.step[ACTIVE] > 0)
+        return self.step.active > 0
 
-    def close_step(self, time: float) -> None:
-        """Add the step's record to the sums."""
-        self.friction += float(self.step[FRICTION])
-        self.closing += float(self.step[CLOSING])
-        self.outside = max(self.outside, int(self.step[OUTSIDE]))
-        if self.touching:
-            self._touch(time)
-
-    def _touch(self, time: float) -> None:
+    def close_step(self, step: StepRecord, time: float) -> None:
+        """Add the record of the step that ends at ``time``, s, to the sums."""
+        self.step = step
+        self.friction += step.friction
+        self.closing += step.closing
+        self.outside = max(self.outside, step.outside)
+        if not self.touching:
+            return
         self.last_touch = time
-        self.impulse += self.step[[IMPULSE_T, IMPULSE_N, ARM]]
-        self.largest = max(self.largest, float(self.step[IMPULSE_N]))
-        if self.step[IMPULSE_N] > FAINT * self.largest:
+        self.impulse += (step.impulse_t, step.impulse_n, step.moment)
+        self.largest = max(self.largest, step.impulse_n)
+        if step.impulse_n > FAINT * self.largest:
             self._prolong(time)
 
     def _prolong(self, time: float) -> None:
@@ -95,5 +120,5 @@ class ContactBook:
             self.intervals.append(Interval(time, time))
         now = self.intervals[-1]
         now.end = time
-        now.impulse_n += 2 * float(self.step[IMPULSE_N])
-        now.impulse_t += 2 * float(self.step[IMPULSE_T])
+        now.impulse_n += 2 * self.step.impulse_n
+        now.impulse_t += 2 * self.step.impulse_t

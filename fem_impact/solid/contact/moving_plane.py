@@ -49,7 +49,6 @@ class MovingPlane:
     def resolve(self, state: State) -> None:
         """Apply this step's impulses and book the work."""
         motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
-        self.book.step[:] = 0.0
         c = self.points
         if self.ground.turns:
             turning = self.ground.footing, self.ground.turn[0], self.ground.centre

@@ -28,7 +28,12 @@ def bilinear(xi, eta):  # type: ignore[no-untyped-def]
 
 @inlined
 def height_from(x, surface, normals, node, t, b):  # type: ignore[no-untyped-def]
-    """Return the height that a node stands for at (t, b): its own, and a share ``bend`` of its slope."""
+    """Return the height n, m, of the surface at the point (t, b), m, as one of its nodes alone gives it.
+
+    That is the node's own height plus ``bend`` (0 to 1/2, see `Patch`) times the rise of the node's tangent
+    plane from the node to that point. The surface of a quad is the bilinear mean of its four nodes' heights.
+    ``x`` are positions, m; ``normals`` (k, 3) are unit normals at the surface's nodes.
+    """
     place, bend, normal = surface.places[node], surface.bend[node], normals[node]
     if bend == 0.0:
         return x[place[2]]

@@ -9,16 +9,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import kernel
-from fem_impact.solid.contact.book import (
-    ACTIVE,
-    ARM,
-    CLOSING,
-    FRICTION,
-    IMPULSE_N,
-    IMPULSE_T,
-    MOVING,
-    ContactBook,
-)
+from fem_impact.solid.contact.book import MOVING, ContactBook, StepRecord
 from fem_impact.solid.state import State
 
 
@@ -41,19 +32,9 @@ class PlaneContact:
 
     def resolve(self, state: State) -> None:
         """Apply this step's impulses."""
-        record = self.book.step
-        touch_plane(
-            self.nodes,
-            state.x,
-            state.v,
-            state.force,
-            self.inverse_mass,
-            state.kick,
-            state.dt_next,
-            self.f,
-            record,
-        )
-        self.book.close_step(state.time)
+        motion, span = (state.x, state.v, state.force), (state.kick, state.dt_next)
+        step = touch_plane(self.nodes, *motion, self.inverse_mass, *span, self.f)
+        self.book.close_step(step, state.time)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of the nodes over the plane at positions ``x``."""
@@ -65,9 +46,9 @@ class PlaneContact:
 
 
 @kernel
-def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, record):  # type: ignore[no-untyped-def]
-    """Resolve all nodes (k, 3) and fill the step's record."""
-    record[:] = 0.0
+def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f):  # type: ignore[no-untyped-def]
+    """Resolve all nodes (k, 3): change their velocities and return the step's record."""
+    impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     for i in range(len(nodes)):
         t, b, n = nodes[i, 0], nodes[i, 1], nodes[i, 2]
         if x[n] + dt * v[n] >= 0.0:
@@ -84,9 +65,10 @@ def touch_plane(nodes, x, v, force, inverse_mass, kick, dt, f, record):  # type:
         v[t] += inverse_mass[t] * p_t
         v[b] += inverse_mass[b] * p_b
         v[n] += inverse_mass[n] * p
-        record[IMPULSE_T] += p_t
-        record[IMPULSE_N] += p
-        record[ARM] += x[t] * p - x[n] * p_t
-        record[FRICTION] -= 0.5 * (p_t * (old_t + v[t]) + p_b * (old_b + v[b]))
-        record[CLOSING] -= 0.5 * p * (old_n + v[n])
-        record[ACTIVE] += 1.0
+        impulse_t += p_t
+        impulse_n += p
+        moment += x[t] * p - x[n] * p_t
+        friction -= 0.5 * (p_t * (old_t + v[t]) + p_b * (old_b + v[b]))
+        closing -= 0.5 * p * (old_n + v[n])
+        active += 1
+    return StepRecord(impulse_t, impulse_n, moment, friction, closing, active, 0)

@@ -8,17 +8,7 @@ import numpy as np
 
 from fem_impact.arrays import Array, Ints
 from fem_impact.fem.kernels import inlined, kernel
-from fem_impact.solid.contact.book import (
-    ACTIVE,
-    ARM,
-    CLOSING,
-    FRICTION,
-    IMPULSE_N,
-    IMPULSE_T,
-    OUTSIDE,
-    SWEEPS,
-    ContactBook,
-)
+from fem_impact.solid.contact.book import ContactBook, StepRecord
 from fem_impact.solid.contact.impulses import relative, solve
 from fem_impact.solid.contact.patch import bilinear, height_from, locate
 
@@ -102,9 +92,12 @@ def _join(c, k, a, places, weight):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c, record):  # type: ignore[no-untyped-def]
-    """Append contacts of rod nodes more than ``play`` under barrier quads; returns the new number."""
-    x, top = motion.x, 0.0
+def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c):  # type: ignore[no-untyped-def]
+    """Append contacts of rod nodes more than ``play`` under barrier quads.
+
+    Returns the new number of contacts, and that of rod nodes below the surface that lie beside all quads.
+    """
+    x, top, outside = motion.x, 0.0, 0
     for i in range(len(barrier.places)):
         top = max(top, x[barrier.places[i, 2]])
     for i in range(len(rod.places)):
@@ -114,7 +107,7 @@ def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c, 
         t, b = x[rod.places[i, 0]], x[rod.places[i, 1]]
         q, xi, eta = locate(x, barrier.places, barrier.quads, barrier.neighbours, max(last[i], 0), t, b)
         if q < 0:
-            record[OUTSIDE] += 1.0 if n < -band else 0.0
+            outside += 1 if n < -band else 0
             continue
         last[i] = q
         w = bilinear(xi, eta)
@@ -130,7 +123,7 @@ def rod_over_barrier(count, rod, barrier, normals, last, play, band, motion, c, 
         length = np.sqrt(n_t * n_t + n_b * n_b + n_n * n_n)
         c.normal[count, 0], c.normal[count, 1], c.normal[count, 2] = n_t / length, n_b / length, n_n / length
         count += _enter(count, i, (n - surface) * c.normal[count, 2] + play, band, motion, c)
-    return count
+    return count, outside
 
 
 @kernel
@@ -219,37 +212,38 @@ def barrier_under_rod(rod, rod_normals, barrier, normals, last, band, motion, c)
     return count
 
 
-def settle(count: int, motion: PointState, c: Points, f: float, book: ContactBook, time: float) -> None:
+def settle(
+    count: int, motion: PointState, c: Points, f: float, book: ContactBook, time: float, outside: int = 0
+) -> None:
     """Solve the impulses of the collected contacts, book their work and close the step."""
     if count:
-        book.step[SWEEPS] = solve(
-            count, motion.v, motion.inverse_mass, c.nodes, c.weights, c.normal, c.target, f, c.p
-        )
-    book_work(count, motion, c, book.step)
-    book.close_step(time)
+        solve(count, motion.v, motion.inverse_mass, c.nodes, c.weights, c.normal, c.target, f, c.p)
+    book.close_step(work_of_points(count, motion, c, outside), time)
 
 
 @kernel
-def book_work(count, motion, c, record):  # type: ignore[no-untyped-def]
-    """Fill the step's record with impulses on the rod and work; remember the impulses."""
+def work_of_points(count, motion, c, outside):  # type: ignore[no-untyped-def]
+    """Return the step's record of the impulses on the rod and their work; remember the impulses."""
     x = motion.x
+    impulse_t, impulse_n, moment, friction, closing, active = 0.0, 0.0, 0.0, 0.0, 0.0, 0
     c.memory[:, :] = 0.0
     for k in range(count):
         t, b, n = relative(motion.v, c.nodes[k], c.weights[k])
         m_t, m_b, m_n = 0.5 * (c.before[k, 0] + t), 0.5 * (c.before[k, 1] + b), 0.5 * (c.before[k, 2] + n)
         p, normal = c.p[k], c.normal[k]
         pressed = p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]
-        closing = pressed * (m_t * normal[0] + m_b * normal[1] + m_n * normal[2])
-        record[CLOSING] -= closing
-        record[FRICTION] -= p[0] * m_t + p[1] * m_b + p[2] * m_n - closing
-        record[IMPULSE_T] += p[0]
-        record[IMPULSE_N] += p[2]
-        record[ACTIVE] += 1.0 if pressed > 0.0 else 0.0
+        stopping = pressed * (m_t * normal[0] + m_b * normal[1] + m_n * normal[2])
+        closing -= stopping
+        friction -= p[0] * m_t + p[1] * m_b + p[2] * m_n - stopping
+        impulse_t += p[0]
+        impulse_n += p[2]
+        active += 1 if pressed > 0.0 else 0
         for a in range(5):
             i, j, l = c.nodes[k, a]
             angle = i == j or j == l
             if c.weights[k, a] > 0.0 and not angle:
                 at_t, at_n = x[c.nodes[k, a, 0]], x[c.nodes[k, a, 2]]
-                record[ARM] += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
+                moment += c.weights[k, a] * (at_t * p[2] - at_n * p[0])
         for i in range(3):
             c.memory[c.owner[k], i] = p[i]
+    return StepRecord(impulse_t, impulse_n, moment, friction, closing, active, outside)

@@ -86,13 +86,12 @@ class SurfaceContact:
     def resolve(self, state: State) -> None:
         """Find this step's contacts, solve their impulses, book the work."""
         motion = PointState(state.x, state.v, state.force, self.inverse_mass, state.kick, state.dt_next)
-        c, rod, barrier, record = self.points, self.rod, self.barrier, self.book.step
-        record[:] = 0.0
+        c, rod, barrier = self.points, self.rod, self.barrier
         self._turn_normals(state.x)
         last, normals, band = self.last, self.normals, self.band
         under = barrier_under_rod(rod, self.rod_normals, barrier, normals, last, band, motion, c)
-        count = rod_over_barrier(under, rod, barrier, normals, last, self.play, band, motion, c, record)
-        settle(count, motion, c, self.f, self.book, state.time)
+        count, outside = rod_over_barrier(under, rod, barrier, normals, last, self.play, band, motion, c)
+        settle(count, motion, c, self.f, self.book, state.time, outside)
 
     def clearance(self, x: Array) -> float:
         """Return the smallest height, m, of one patch over the other at positions ``x`` (inf: none is)."""
