@@ -61,20 +61,22 @@ def check_record(values: Mapping[str, Any], keys: tuple[Key, ...], source: str) 
         With the file, the key, the value and the remedy.
     """
     table = {key.name: key for key in keys}
-    _check_version(values, source)
+    version = values.get("schema_version")
+    if version != SCHEMA_VERSION or isinstance(version, bool):
+        wrong = f"is not the version {SCHEMA_VERSION} that this program reads; compute the run again"
+        raise _fault(wrong, "schema_version", version, source)
     _check_names(values, table, source)
     _check_shapes(values, keys, source)
     for key in keys:
         if key.kind == "number" and values[key.name] is not None and not math.isfinite(values[key.name]):
-            _refuse("must be finite", key.name, values[key.name], source)
+            raise _fault("must be finite", key.name, values[key.name], source)
     if values["fidelity"] not in FIDELITIES:
-        _refuse(f"must be one of {', '.join(FIDELITIES)}", "fidelity", values["fidelity"], source)
+        raise _fault(f"must be one of {', '.join(FIDELITIES)}", "fidelity", values["fidelity"], source)
     for contact in values["contacts"] or ():
         if contact["start_s"] > contact["end_s"]:
-            _refuse("has a contact that ends before it starts", "contacts", values["contacts"], source)
-    limits, bands = values["mesh_limit"] or {}, values["mesh_band"] or {}
-    _refuse(_limit_complaint(limits, table), "mesh_limit", limits, source)
-    _refuse(_band_complaint(bands, limits), "mesh_band", bands, source)
+            wrong = "has a contact that ends before it starts"
+            raise _fault(wrong, "contacts", values["contacts"], source)
+    _check_bands(values["mesh_limit"] or {}, values["mesh_band"] or {}, table, source)
     _check_reasons(values, table, source)
 
 
@@ -105,7 +107,7 @@ def _check_shapes(values: Mapping[str, Any], keys: tuple[Key, ...], source: str)
     except fastjsonschema.JsonSchemaValueException as error:
         name, *inner = error.path[1:]
         key = next(key for key in keys if key.name == name)
-        _refuse(_shape_complaint(key, values[name], inner), name, values[name], source)
+        raise _fault(_shape_complaint(key, values[name], inner), name, values[name], source) from None
 
 
 def _shape_complaint(key: Key, value: Any, inner: list[str]) -> str:
@@ -118,13 +120,6 @@ def _shape_complaint(key: Key, value: Any, inner: list[str]) -> str:
     if entry is None:
         return f"must be a list of entries of exactly {', '.join(entry.name for entry in key.entries)}"
     return f'has an entry whose "{entry.name}" {SHAPES[entry.kind][1]}'
-
-
-def _check_version(values: Mapping[str, Any], source: str) -> None:
-    version = values.get("schema_version")
-    if version != SCHEMA_VERSION or isinstance(version, bool):
-        wrong = f"is not the version {SCHEMA_VERSION} that this program reads; compute the run again"
-        _refuse(wrong, "schema_version", version, source)
 
 
 def _check_names(values: Mapping[str, Any], table: Mapping[str, Key], source: str) -> None:
@@ -149,21 +144,23 @@ def _check_reasons(values: Mapping[str, Any], table: Mapping[str, Key], source: 
             raise ResultError(f'{source}: "reasons" must give the null key "{name}" a sentence.')
 
 
-def _limit_complaint(limits: Mapping[str, float], table: Mapping[str, Key]) -> str | None:
-    strange = next((name for name in limits if name not in table or not table[name].banded), None)
-    return None if strange is None else f'names "{strange}", a key that meshes give no limit'
+def _check_bands(
+    limits: Mapping[str, float], bands: Mapping[str, float], table: Mapping[str, Key], source: str
+) -> None:
+    """Refuse a limit of a key that has none, a band without its limit, and a half-width below zero."""
+    for name in limits:
+        if name not in table or not table[name].banded:
+            wrong = f'names "{name}", a key that meshes give no limit'
+            raise _fault(wrong, "mesh_limit", limits, source)
+    for name, width in bands.items():
+        if name not in limits:
+            raise _fault(f'names "{name}", which has no limit', "mesh_band", bands, source)
+        if width < 0.0:
+            raise _fault("gives a half-width below zero", "mesh_band", bands, source)
 
 
-def _band_complaint(bands: Mapping[str, float], limits: Mapping[str, float]) -> str | None:
-    alone = next((name for name in bands if name not in limits), None)
-    if alone is not None:
-        return f'names "{alone}", which has no limit'
-    return "gives a half-width below zero" if min(bands.values(), default=0.0) < 0.0 else None
-
-
-def _refuse(wrong: str | None, name: str, value: Any, source: str) -> None:
-    if wrong:
-        raise ResultError(f'{source}: key "{name}" = {_short(value)} {wrong}.')
+def _fault(wrong: str, name: str, value: Any, source: str) -> ResultError:
+    return ResultError(f'{source}: key "{name}" = {_short(value)} {wrong}.')
 
 
 def _short(value: Any, limit: int = 60) -> str:

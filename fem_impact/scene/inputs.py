@@ -55,18 +55,14 @@ def _rows(key: str, value: Any, source: str = STATED) -> list[tuple[str, str, st
     if isinstance(value, dict) and key.endswith(".rate"):
         return [(key, ", ".join(f"{name} {part}" for name, part in value.items()), source)]
     if isinstance(value, dict):
-        return [
-            row for name, part in value.items() for row in _rows(f"{key}.{name}", part, _source(value, name))
-        ]
+        # a section with a density is a material, whose name and law have no source
+        sources = {
+            name: source_of(value["name"], name) if "rho" in value and name not in ("name", "law") else STATED
+            for name in value
+        }
+        return [row for name, part in value.items() for row in _rows(f"{key}.{name}", part, sources[name])]
     if value and isinstance(value, list) and isinstance(value[0], dict):
         return [row for number, part in enumerate(value, 1) for row in _rows(f"{key}[{number}]", part)]
     if isinstance(value, list) and len(value) > MOST_POINTS:
         return [(key, f"{len(value)} points", source)]
     return [(key, str(value), source)]
-
-
-def _source(table: dict[str, Any], key: str) -> str:
-    """Return where a value of a section comes from; a section with a density is a material."""
-    if "rho" not in table or key in ("name", "law"):
-        return STATED
-    return source_of(table["name"], key)

@@ -9,7 +9,6 @@ from typing import ClassVar, get_args
 from fem_impact.errors import SceneError
 from fem_impact.scene import fields
 from fem_impact.scene.checks import check_choice, check_numbers, check_text
-from fem_impact.scene.parameter import Parameter
 
 MOST_STRAIN = 0.1
 """Elastic strain that no metal bears: a perfect crystal shears at G/(2 pi) (Frenkel 1926), in tension it
@@ -80,7 +79,9 @@ class Material:
     def __post_init__(self) -> None:
         check_text(self.name, "name", 60)
         check_choice(self.law, get_args(fields.FlowLaw), "law")
-        check_numbers(self, _stated(self))
+        # a material that never yields has no strengths
+        absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(self, key) == inf]
+        check_numbers(self, tuple(p for p in fields.MATERIAL if p.key not in absent))
         _check_strengths(self)
         _check_law(self)
 
@@ -88,12 +89,6 @@ class Material:
     def yields(self) -> bool:
         """Return whether the material has a yield stress."""
         return self.yield_stress < inf
-
-
-def _stated(metal: Material) -> tuple[Parameter, ...]:
-    """Return the numbers of a material but for the strengths of one that never yields."""
-    absent = [key for key in ("yield_stress", "ultimate_stress") if getattr(metal, key) == inf]
-    return tuple(p for p in fields.MATERIAL if p.key not in absent)
 
 
 def _check_strengths(metal: Material) -> None:

@@ -9,12 +9,8 @@ from fem_impact.plugins import added
 from rigid import SHAPES, Nose
 
 
+@cache
 def tips() -> Mapping[str, Callable[[float, float], Nose]]:
     """Return what makes the meridian of each tip; what packages add is entered into ``rigid.SHAPES``."""
-    _enter()
-    return SHAPES
-
-
-@cache
-def _enter() -> None:
     SHAPES.update(added("shapes", SHAPES))
+    return SHAPES

@@ -154,8 +154,10 @@ class Scene:
         check_id(self.id, "id")
         check_text(self.title, "title")
         object.__setattr__(self, "effects", check_names(self.effects, "effects"))
-        if self.measured is not None:
-            _check_measured(self.measured)
+        own_tests = isinstance(self.measured, str) and self.measured.endswith(OWN)
+        if self.measured is not None and not own_tests:
+            other = f"the path of a CSV file of your own tests (*{OWN})"
+            check_choice(self.measured, MEASURED_SETS, "measured", other)
         if self.restitution is not None:
             check_numbers(self, fields.TOP)
         _check_approach(self)
@@ -208,11 +210,6 @@ def _check_skin(surface: Surface) -> None:
             key="skin_depth",
             remedy='Leave it out, or use state = "machined" or "custom".',
         )
-
-
-def _check_measured(name: object) -> None:
-    if not (isinstance(name, str) and name.endswith(OWN)):
-        check_choice(name, MEASURED_SETS, "measured", f"the path of a CSV file of your own tests (*{OWN})")
 
 
 def _check_tip_size(scene: Scene) -> None:
