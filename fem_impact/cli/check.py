@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
 
 DRAWINGS = (".png", ".svg")
-LONG = "--long prints every value with its source, flow stresses, and what leaving out each effect changes."
+LONG = "--long prints every value with its source, flow stresses, and each effect with its share of run time."
 
 
 def add_options(parser: CommandParser) -> None:
@@ -49,7 +49,19 @@ def add_options(parser: CommandParser) -> None:
 
 
 def check(options: Options) -> int:
-    """Print what a scene comes to; its full statement, with every value and source, on demand."""
+    """Print what a scene states and calls for, and run nothing; return the exit code.
+
+    That is the projectile's mass, arms and periods, the estimated contact, the effects with the numbers that
+    decide on them, warnings, and size and time of a run with finite elements. ``--long`` prints every value
+    with its source instead, ``--json`` all of it in SI units, ``--drawing`` draws the projectile into a file.
+
+    Raises
+    ------
+    UsageError
+        The drawing is no .png or .svg file.
+    SceneError, ResultError
+        The scene is refused, or the file of its tests cannot be read.
+    """
     from fem_impact.case.case import Case
 
     drawing = _drawing_path(options)
@@ -98,16 +110,24 @@ def _draw(case: Case, path: Path) -> None:
 
 
 def _statement(case: Case) -> dict[str, Any]:
+    """Return the document of ``--json``, from which the texts are made; SI units."""
+    from fem_impact.outcome.groups import EffectChoice
+    from fem_impact.outcome.keys import keys_of
+
     scene = case.scene
     return {
         "scene": to_dict(scene),
         "digest": digest(scene),
         "body": _body_entry(case.bodies),
         "sources": {row[0]: row[2] for row in inputs(scene).rows if row[2] != STATED},
-        "intervals": _intervals(scene),
+        "intervals": {
+            f"{place}.{key}": interval
+            for place, metal in materials_of(scene).items()
+            for key, interval in intervals_of(metal.name).items()
+        },
         "flow_stress_Pa": _flow_stresses(case),
         "defaults": [{"key": d.key, "value": d.value, "source": d.source} for d in DEFAULTS],
-        "effects": [_flat(choice) for choice in case.choices],
+        "effects": [{key.name: key.of(choice) for key in keys_of(EffectChoice)} for choice in case.choices],
         "validity": list(case.outside),
         "warnings": list(case.warnings),
         "size": None if scene.accuracy.target else _size_entry(case.size),
@@ -141,6 +161,8 @@ def _body_entry(bodies: Bodies) -> dict[str, float]:
 def _body_lines(body: dict[str, float]) -> Iterable[str]:
     """Return the projectile's numbers in words."""
     mm = {key: 1e3 * value for key, value in body.items() if key.endswith("_m")}
+    period = body["ovalling_period_s"]
+    ovalling = f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
     return (
         f"mass {body['mass_kg']:.4g} kg, centre {mm['centre_m']:.4g} mm from the tip, moment of inertia "
         f"about it {body['inertia_kg_m2']:.4g} kg m2",
@@ -149,13 +171,9 @@ def _body_lines(body: dict[str, float]) -> Iterable[str]:
         f"arms there: d_c = {mm['d_c_m']:.4g} mm, d_d = {mm['d_d_m']:.4g} mm",
         f"periods: bending T1 = {plain(1e6 * body['bending_period_s'])} us, longitudinal "
         f"{plain(1e6 * body['stretching_period_s'])} us (beam and bar)"
-        f"{_ovalling(body['ovalling_period_s'])}",
+        f"{ovalling}",
         f"gamma {body['gamma']:.4g} m^-0.3815, from the largest diameter, {mm['diameter_m']:.4g} mm",
     )
-
-
-def _ovalling(period: float) -> str:
-    return f", ovalling of the wall {plain(1e6 * period)} us (ring)" if period else ""
 
 
 def _drawing(case: Case) -> list[str]:
@@ -176,21 +194,6 @@ def _size_entry(size: RunSize) -> dict[str, float]:
         "memory_MB": round(size.memory / 1e6),
         "cpu_s": size.time,
         "most_cpu_s": size.most_time,
-    }
-
-
-def _flat(choice: EffectChoice) -> dict[str, Any]:
-    from fem_impact.outcome.keys import keys_of
-
-    return {key.name: key.of(choice) for key in keys_of(type(choice))}
-
-
-def _intervals(scene: Scene) -> dict[str, tuple[float, float]]:
-    """Return the intervals that a shipped material states for its values, by dotted key."""
-    return {
-        f"{place}.{key}": interval
-        for place, metal in materials_of(scene).items()
-        for key, interval in intervals_of(metal.name).items()
     }
 
 
@@ -334,18 +337,13 @@ def _wrapped(sentences: Iterable[str]) -> list[str]:
 
 def _effect_lines(effect: EffectChoice) -> list[str]:
     verdict = f"{'on ' if effect.on else 'off'} {effect.name}{' (forced)' if effect.forced else ''}"
-    clauses = [_decided(effect), _time(effect)]
-    decision = wrapped("; ".join(clause for clause in clauses if clause), " " * 8, "")
-    return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *decision]
+    decision = _decided(effect)
+    if effect.share is not None:
+        share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
+        decision += f"; it takes {share} % of the run time"
+    return [*wrapped(f"{verdict}: {effect.sentence}", "  ", " " * 4), *wrapped(decision, " " * 8, "")]
 
 
 def _decided(effect: EffectChoice) -> str:
     number = "not finite" if effect.number is None else f"{effect.number:.2g}"
     return f"{effect.measure}: {number}, threshold {effect.threshold:g}"
-
-
-def _time(effect: EffectChoice) -> str:
-    if effect.share is None:
-        return ""
-    share = "under 1" if effect.share < 0.005 else f"about {100 * effect.share:.0f}"
-    return f"it takes {share} % of the run time"
