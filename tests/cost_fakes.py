@@ -1,4 +1,4 @@
-"""Runs with a known limit and order, at a known price, so that the ladder can be judged without a solver."""
+"""Runs with a known limit and order, at a known price, so that settings can be judged without a solver."""
 
 from concurrent.futures import Executor, Future
 from math import cos, pi

@@ -1,218 +1,212 @@
-"""Simulate to a stated error: the cheapest setting by the measured costs of the nearest scene, and its runs.
-
-The costs were measured with `fem_impact.answers.cost.measure` and ship with the package
-(`fem_impact.case.measured`).
-"""
+"""Simulate to a wanted error: by a setting measured on a near scene, or on meshes from coarse to fine."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from itertools import chain, islice
-from math import hypot, inf, log, sqrt
 from typing import Any
 
-from fem_impact.answers.cost.judge import Judged, cheapest, worst
-from fem_impact.answers.cost.measure import CostStudy
-from fem_impact.answers.refine.budget import below, side_by_side
-from fem_impact.answers.refine.extrapolate import Placed, mesh_means, stated_limits
-from fem_impact.answers.refine.levels import Mesh, placed
-from fem_impact.answers.refine.loop import ALONE, OwnLadder, achieved_error
+from fem_impact.answers.cost.stored import ChosenSetting, NotMeasured, choose_setting
+from fem_impact.answers.refine.budget import (
+    LONGER,
+    Budget,
+    about_s,
+    below,
+    longest_s,
+    side_by_side,
+    wall_seconds,
+)
+from fem_impact.answers.refine.extrapolate import ALONE, ONE_RUN, MeshRuns, mesh_limits, target_limits
+from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
+from fem_impact.answers.refine.loop import Level, RefinementLoop, Stop, levels_at_offsets
 from fem_impact.answers.refine.quantities import TARGETED
-from fem_impact.answers.refine.times import longest_s, wall_seconds
-from fem_impact.case.case import Case
-from fem_impact.case.measured import summary, yardsticks
-from fem_impact.errors import SceneError
 from fem_impact.files.lock import directory_lock
 from fem_impact.options import RunOptions
+from fem_impact.outcome.keys import Unknown
 from fem_impact.outcome.record import Outcome
 from fem_impact.run import simulate as run
-from fem_impact.scene.material import Material
-from fem_impact.scene.read import read_dict
 from fem_impact.scene.types import Scene
 from fem_impact.tables.text import plain
 
-SUMMARY = "fem-impact/cost-summary/5"
-
-STEEL = ("E", "rho", "yield", "ultimate over yield")
-# largest differences of a scene from one whose cost was measured; of ratios and sizes, of their logarithms
-NEARNESS = {
-    "length over diameter": 0.1,
-    "diameter": 0.3,
-    "tip radius over diameter": 0.1,
-    "angle (rad)": 0.05,
-    "approach of the contact point": 0.25,
-    "slope of that approach": 0.1,
-    "spin over speed": 0.05,
-    "friction f": 0.05,
-    **{f"{value} of the {body}": 0.1 for body in ("rod", "barrier") for value in STEEL},
-}
-# keys of accuracy that change errors or times and must be the same
-SAME = ("element", "yielding_element", "step", "mass_scaling", "fine_zone", "block_margin")
-OTHERWISE = "Leave out --fidelity: finite elements then find their own error. Or"
 BUDGET = 120.0  # s of wall time, unless stated, for a scene whose like was not measured
+NOT_MEASURED = Unknown("no setting measured on a near scene meets the wanted error in this time")
+OVER = "The runs for the wanted error took {:.3g} s, more than the budget of {:.3g} s."
 
 
-class NotMeasured(SceneError):
-    """No stored setting of a near scene meets the target."""
+def achieved_errors(meshes: Sequence[MeshRuns], scatter: float = 1.0) -> dict[str, float]:
+    """Return the relative uncertainty of each quantity that a target is about; a rigid rod has no E_vib.
+
+    ``scatter`` is the share of the scatter over the grid offsets that counts.
+    """
+    limits = target_limits(meshes)
+    rigid = isinstance(meshes[0].runs[0].energy.vibration, Unknown)
+    return {
+        name: (limits[name].uncertainty - (1 - scatter) * limits[name].scatter) / limits[name].scale
+        for name in TARGETED
+        if not (rigid and name == "E_vib")
+    }
+
+
+def achieved_error(meshes: Sequence[MeshRuns], scatter: float = 1.0) -> float:
+    """Return the largest of `achieved_errors`."""
+    return max(achieved_errors(meshes, scatter).values())
 
 
 @dataclass(frozen=True, slots=True)
-class ChosenSetting:
-    """A chosen setting; expected error is relative, expected wall time in s on this machine."""
+class ErrorJudge:
+    """Decides where the finest two meshes reach a relative error, ``target``."""
 
     target: float
-    setting: Judged
-    like: str
-    expected_error: float
-    expected_wall_s: float
 
-    @property
-    def meshes(self) -> list[Mesh]:
-        """Return the meshes to run, the finest first."""
-        return [Mesh(**mesh) for mesh in self.setting.meshes]
+    def failure(self, done: MeshRuns) -> str:
+        """Return why a run is no impact with a known e, empty where all are."""
+        for outcome in done.runs:
+            e, scene = outcome.restitution.edge.e, outcome.provenance.scene_id
+            if not outcome.validity.finished:
+                return f"{scene}: {outcome.validity.stopped_because}"
+            if isinstance(e, Unknown):
+                return f"{scene}: e is not known: {e.reason}"
+        return ""
+
+    def decided(self, done: Sequence[MeshRuns], scatter: float = 1.0) -> bool:
+        """Say whether the finest two meshes reach the target, with a share of their scatter."""
+        return len(done) > 1 and achieved_error(done[-2:], scatter) <= self.target
+
+
+@dataclass(frozen=True, slots=True)
+class RefinementPlan:
+    """Meshes from coarse to fine until the wanted error is reached or the next would take too long.
+
+    Each mesh runs at two grid offsets, and at its other ones where they alone bring the target; or at one
+    where two meshes at two offsets do not fit the budget. Where two meshes do not fit at all, the one run
+    tells no error.
+
+    Attributes
+    ----------
+    target : relative error; budget_s : wall time, s
+    reason : why no stored setting is taken
+    levels : what may run on each mesh, from coarse to fine
+    least_s, pair_s : planned wall times, s, of what runs in any case, and of two meshes at one offset each
+    """
+
+    target: float
+    budget_s: float
+    reason: str
+    levels: tuple[Level, ...]
+    least_s: float
+    pair_s: float
+
+    @classmethod
+    def of(cls, scene: Scene, budget_s: float, workers: int, reason: str) -> RefinementPlan:
+        """Return the plan with all meshes that can be made for a scene."""
+        levels, budget = levels_at_offsets(scene), Budget(budget_s, workers)
+        least_s, pair_s = (budget.forecast_s(*(level.scenes[:1] for level in levels[:n])) for n in (1, 2))
+        return cls(scene.accuracy.target or 0.0, budget_s, reason, levels, least_s, pair_s)
 
     @property
     def sentence(self) -> str:
-        """Say what was chosen and why."""
+        """Say what is done and why, and about what it takes."""
+        begin = (
+            f"accuracy {100 * self.target:.3g} %: {self.reason} The scene is run on meshes of its own, from "
+            f"coarse to fine, until their band is as narrow or {self.budget_s:.3g} s of wall time are used "
+            f"up. Two meshes are planned to take {about_s(self.pair_s)}; the first run corrects that."
+        )
+        if self.pair_s <= self.budget_s:
+            return begin
+        exceeds = ", which exceeds the budget by itself" if self.least_s > self.budget_s else ""
         return (
-            f"accuracy {100 * self.target:.3g} %: {self.setting.name}, expected error "
-            f"{plain(100 * self.expected_error, 2)} % of {' and '.join(TARGETED)}, expected time "
-            f"{plain(self.expected_wall_s, 2)} s (measured on {self.like})"
+            f"{begin} That is more than the budget: the coarsest runs once, about {about_s(self.least_s)}"
+            f"{exceeds}; if no second one fits then, the error stays unknown. For an error give --budget "
+            f'"{about_s(LONGER * self.pair_s)}".'
+        )
+
+    def simulate(self, options: RunOptions, workers: int) -> Outcome:
+        """Return the outcome of the finest mesh at its first offset, with the limits of the finest two.
+
+        Its ``validity`` says what was reached; its files come up from those of the further runs.
+
+        Raises
+        ------
+        RunError, SceneError
+            A run on the coarsest mesh failed.
+        """
+        loop = RefinementLoop(self.levels, Budget(self.budget_s, workers), options)
+        stop = loop.run(ErrorJudge(self.target))
+        if stop.error and not loop.done:
+            raise stop.error
+        outcome = self._stated(loop, stop)
+        if options.out is not None:
+            finest = below(options, loop.finest_run).out
+            for file in finest.glob("*") if finest else ():
+                file.replace(options.out / file.name)
+            outcome.write(options.out / "outcome.json")
+        return outcome
+
+    def _stated(self, loop: RefinementLoop, stop: Stop) -> Outcome:
+        """Return the outcome of a loop with what was reached, and with what more would cost."""
+        meshes, wall_s = loop.done, loop.budget.spent_s
+        finest, size = meshes[-1].runs[0], meshes[-1].runs[0].cost.tip_size
+        edge = "" if isinstance(size, Unknown) else f"{size * 1e3:.3g} mm"
+        over = [OVER.format(wall_s, self.budget_s)] if wall_s > self.budget_s else []
+        missed = f"The wanted {100 * self.target:.3g} % is not reached: {_reached(meshes)}. "
+        advice = [] if stop.because == "decided" else [missed + _advice(loop, stop)]
+        return with_limits(
+            finest,
+            meshes[-2:],
+            accuracy_target=self.target,
+            warnings=(*finest.validity.warnings, *over, *advice),
+            accuracy_setting=f"{len(meshes)} mesh{'es' * (len(meshes) > 1)} of its own, the finest {edge}",
+            expected_error=NOT_MEASURED,
+            expected_wall=max(self.budget_s, self.least_s),
+            achieved_wall=wall_s,
         )
 
 
-def summarise(costs: Mapping[str, CostStudy]) -> dict[str, Any]:
-    """Return the stored form of several scenes' costs, with one date and one machine for all."""
-    shared = ("created_utc", "versions", "machine")
-    whole = {name: cost.to_dict() for name, cost in costs.items()}
-    first = next(iter(whole.values()))
-    scenes = {
-        name: {k: v for k, v in cost.items() if k not in (*shared, "schema")} for name, cost in whole.items()
-    }
-    return {"schema": SUMMARY, **{key: first[key] for key in shared}, "scenes": scenes}
+def with_limits(outcome: Outcome, meshes: Sequence[MeshRuns], **stated: Any) -> Outcome:
+    """Return an outcome with limits, bands and error of meshes in its validity, and what else is stated."""
+    limits, bands = mesh_limits(meshes)
+    error = achieved_error(meshes) if len(meshes) > 1 else ALONE
+    validity = replace(outcome.validity, achieved_error=error, mesh_limit=limits, mesh_band=bands, **stated)
+    return replace(outcome, validity=validity)
 
 
-def _features(case: Case) -> dict[str, float]:
-    scene, pair = case.scene, case.contact
-    rod, impact = scene.projectile, scene.impact
-    speed, radius = hypot(impact.v_n, impact.v_t), sqrt(pair.body.k2)
-    return {
-        "length over diameter": log(rod.length / rod.diameter),
-        "diameter": log(rod.diameter),
-        "tip radius over diameter": log(max(rod.tip_radius / rod.diameter, 1e-3)),
-        "angle (rad)": impact.angle,
-        "approach of the contact point": log(pair.approach),
-        "slope of that approach": pair.sliding / pair.approach,
-        "spin over speed": impact.omega * radius / speed,
-        "friction f": pair.f,
-        **_steel("rod", rod.material, pair.rod_yields),
-        **_steel("barrier", scene.barrier.material, pair.barrier_yields),
-    }
+def _reached(meshes: Sequence[MeshRuns]) -> str:
+    """Return the error of the finest two meshes as text."""
+    if len(meshes) == 1:
+        return ALONE.reason
+    errors = achieved_errors(meshes[-2:])
+    return " and ".join(f"{name} is known to {plain(100 * error, 2)} %" for name, error in errors.items())
 
 
-def _steel(body: str, steel: Material, yields: bool) -> dict[str, float]:
-    """Return the features of a body's material; strengths do not count where it stays elastic."""
-    strong = yields and steel.yields
-    strength = (steel.yield_stress, steel.ultimate_stress / steel.yield_stress) if strong else (1.0, 1.0)
-    values = (steel.E, steel.rho, *strength)
-    return {f"{name} of the {body}": log(value) for name, value in zip(STEEL, values, strict=True)}
-
-
-def _distance(case: Case, other_case: Case) -> tuple[float, str]:
-    """Return the largest difference over the allowed one, and its name; infinite for another model."""
-    scene, other = case.scene, other_case.scene
-    for name, mine, others in (
-        ("tip", scene.projectile.tip, other.projectile.tip),
-        ("effects", case.active, other_case.active),
-        *((name, getattr(scene.accuracy, name), getattr(other.accuracy, name)) for name in SAME),
-        ("max_time", min(case.max_time, other_case.max_time), other_case.max_time),
-    ):
-        if mine != others:
-            return inf, name
-    a, b = _features(case), _features(other_case)
-    gaps = {name: 0.0 if a[name] == b[name] else abs(a[name] - b[name]) / NEARNESS[name] for name in NEARNESS}
-    name = max(gaps, key=lambda key: gaps[key])
-    return gaps[name], name
-
-
-def nearest(scene: Scene) -> tuple[str, float, str]:
-    """Return the nearest scene with a stored cost, its distance (1 is the limit), what differs most."""
-    case = Case(scene)
-    distances = [
-        (*_distance(case, Case(read_dict(cost["scene"], "cost summary"))), name)
-        for name, cost in summary()["scenes"].items()
-    ]
-    distance, differs, name = min(distances)
-    return name, distance, differs
-
-
-def choose_setting(scene: Scene, fidelity: str | None = None, workers: int = 1) -> ChosenSetting:
-    """Return the cheapest stored setting that meets ``accuracy.target`` for this scene.
-
-    Its expected time is that of one or two ``workers``, runs at a time.
-
-    Raises
-    ------
-    NotMeasured
-        No stored cost is near enough, or none of its settings meets the target.
-    SceneError
-        The fidelity does not know the quantities of a target.
-    """
-    target = scene.accuracy.target
-    if target is None:
-        raise SceneError("gives no target.", key="accuracy", remedy='Write accuracy = "5 %".')
-    name, distance, differs = nearest(scene)
-    if distance > 1:
-        raise _too_far(scene, name, distance, differs)
-    measured = [Judged(**setting) for setting in summary()["scenes"][name]["settings"]]
-    settings = [one for one in measured if fidelity in (None, one.fidelity)]
-    best = cheapest(settings, TARGETED, target)
-    if best is None:
-        raise _not_met(scene, name, settings)
-    machine = summary()["machine"]["csr_ns_per_element_step"]
-    seconds = best.cpu_s if workers == 1 else best.two_cores_s
-    pace = yardsticks()["csr_ns_per_element_step"] / machine
-    return ChosenSetting(target, best, name, worst(best, TARGETED), seconds * pace)
-
-
-def _too_far(scene: Scene, name: str, distance: float, differs: str) -> NotMeasured:
-    how = "differs in" if distance == inf else f"differs by {distance:.2g} times what is allowed in"
-    return NotMeasured(
-        f"cannot be judged: the nearest scene with a measured cost, {name}, {how} {differs}.",
-        key="accuracy",
-        value=_written(scene),
-        remedy=f"{OTHERWISE} state no wanted error.",
+def _advice(loop: RefinementLoop, stop: Stop) -> str:
+    """Say why no other mesh ran, what more would cost, and the budget that holds it."""
+    if stop.error:
+        return f"Further runs gave no result: {stop.error}"
+    ran, budget = len(loop.done), loop.budget
+    if ran > 1 and not loop.at_few:
+        time = budget.forecast_s(*(level.scenes[:FEW_OFFSETS] for level in loop.levels[: ran + 1]))
+        return (
+            f"Each mesh ran at one place of the barrier's grid, which makes the band {ONE_RUN:g} times "
+            f"as wide. These meshes{' and one finer' * bool(loop.finer)} at two places take about "
+            f'{about_s(time)}: for that give --budget "{about_s(LONGER * time)}".'
+        )
+    if not loop.finer:
+        return "No finer mesh of this family can be made."
+    time = budget.forecast_s(loop.finer[0].scenes[: FEW_OFFSETS if ran > 1 else 1])
+    return (
+        f"One mesh finer takes about {about_s(time)} more: for that give --budget "
+        f'"{about_s(budget.spent_s + LONGER * time)}".'
     )
-
-
-def _not_met(scene: Scene, name: str, settings: list[Judged]) -> SceneError:
-    quantities, whole = " and ".join(TARGETED), [one for one in settings if one.kind != "effect"]
-    best = min(whole, key=lambda one: worst(one, TARGETED))
-    error = worst(best, TARGETED)
-    if error == inf:
-        problem = f"cannot be met: the {best.fidelity} fidelity does not know {quantities}."
-        return SceneError(problem, key="accuracy", value=_written(scene), remedy="Leave out --fidelity.")
-    return NotMeasured(
-        f"cannot be met: on {name}, the best measured setting ({best.name}, {plain(best.cpu_s, 2)} s of CPU) "
-        f"is uncertain by {plain(100 * error, 2)} % in {quantities}.",
-        key="accuracy",
-        value=_written(scene),
-        remedy=f'{OTHERWISE} allow "{100 * error + 0.5:.0f} %".',
-    )
-
-
-def _written(scene: Scene) -> str:
-    return f"{100 * (scene.accuracy.target or 0):.3g} %"
 
 
 def settle(
     scene: Scene, fidelity: str | None = None, workers: int = 1, budget_s: float | None = None
-) -> ChosenSetting | OwnLadder:
-    """Return the stored setting that meets the scene's target, or a ladder of its own where there is none.
+) -> ChosenSetting | RefinementPlan:
+    """Return the stored setting that meets the scene's target, or meshes of its own where there is none.
 
-    A stored setting that takes longer than a stated ``budget_s``, s of wall time, gives way to such a ladder.
+    A stored setting that takes longer than a stated ``budget_s``, s of wall time, gives way to such meshes.
 
     Raises
     ------
@@ -229,7 +223,7 @@ def settle(
         if fidelity not in (None, "solid"):
             raise
         reason = missing.problem
-    return OwnLadder.of(scene, BUDGET if budget_s is None else budget_s, workers, reason)
+    return RefinementPlan.of(scene, BUDGET if budget_s is None else budget_s, workers, reason)
 
 
 def simulate(
@@ -238,12 +232,12 @@ def simulate(
     options: RunOptions = RunOptions(),
     workers: int = 1,
     budget_s: float | None = None,
-    chosen: ChosenSetting | OwnLadder | None = None,
+    chosen: ChosenSetting | RefinementPlan | None = None,
 ) -> Outcome:
     """Compute an impact: on the mesh that its scene gives, or as measured costs choose for a stated error.
 
-    A chosen setting runs each mesh at its places of the barrier's grid. The result is the outcome of the
-    finest mesh at the first place, with the limits of several meshes, or the means of one, in its
+    A chosen setting runs each mesh at its offsets of the barrier's grid. The result is the outcome of the
+    finest mesh at the first offset, with the limits of several meshes, or the means of one, in its
     ``validity``. Files of the other runs stand below ``options.out``. With two or more ``workers`` a second
     process does half of the runs. Where no stored setting serves, meshes of the scene's own are run for about
     ``budget_s``, s (`BUDGET` unless stated), and the outcome says what they reached. ``chosen`` is what
@@ -258,45 +252,31 @@ def simulate(
         return run.simulate(scene, fidelity or "solid", options)
     chosen = chosen or settle(scene, fidelity, workers, budget_s)
     with nullcontext() if options.out is None else directory_lock(options.out):
-        if isinstance(chosen, OwnLadder):
+        if isinstance(chosen, RefinementPlan):
             return chosen.simulate(options, workers)
-        meshes, wall_s = _runs(scene, chosen, options, workers)
-        outcome = _stated(chosen, wall_s, meshes)
+        outcome = _simulate_chosen(scene, chosen, options, workers)
         if options.out is not None:
             outcome.write(options.out / "outcome.json")  # once more: it states its accuracy now
     return outcome
 
 
-def _runs(
-    scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int
-) -> tuple[list[Placed], float]:
-    """Return the runs on each mesh of a chosen setting, or one of a reduced model, and their wall time, s.
+def _simulate_chosen(scene: Scene, chosen: ChosenSetting, options: RunOptions, workers: int) -> Outcome:
+    """Return the first outcome of a chosen setting with expected and achieved error and time in its validity.
 
     The first run writes to ``options.out`` itself and reports its progress.
     """
     alone = [replace(scene, accuracy=replace(scene.accuracy, target=None))]  # a reduced model has no mesh
-    groups = [placed(scene, mesh, chosen.setting.places) for mesh in chosen.meshes] or [alone]
+    groups = [at_offsets(scene, mesh, chosen.setting.places) for mesh in chosen.meshes] or [alone]
     scenes = list(chain.from_iterable(groups))
-    own = [options, *(below(options, at) for at in range(1, len(scenes)))]
-    done = side_by_side(scenes, chosen.setting.fidelity, own, workers)
-    runs, wall_s = iter(done), longest_s([wall_seconds(run) for run in done], workers)
-    return [list(islice(runs, len(group))) for group in groups], wall_s
-
-
-def _stated(chosen: ChosenSetting, wall_s: float, meshes: Sequence[Placed]) -> Outcome:
-    """Return the first outcome with target, expected and achieved error and time in its validity."""
-    first, several = meshes[0][0], len(meshes) > 1
-    means = mesh_means(meshes[0]) if chosen.meshes else ALONE
-    limits, bands = stated_limits(meshes) if several else (means, ALONE)
-    stated = replace(
-        first.validity,
+    of_each = [options, *(below(options, at) for at in range(1, len(scenes)))]
+    done = side_by_side(scenes, chosen.setting.fidelity, of_each, workers)
+    runs = iter(done)
+    return with_limits(
+        done[0],
+        [MeshRuns.of(islice(runs, len(group))) for group in groups],
         accuracy_target=chosen.target,
         accuracy_setting=chosen.setting.name,
         expected_error=chosen.expected_error,
         expected_wall=chosen.expected_wall_s,
-        achieved_wall=wall_s,
-        achieved_error=achieved_error(meshes) if several else ALONE,
-        mesh_limit=limits,
-        mesh_band=bands,
+        achieved_wall=longest_s([wall_seconds(outcome) for outcome in done], workers),
     )
-    return replace(first, validity=stated)

@@ -19,7 +19,7 @@ from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
     from fem_impact.answers.cost.measure import CostStudy
-    from fem_impact.answers.refine.levels import Mesh
+    from fem_impact.answers.refine.levels import MeshLevel
     from fem_impact.answers.report import StudyReport
     from fem_impact.scene.types import Scene
 
@@ -108,14 +108,14 @@ def _share(text: str) -> float:
         raise UsageError(error.problem, key="--target", value=text, remedy=error.remedy) from None
 
 
-def _meshes(scene: Scene, finest: str) -> list[Mesh]:
+def _meshes(scene: Scene, finest: str) -> list[MeshLevel]:
     """Return the meshes whose tip elements are at least ``finest`` in size, without it the usual three."""
-    from fem_impact.answers.refine.levels import family, rungs
+    from fem_impact.answers.refine.levels import family, mesh_levels
     from fem_impact.scene.units import option_quantity
 
     if not finest:
         return list(family(scene))
-    least, meshes = option_quantity(finest, "length", "--finest"), rungs(scene)
+    least, meshes = option_quantity(finest, "length", "--finest"), mesh_levels(scene)
     sizes = [mesh.sizes(scene)[0] for mesh in meshes]
     if least > sizes[:2][-1]:
         raise UsageError(
@@ -128,7 +128,7 @@ def _meshes(scene: Scene, finest: str) -> list[Mesh]:
 
 
 def _measured(
-    scene: Scene, out: Path, options: Options, meshes: list[Mesh], budget: float = inf
+    scene: Scene, out: Path, options: Options, meshes: list[MeshLevel], budget: float = inf
 ) -> CostStudy:
     """Run all settings, or with ``--stored`` read those that have run."""
     from fem_impact.answers.cost.measure import judge_stored, measure
@@ -139,19 +139,19 @@ def _measured(
         return measure(scene, out, meter, meshes, budget_s=budget)
 
 
-def _left_out(scene: Scene, meshes: list[Mesh], study: CostStudy, budget: float | None) -> list[str]:
+def _left_out(scene: Scene, meshes: list[MeshLevel], study: CostStudy, budget: float | None) -> list[str]:
     """Return a sentence that names the settings that the budget left out."""
-    from fem_impact.answers.refine.levels import ladder
+    from fem_impact.answers.cost.settings import settings_of
 
     done = {one.name for one in study.settings} | {failure["setting"] for failure in study.failures}
-    missing = [setting.name for setting in ladder(scene, meshes) if setting.name not in done]
+    missing = [setting.name for setting in settings_of(scene, meshes) if setting.name not in done]
     return [f"Not run within {budget:.3g} s: {', '.join(missing)}."] if budget and missing else []
 
 
 def _paper(options: Options, names: tuple[str, ...]) -> int:
     """Measure all sets of the paper, one store and page each; write summary.json and a page over all."""
+    from fem_impact.answers.cost.stored import summarise
     from fem_impact.answers.report import Request, publish
-    from fem_impact.answers.wanted_error import summarise
     from fem_impact.evidence.studies.cost_report import paper_report, scene_report
     from fem_impact.files.atomic import write_text
     from fem_impact.files.lock import directory_lock

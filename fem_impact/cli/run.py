@@ -29,8 +29,8 @@ from fem_impact.tables.table import Table
 from fem_impact.tables.text import wrapped
 
 if TYPE_CHECKING:
-    from fem_impact.answers.refine.loop import OwnLadder
-    from fem_impact.answers.wanted_error import ChosenSetting
+    from fem_impact.answers.cost.stored import ChosenSetting
+    from fem_impact.answers.wanted_error import RefinementPlan
     from fem_impact.outcome.groups import Energy
 
 
@@ -146,7 +146,7 @@ def _say_screening(scene: Scene, options: Options) -> None:
     sys.stdout.write("\n".join(lines) + "\n")
 
 
-def _setting(scene: Scene, options: Options) -> ChosenSetting | OwnLadder | None:
+def _setting(scene: Scene, options: Options) -> ChosenSetting | RefinementPlan | None:
     """Return what is run for the target error of a scene; None where the scene gives a mesh."""
     budget = stated_budget(options)
     if scene.accuracy.target is None:

@@ -5,12 +5,14 @@ from cost_fakes import Here, run
 
 import fem_impact.run.simulate
 from fem_impact.answers import wanted_error as to_target
+from fem_impact.answers.cost import stored
 from fem_impact.answers.cost.judge import Judged, cpu_seconds
 from fem_impact.answers.cost.measure import measure
+from fem_impact.answers.cost.stored import NEARNESS, SUMMARY, choose_setting, nearest, summarise
 from fem_impact.answers.refine.extrapolate import pair_limit
-from fem_impact.answers.refine.levels import FEW, placed
-from fem_impact.answers.refine.loop import OwnLadder
-from fem_impact.answers.wanted_error import NEARNESS, choose_setting, nearest, summarise
+from fem_impact.answers.refine.levels import FEW_OFFSETS, at_offsets
+from fem_impact.answers.wanted_error import RefinementPlan
+from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
 from fem_impact.errors import SceneError
 from fem_impact.options import RunOptions
@@ -27,8 +29,8 @@ def costs(monkeypatch, tmp_path):
     """Stored costs of t5b whose limit, order and times are known, measured on half as quick a machine."""
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", run)
     held = summarise({"t5b": measure(load("t5b"), tmp_path, NullMeter(), executor=Here())})
-    held["machine"] = {"csr_ns_per_element_step": 2 * to_target.yardsticks()["csr_ns_per_element_step"]}
-    monkeypatch.setattr(to_target, "summary", lambda: held)
+    held["machine"] = {"csr_ns_per_element_step": 2 * stored.yardsticks()["csr_ns_per_element_step"]}
+    monkeypatch.setattr(stored, "summary", lambda: held)
 
 
 def asking(target, scene="t5b", **changes):
@@ -132,7 +134,7 @@ def test_a_stored_setting_that_takes_longer_than_the_budget_gives_way_to_a_ladde
     enough = choose_setting(scene).expected_wall_s
     assert to_target.settle(scene, budget_s=enough) == choose_setting(scene) == to_target.settle(scene)
     chosen = to_target.settle(scene, budget_s=0.99 * enough)
-    assert isinstance(chosen, OwnLadder) and chosen.budget_s == 0.99 * enough
+    assert isinstance(chosen, RefinementPlan) and chosen.budget_s == 0.99 * enough
     assert "mm extrapolated, 2 places, measured on t5b, takes about" in chosen.sentence
 
 
@@ -154,7 +156,7 @@ def test_two_meshes_state_what_they_achieved(costs, tmp_path):
     assert outcome.validity.expected_error == chosen.expected_error
     assert outcome.validity.achieved_wall == pytest.approx(chosen.setting.wall_s)
     assert 0 < outcome.validity.achieved_error < 1
-    scale = to_target.summary()["scenes"]["t5b"]["quantities"]["e"]["scale"]
+    scale = stored.summary()["scenes"]["t5b"]["quantities"]["e"]["scale"]
     assert outcome.validity.mesh_band["e_edge"] == pytest.approx(chosen.setting.band["e"] * scale)
     assert outcome.validity.mesh_limit["e_edge"] == pytest.approx(chosen.setting.value["e"])
     assert (tmp_path / "outcome.json").exists()
@@ -183,7 +185,7 @@ def test_a_run_on_one_mesh_refuses_a_target():
 
 def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
     held = summary()
-    assert held["schema"] == to_target.SUMMARY
+    assert held["schema"] == SUMMARY
     assert held["created_utc"] and held["versions"]["numpy"]
     assert held["machine"]["triad_GB_per_s"] > 0
     assert held["scenes"]
@@ -195,7 +197,7 @@ def test_the_shipped_summary_is_dated_and_about_shipped_scenes():
         kinds = {setting["kind"] for setting in cost["settings"]}
         assert {"rigid", "modal", "mesh"} <= kinds
         assert ("extrapolated" in kinds) == (not cost["failures"])
-    assert set(NEARNESS) == set(to_target._features(load("t2")))
+    assert set(NEARNESS) == set(stored._features(Case(load("t2"))))
 
 
 def test_a_target_chooses_the_place_of_the_grid_too():
@@ -215,7 +217,9 @@ def test_every_run_of_the_setting_is_kept_and_counts(costs, tmp_path, monkeypatc
     monkeypatch.setattr(fem_impact.run.simulate, "simulate", kept)
     outcome = to_target.simulate(asking(0.06), options=RunOptions(out=tmp_path))
     assert folders == [tmp_path, *(tmp_path / f"run-{at}" for at in range(1, 4))]
-    fine, coarse = (placed(load("t5b"), mesh, FEW) for mesh in choose_setting(asking(0.06)).meshes)
+    fine, coarse = (
+        at_offsets(load("t5b"), mesh, FEW_OFFSETS) for mesh in choose_setting(asking(0.06)).meshes
+    )
     assert outcome.provenance.scene_digest == digest(fine[0])
     every = [[run(scene).restitution.edge.e for scene in scenes] for scenes in (fine, coarse)]
     means = [sum(values) / len(values) for values in every]
@@ -240,9 +244,9 @@ def test_the_expected_time_is_that_of_the_runs_that_are_done(costs, monkeypatch,
 
 
 def test_one_mesh_states_its_mean_and_no_error(costs, monkeypatch):
-    stored = to_target.summary()["scenes"]["t5b"]["settings"]
-    single = next(setting for setting in stored if setting["name"] == "solid 0.297 mm")
-    chosen = to_target.ChosenSetting(0.2, Judged(**single), "t5b", 0.15, 1.0)
+    settings = stored.summary()["scenes"]["t5b"]["settings"]
+    single = next(setting for setting in settings if setting["name"] == "solid 0.297 mm")
+    chosen = stored.ChosenSetting(0.2, Judged(**single), "t5b", 0.15, 1.0)
     monkeypatch.setattr(to_target, "choose_setting", lambda *_: chosen)
     outcome = to_target.simulate(asking(0.2))
     assert isinstance(outcome.validity.achieved_error, Unknown)

@@ -10,8 +10,8 @@ from math import exp, log
 from pathlib import Path
 from statistics import fmean
 
-from fem_impact.answers.refine.levels import RUNGS, placed
-from fem_impact.answers.refine.times import cpu_seconds, pace, planned_s
+from fem_impact.answers.refine.budget import calibration_factor, cpu_seconds, planned_s
+from fem_impact.answers.refine.levels import MESH_LEVELS, at_offsets
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
 from fem_impact.scene.types import MEASURED_SETS
@@ -30,8 +30,8 @@ def main(folder: Path) -> None:
             found = base.execute("SELECT name, outcome FROM answers WHERE outcome IS NOT NULL")
             stored = {key: Outcome.from_json(text) for key, text in found}
         last = None
-        for mesh in RUNGS:
-            scenes = placed(load(name), mesh)
+        for mesh in MESH_LEVELS:
+            scenes = at_offsets(load(name), mesh)
             size = f"{scenes[0].id}: solid {mesh.sizes(scenes[0])[0] * 1e3:.3g} mm, grid at "
             runs = [
                 timed(stored[key])
@@ -47,7 +47,7 @@ def main(folder: Path) -> None:
                 ratios.append(took / (last * planned))
                 line += f", forecast {last * planned:.1f} s"
             print(line)
-            last = pace(scenes, runs, 1)
+            last = calibration_factor(scenes, runs, 1)
     spread = exp(fmean(log(ratio) ** 2 for ratio in ratios) ** 0.5)
     print(f"took over forecast: {min(ratios):.2f} to {max(ratios):.2f}, root mean square factor {spread:.2f}")
 

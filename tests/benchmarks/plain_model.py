@@ -19,8 +19,8 @@ import sys
 from math import exp, log
 from pathlib import Path
 
-from fem_impact.answers.refine.extrapolate import truths
-from fem_impact.answers.refine.levels import FAMILY, FEW, PLACES, Mesh
+from fem_impact.answers.refine.extrapolate import MeshRuns, target_limits
+from fem_impact.answers.refine.levels import FAMILY, FEW_OFFSETS, GRID_OFFSETS, MeshLevel
 from fem_impact.answers.refine.quantities import QUANTITIES, TARGETED
 from fem_impact.outcome.record import Outcome
 from fem_impact.scene.shipped import load
@@ -29,7 +29,7 @@ PRESENT = Path(__file__).parents[2]
 SETS = ("t5b", "t3-machined", "t6-17")
 # what the plain model has: its block always radiates, and nothing hardens with the rate
 EFFECTS = "vibration, friction, rod-plasticity, barrier-elastoplastic, gravity, large-rotation, radiation"
-COMPARED = (Mesh(-1), Mesh(0))
+COMPARED = (MeshLevel(-1), MeshLevel(0))
 NAMED = {quantity.name: quantity for quantity in QUANTITIES}
 
 
@@ -67,20 +67,20 @@ def at_equal_error(plain, present):
     return f"{exp((1 - share) * log(long) + share * log(short)) / time:.3g}"
 
 
-def off(run, quantity, truth):
+def off(run, quantity, limit):
     """Return the distance from the limit over the scale; ``run`` are flat keys, of an older version too."""
-    return abs(sum(run[key.name] for key in NAMED[quantity].keys) - truth.value) / truth.scale
+    return abs(sum(run[key.name] for key in NAMED[quantity].keys) - limit.value) / limit.scale
 
 
 def told(name, plain, out):
     """Return the lines of one set."""
-    placed = [[outcome(PRESENT, name, mesh, out, place) for place in PLACES[:FEW]] for mesh in FAMILY]
-    truth = truths([[Outcome.read(path) for path in paths] for paths in placed])
+    paths = [[outcome(PRESENT, name, mesh, out, at) for at in GRID_OFFSETS[:FEW_OFFSETS]] for mesh in FAMILY]
+    limits = target_limits([MeshRuns.of(map(Outcome.read, of_mesh)) for of_mesh in paths])
     files = {model: [outcome(model, name, mesh, out) for mesh in COMPARED] for model in (plain, PRESENT)}
     runs = {model: [json.loads(path.read_text("utf-8")) for path in paths] for model, paths in files.items()}
     lines = []
     for quantity in TARGETED:
-        limit = truth[quantity]
+        limit = limits[quantity]
         points = {model: [(off(run, quantity, limit), run["cpu_s"]) for run in runs[model]] for model in runs}
         pairs = list(zip(points[plain], points[PRESENT], strict=True))
         cells = [f"{100 * found:.1f} %, {cpu:.1f} s" for pair in pairs for found, cpu in pair]

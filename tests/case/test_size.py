@@ -5,7 +5,7 @@ from math import exp, log
 import pytest
 from benchmarks.own_mesh_memory import half_box
 
-from fem_impact.answers.refine.levels import Mesh, placed
+from fem_impact.answers.refine.levels import MeshLevel, at_offsets
 from fem_impact.case import size as sizes
 from fem_impact.case.case import Case
 from fem_impact.case.measured import summary
@@ -63,7 +63,7 @@ def stored_runs():
 
 @pytest.mark.parametrize("data, setting", list(stored_runs()))
 def test_memory_and_time_of_the_stored_runs(data, setting):
-    places = placed(read_dict(data), Mesh(**setting["meshes"][0]))
+    places = at_offsets(read_dict(data), MeshLevel(**setting["meshes"][0]))
     size = Case.of(places[0]).size
     steps = setting["element_steps"] / len(places) / (size.rod + size.barrier)
     assert off(size.steps, steps) < 2.0

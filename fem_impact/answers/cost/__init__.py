@@ -1,1 +1,1 @@
-"""What accuracy costs in time: the ladder of settings, its errors, and the choice of a setting."""
+"""What accuracy costs in time: the settings, their errors, and the choice of a setting."""

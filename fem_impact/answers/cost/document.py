@@ -55,7 +55,7 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
     The first starts with limit and order of each quantity; an asterisk marks the Pareto front of that
     quantity. Tables without rows are left out.
     """
-    listed = [name for name in NAMES if name in names and name in cost.truth]
+    listed = [name for name in NAMES if name in names and name in cost.limits]
     columns = (*COST_COLUMNS, *map(Column, listed))
     judged = [_line(one, one.error, listed, one.front) for one in cost.settings if one.kind != "effect"]
     tables = (
@@ -91,13 +91,21 @@ def cost_tables(cost: CostStudy, names: Sequence[str] = NAMES) -> list[tuple[str
 def _limit_rows(cost: CostStudy, names: Sequence[str]) -> list[tuple[Cell, ...]]:
     """Return the rows above the settings: unit, limit, its uncertainty and order of each quantity."""
     units = {quantity.name: quantity.unit for quantity in QUANTITIES}
-    truth = [cost.truth[name] for name in names]
+    limits = [cost.limits[name] for name in names]
     costs = ("",) * (len(COST_COLUMNS) - 1)
     return [
         ("unit", *costs, *(units[name] for name in names)),
-        ("limit", *costs, *(t.value for t in truth)),
-        ("uncertainty of the limit, %", *costs, *(f"{100 * t.uncertainty / t.scale:.2g}" for t in truth)),
-        ("observed order", *costs, *(None if t.order is None else f"{t.order:.2f}" for t in truth)),
+        ("limit", *costs, *(each.value for each in limits)),
+        (
+            "uncertainty of the limit, %",
+            *costs,
+            *(f"{100 * each.uncertainty / each.scale:.2g}" for each in limits),
+        ),
+        (
+            "observed order",
+            *costs,
+            *(None if each.order is None else f"{each.order:.2f}" for each in limits),
+        ),
     ]
 
 

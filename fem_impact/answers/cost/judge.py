@@ -8,10 +8,15 @@ from math import inf
 from statistics import fmean
 from typing import Any
 
-from fem_impact.answers.refine.extrapolate import Placed, Truth, mean, standard_error, truths, values_of
-from fem_impact.answers.refine.levels import ONE_PLACE, Setting
+from fem_impact.answers.cost.settings import ONE_OFFSET, Setting
+from fem_impact.answers.refine.budget import cpu_seconds, longest_s, wall_seconds
+from fem_impact.answers.refine.extrapolate import (
+    ExtrapolatedValue,
+    MeshRuns,
+    standard_error,
+    target_limits,
+)
 from fem_impact.answers.refine.quantities import QUANTITIES
-from fem_impact.answers.refine.times import cpu_seconds, longest_s, wall_seconds
 from fem_impact.outcome.keys import or_none
 from fem_impact.tables.text import plain
 
@@ -27,7 +32,7 @@ class Judged:
 
     Attributes
     ----------
-    value : by quantity, the mean over the places of the barrier's grid; of several meshes their limit
+    value : by quantity, the mean over the grid offsets; of several meshes their limit
     error : by quantity, over its scale: distance from the limit plus the uncertainty of the limit, of
         several meshes their band where that is less; where an effect is left out, the change by that on the
         same mesh
@@ -40,7 +45,7 @@ class Judged:
     element_steps : elements times time steps, None for a reduced model
     peak_memory_MB : of the largest run
     meshes : of a solid setting, the finest first
-    places : most places of the barrier's grid that a mesh of it is run at
+    places : most grid offsets that a mesh of it is run at
     front : names of the quantities on whose Pareto front the setting lies
     """
 
@@ -64,10 +69,10 @@ class Judged:
 
 def judge(
     setting: Setting,
-    runs: Sequence[Placed],
-    truth: Mapping[str, Truth],
-    finest: Mapping[str, Truth],
-    whole: Placed | None = None,
+    runs: Sequence[MeshRuns],
+    limits: Mapping[str, ExtrapolatedValue],
+    finest: Mapping[str, ExtrapolatedValue],
+    whole: MeshRuns | None = None,
 ) -> Judged:
     """Return a setting with its errors.
 
@@ -76,46 +81,50 @@ def judge(
     setting leaves an effect out, ``whole`` are the runs with all effects on the same mesh, which are the
     reference then.
     """
+    quantities = {q.name: q.keys for q in QUANTITIES}
     if whole is not None:
-        truth = {
-            q.name: replace(truth[q.name], value=fmean(values_of(q, whole)), uncertainty=0.0)
-            for q in QUANTITIES
-            if q.name in truth
+        limits = {
+            name: replace(limit, value=fmean(whole.values(quantities[name])), uncertainty=0.0)
+            for name, limit in limits.items()
         }
-    flat = [run for placed in runs for run in placed]
-    own = {
-        name: replace(one, uncertainty=max(one.uncertainty, abs(one.value - finest[name].value)))
-        for name, one in (truths(runs) if len(runs) > 1 else {}).items()
+    outcomes = [outcome for mesh in runs for outcome in mesh.runs]
+    bands = {
+        name: replace(limit, uncertainty=max(limit.uncertainty, abs(limit.value - finest[name].value)))
+        for name, limit in (target_limits(runs) if len(runs) > 1 else {}).items()
     }
-    value = {q.name: own[q.name].value if q.name in own else mean(q, runs[0]) for q in QUANTITIES}
-    scatter = {name: one.scatter for name, one in own.items()}
+    value = {
+        name: bands[name].value if name in bands else runs[0].mean(keys) for name, keys in quantities.items()
+    }
+    scatter = {name: limit.scatter for name, limit in bands.items()}
     if len(runs) == 1 and setting.meshes and whole is None:
-        scatter = {q.name: standard_error(values_of(q, runs[0])) for q in QUANTITIES if q.name in truth}
+        scatter = {name: standard_error(runs[0].values(quantities[name])) for name in limits}
     return Judged(
         name=setting.name,
         kind=setting.kind,
         fidelity=setting.fidelity,
         meshes=[asdict(mesh) for mesh in setting.meshes],
         places=setting.places,
-        tip_size_m=or_none(flat[0].cost.tip_size),
+        tip_size_m=or_none(outcomes[0].cost.tip_size),
         value=value,
-        error={name: _error(number, truth.get(name), own.get(name)) for name, number in value.items()},
-        scatter={name: number / truth[name].scale for name, number in scatter.items()},
-        band={name: one.uncertainty / truth[name].scale for name, one in own.items()},
-        wall_s=sum(wall_seconds(run) for run in flat),
-        cpu_s=sum(cpu_seconds(run) for run in flat),
-        two_cores_s=longest_s([cpu_seconds(run) for run in flat], 2),
-        element_steps=sum(or_none(run.cost.element_steps) or 0 for run in flat) or None,
-        peak_memory_MB=max((or_none(run.cost.peak_memory) or 0.0 for run in flat), default=0.0) or None,
+        error={name: _error(number, limits.get(name), bands.get(name)) for name, number in value.items()},
+        scatter={name: number / limits[name].scale for name, number in scatter.items()},
+        band={name: limit.uncertainty / limits[name].scale for name, limit in bands.items()},
+        wall_s=sum(map(wall_seconds, outcomes)),
+        cpu_s=sum(map(cpu_seconds, outcomes)),
+        two_cores_s=longest_s([cpu_seconds(outcome) for outcome in outcomes], 2),
+        element_steps=sum(or_none(outcome.cost.element_steps) or 0 for outcome in outcomes) or None,
+        peak_memory_MB=max((or_none(o.cost.peak_memory) or 0.0 for o in outcomes), default=0.0) or None,
     )
 
 
-def _error(value: float | None, truth: Truth | None, own: Truth | None) -> float | None:
+def _error(
+    value: float | None, limit: ExtrapolatedValue | None, band: ExtrapolatedValue | None
+) -> float | None:
     """Return a bound of the error over the scale, by the limit of all meshes or its own band if less."""
-    if value is None or truth is None:
+    if value is None or limit is None:
         return None
-    bound = abs(value - truth.value) + truth.uncertainty
-    return (min(bound, own.uncertainty) if own else bound) / truth.scale
+    bound = abs(value - limit.value) + limit.uncertainty
+    return (min(bound, band.uncertainty) if band else bound) / limit.scale
 
 
 def worst(judged: Judged, names: Iterable[str]) -> float:
@@ -127,13 +136,13 @@ def worst(judged: Judged, names: Iterable[str]) -> float:
 def front(judged: Sequence[Judged], names: Sequence[str]) -> list[Judged]:
     """Return the settings that no other beats in both time and worst error, in order of time.
 
-    Settings that run at one place of the barrier's grid are not compared (`ONE_PLACE`): their error may be
+    Settings that run at one grid offset are not compared (`ONE_OFFSET`): their error may be
     small by chance, and it is none against the limit where an effect is left out. Those that are compared
-    cost what they were measured to cost: a choice runs their meshes at the same places.
+    cost what they were measured to cost: a choice runs their meshes at the same offsets.
     """
     optimal: list[Judged] = []
     best = inf
-    whole = [one for one in judged if one.kind not in ONE_PLACE]
+    whole = [one for one in judged if one.kind not in ONE_OFFSET]
     for one in sorted(whole, key=lambda j: (j.cpu_s, worst(j, names))):
         if worst(one, names) < best:
             best = worst(one, names)
@@ -198,7 +207,7 @@ def _sentence_of(setting: Judged, names: Sequence[str]) -> str:
 def best_group(settings: Sequence[Judged], names: Sequence[str], target: float) -> Judged | None:
     """Return the several meshes whose bands meet the target most quickly on two cores.
 
-    If none do, the finest two at most places: the smallest band may be small by chance.
+    If none do, the finest two at most offsets: the smallest band may be small by chance.
     """
     groups = [one for one in settings if one.band]
     good = [one for one in groups if all(one.band[name] <= target for name in names)]

@@ -1,4 +1,4 @@
-"""Measurement of the cost of one scene: its ladder of settings is run, stored and judged."""
+"""Measurement of the cost of one scene: its settings are run, stored and judged."""
 
 from __future__ import annotations
 
@@ -11,10 +11,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.answers.cost.judge import Judged, front, judge
-from fem_impact.answers.refine.extrapolate import Placed, Truth, truths
-from fem_impact.answers.refine.levels import Mesh, Setting, family, ladder, on_mesh
+from fem_impact.answers.cost.settings import Setting, settings_of
+from fem_impact.answers.refine.budget import planned_s
+from fem_impact.answers.refine.extrapolate import ExtrapolatedValue, MeshRuns, target_limits
+from fem_impact.answers.refine.levels import MeshLevel, family, on_mesh
 from fem_impact.answers.refine.quantities import QUANTITIES
-from fem_impact.case.case import Case
 from fem_impact.errors import RunError, UsageError
 from fem_impact.fem.kernels import compiled_before
 from fem_impact.files.lock import directory_lock
@@ -42,14 +43,14 @@ class CostStudy:
     Attributes
     ----------
     scene : Scene
-    truth : limit of each quantity that the finite-element runs give
+    limits : limit of each quantity that the finite-element runs give
     settings : judged, in order of CPU time
     failures : settings without a result, with the reason
     runs : their results by the name of the run
     """
 
     scene: Scene
-    truth: dict[str, Truth]
+    limits: dict[str, ExtrapolatedValue]
     settings: list[Judged]
     failures: list[dict[str, str]]
     runs: JobResults
@@ -60,14 +61,14 @@ class CostStudy:
         return {
             quantity.name: {
                 "unit": quantity.unit,
-                "limit": truth.value,
-                "order": truth.order,
-                "uncertainty": truth.uncertainty,
-                "scatter": truth.scatter,
-                "scale": truth.scale,
+                "limit": limit.value,
+                "order": limit.order,
+                "uncertainty": limit.uncertainty,
+                "scatter": limit.scatter,
+                "scale": limit.scale,
             }
             for quantity in QUANTITIES
-            if (truth := self.truth.get(quantity.name))
+            if (limit := self.limits.get(quantity.name))
         }
 
     def to_dict(self) -> dict[str, Any]:
@@ -90,7 +91,7 @@ def measure(
     scene: Scene,
     out: Path,
     progress: ProgressMeter,
-    meshes: Sequence[Mesh] = (),
+    meshes: Sequence[MeshLevel] = (),
     executor: Executor | None = None,
     budget_s: float = inf,
 ) -> CostStudy:
@@ -105,7 +106,7 @@ def measure(
     RunError
         Fewer than two meshes gave a result, so nothing is known of the limit.
     """
-    settings = affordable(ladder(scene, meshes), budget_s)
+    settings = affordable(settings_of(scene, meshes), budget_s)
     jobs = _jobs(settings)
     # a process of its own for every run: its peak memory is its own
     processes = LocalProcesses(1, reuse=False) if executor is None else nullcontext(executor)
@@ -120,12 +121,13 @@ def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
     taken: list[Setting] = []
     spent: dict[str, float] = {}
     for setting in settings:
-        new = {job.name: _expected(job) for job in _jobs([setting]) if job.name not in spent}
+        new = {job.name: _planned_s(job) for job in _jobs([setting]) if job.name not in spent}
         if sum(spent.values()) + sum(new.values()) <= budget_s:
             spent |= new
             taken.append(setting)
     if sum(setting.kind == "mesh" for setting in taken) < 2:
-        need = sum(_expected(job) for job in _jobs([one for one in settings if one.kind == "mesh"][:2]))
+        meshes = [setting for setting in settings if setting.kind == "mesh"]
+        need = sum(map(_planned_s, _jobs(meshes[:2])))
         raise UsageError(
             "is too short for two meshes.",
             key="--budget",
@@ -135,12 +137,14 @@ def affordable(settings: Sequence[Setting], budget_s: float) -> list[Setting]:
     return taken
 
 
-def _expected(job: Job) -> float:
+def _planned_s(job: Job) -> float:
     """Return the processor time, s, that a run is expected to take; 0 of a reduced model."""
-    return Case.of(job.scene).size.time if job.fidelity == "solid" else 0.0
+    return planned_s([job.scene], 1) if job.fidelity == "solid" else 0.0
 
 
-def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Sequence[Mesh] = ()) -> CostStudy:
+def judge_stored(
+    scene: Scene, out: Path, progress: ProgressMeter, meshes: Sequence[MeshLevel] = ()
+) -> CostStudy:
     """Judge what `measure` has stored in ``out`` so far, and run nothing.
 
     Raises
@@ -148,7 +152,7 @@ def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Seque
     RunError
         As `measure`, and where nothing is stored.
     """
-    settings = ladder(scene, meshes)
+    settings = settings_of(scene, meshes)
     with Store.open(out / STORE) as base:
         results = stored_results(base, _jobs(settings), progress)
     if not results:
@@ -160,7 +164,7 @@ def judge_stored(scene: Scene, out: Path, progress: ProgressMeter, meshes: Seque
 
 
 def _jobs(settings: Sequence[Setting]) -> list[Job]:
-    """Return the runs of a ladder without repetition: several meshes use the runs of each."""
+    """Return the runs of settings without repetition: several meshes use the runs of each."""
     jobs = (job for setting in settings for on_mesh in setting.runs for job in on_mesh)
     return list({job.name: job for job in jobs}.values())
 
@@ -174,7 +178,7 @@ def _compile(scene: Scene, executor: Executor) -> None:
 
 
 def conclude(scene: Scene, settings: Sequence[Setting], results: JobResults) -> CostStudy:
-    """Judge the runs of a ladder; settings that lack one are left out.
+    """Judge the runs of settings; those that lack one are left out.
 
     Settings are in order of CPU time, each with the quantities on whose Pareto front it lies.
     """
@@ -188,20 +192,21 @@ def conclude(scene: Scene, settings: Sequence[Setting], results: JobResults) -> 
     if len(meshes) < 2:
         reasons = " ".join(dict.fromkeys(failure["reason"] for failure in failures))
         raise RunError(f"{scene.id}: no two meshes gave a result. {reasons}".strip())
-    truth, finest = truths(list(meshes.values())), truths(list(meshes.values())[-2:])
-    # an effect is left out at the first place of its mesh
-    whole = {s.name: meshes.get(s.meshes[0], [])[:1] for s in settings if s.kind == "effect"}
-    judged = [
-        judge(setting, runs[setting.name], truth, finest, whole.get(setting.name))
-        for setting in settings
-        if runs[setting.name] and whole.get(setting.name) != []
-    ]
+    on_meshes = list(meshes.values())
+    limits, finest = target_limits(on_meshes), target_limits(on_meshes[-2:])
+    judged = []
+    for setting in settings:
+        of_effect = setting.kind == "effect"  # left out at the first offset of its mesh
+        whole = meshes.get(setting.meshes[0]) if of_effect else None
+        if runs[setting.name] and not (of_effect and whole is None):
+            first = MeshRuns(whole.size, whole.runs[:1]) if whole else None
+            judged.append(judge(setting, runs[setting.name], limits, finest, first))
     fronts = {q.name: {one.name for one in front(judged, [q.name])} for q in QUANTITIES}
     marked = [
         replace(one, front=[name for name, members in fronts.items() if one.name in members])
         for one in sorted(judged, key=lambda one: one.cpu_s)
     ]
-    return CostStudy(scene, truth, marked, failures, results)
+    return CostStudy(scene, limits, marked, failures, results)
 
 
 def _failure(result: Outcome | Failure) -> str | None:
@@ -211,10 +216,11 @@ def _failure(result: Outcome | Failure) -> str | None:
     return None if result.validity.finished else result.validity.stopped_because
 
 
-def _runs(setting: Setting, results: JobResults) -> list[Placed]:
+def _runs(setting: Setting, results: JobResults) -> list[MeshRuns]:
     """Return the outcomes of a setting on each mesh, none if one is missing."""
-    good: list[Placed] = [
+    good = [
         [run for job in jobs if isinstance(run := results.get(job.name), Outcome) and _failure(run) is None]
         for jobs in setting.runs
     ]
-    return good if [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs] else []
+    complete = [len(runs) for runs in good] == [len(jobs) for jobs in setting.runs]
+    return [MeshRuns.of(runs) for runs in good] if complete else []

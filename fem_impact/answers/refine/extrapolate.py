@@ -1,60 +1,96 @@
-"""Limits for vanishing element size from the means of several runs on each mesh, with their uncertainty.
+"""Limits for vanishing element size from runs on several meshes, with the half-widths of their bands.
 
 Two meshes do not determine the order of convergence that Richardson's extrapolation needs. `pair_limit`
 therefore states the band of the limits of all orders from `LOWEST` up (from the mean on the finer mesh, the
 limit of infinite order, to the limit of order `LOWEST`), and its middle as the limit. Where each mesh ran at
-one place of the barrier's grid alone, the scatter by the place is not known, and the band is
-`ONE_RUN` times as wide. Three meshes or more are fitted by least squares (`limit`).
+one grid offset alone, the scatter by the offset is not known, and the band is `ONE_RUN` times as wide. Three
+meshes or more are fitted by least squares (`limit`).
+
+Meshes that agree by chance cannot know the energy of vibration better than its own two counts do: `floored`.
+One mesh alone cannot estimate its own error: `mesh_limits` gives it no band.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from math import sqrt
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from statistics import fmean, stdev
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from fem_impact.answers.refine.quantities import QUANTITIES, TargetQuantity
+from fem_impact.answers.refine.quantities import QUANTITIES, sum_of
 from fem_impact.arrays import Array
 from fem_impact.errors import RunError
-from fem_impact.outcome.keys import Unknown, known, or_none
-from fem_impact.outcome.record import KEYS, Outcome
+from fem_impact.outcome.keys import Key, Unknown, or_none
+from fem_impact.outcome.record import KEY_TABLE, KEYS, Outcome
+
+VIBRATION = (KEY_TABLE["E_vib_over_E_0"],)
+"""Keys of the quantity whose band has a floor, see `floored`."""
+MeshNumbers = Mapping[str, float] | Unknown
+"""Numbers by the key of an outcome that they are about, or why there are none."""
+ALONE = Unknown("one mesh alone cannot estimate its own error")
 
 # Lowest order of convergence in the band of two meshes. Over thirteen sets and nine quantities, 82 % of
 # such bands contain the limit of all three meshes, and all of them do within the band of that limit; the
 # band of the coarser two contains the limit of the finer two in 69 %.
 LOWEST = 0.75
 # Safety factor of two meshes with one run each (Roache 1994, doi:10.1115/1.2910291, takes 3 for two grids).
-# Of 98 pairs of the gamma study, bands of one place held the limit of the next finer pair in 42 (vibration)
-# and 44 (e) cases, three times as wide ones in 91 and 81. Three times as wide, bands of one place contain the
-# limit of all meshes of the 13 sets in 91 %, that of the finer two in 85 %.
+# Of 98 pairs of the gamma study, bands of one offset held the limit of the next finer pair in 42 (vibration)
+# and 44 (e) cases, three times as wide ones in 91 and 81. So wide, bands of one offset contain the limit of
+# all meshes of the 13 sets in 91 %, that of the finer two in 85 %.
 ONE_RUN = 3.0
-# Standard error of a mean over evenly spaced places, over that of places taken at random. Even places cancel
-# the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two places
+# Standard error of a mean over evenly spaced offsets, over that of offsets taken at random. Even ones cancel
+# the first harmonics of the grid. Root mean squares over nine quantities of the 13 sets: means of two offsets
 # lay .40 and .50 of the latter from those of four on 0.59 and 0.30 mm (medians .31 and .35; on rods with
 # cells twice as large .45 to .60), means of four .27 from those of eight on 0.59 mm (median .13).
 EVEN = {2: 0.6, 4: 0.35}
 LOWEST_FITTED, HIGHEST_FITTED = 0.5, 2.0  # orders of an accepted fit; the method is of second order
 SURE, UNSURE = 1.25, 3.0  # safety factors of an accepted fit and of one with fixed orders
 
-Placed = Sequence[Outcome]  # the runs on one mesh, the grid of the barrier at other places
+
+@dataclass(frozen=True, slots=True)
+class MeshRuns:
+    """The runs on one mesh.
+
+    Attributes
+    ----------
+    size : edge of the cells that resolve the contact, m; 0 of a model without a mesh
+    runs : outcomes, one for each offset of the barrier's grid, or those of a scene and its twin
+    """
+
+    size: float
+    runs: list[Outcome]
+
+    @classmethod
+    def of(cls, runs: Iterable[Outcome]) -> MeshRuns:
+        """Return runs on a mesh whose size is that of the cells at the tip."""
+        outcomes = list(runs)
+        return cls(or_none(outcomes[0].cost.tip_size) or 0.0, outcomes)
+
+    def values(self, keys: Sequence[Key]) -> list[float]:
+        """Return the sums of keys in the runs that know one of them."""
+        return [value for run in self.runs if (value := sum_of(keys, run)) is not None]
+
+    def mean(self, keys: Sequence[Key]) -> float | None:
+        """Return the mean of the sums of keys, None where a run does not know it."""
+        values = self.values(keys)
+        return fmean(values) if len(values) == len(self.runs) else None
 
 
 @dataclass(frozen=True, slots=True)
-class Truth:
-    """The limit of one quantity and its uncertainty.
+class ExtrapolatedValue:
+    """The limit of one quantity for vanishing elements and its uncertainty.
 
     Attributes
     ----------
     value : limit; order : observed order of convergence, None where there is none
-    uncertainty : of the limit, ``scatter`` included
+    uncertainty : half-width of the band of the limit, ``scatter`` included
     scale : divisor of errors, in the unit of the quantity
-    scatter : standard error of the limit by the scatter over the places of the grid
+    scatter : standard error of the limit by the scatter over the grid offsets
     """
 
     value: float
@@ -82,76 +118,52 @@ class Limit:
     scatter: float
 
 
-def mean(quantity: TargetQuantity, runs: Placed) -> float | None:
-    """Return the mean of a quantity over the runs on a mesh, None where the fidelity does not know it."""
-    values = values_of(quantity, runs)
-    return fmean(values) if len(values) == len(runs) else None
-
-
-def values_of(quantity: TargetQuantity, runs: Placed) -> list[float]:
-    """Return the values of a quantity in the runs on a mesh that know it."""
-    return [value for run in runs if (value := quantity.value(run)) is not None]
-
-
-def standard_error(values: Sequence[float]) -> float:
-    """Return the standard error of the mean over two or four even places; 0 for one value alone."""
-    return EVEN[len(values)] * stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
-
-
-def pair_limit(fine: float, coarse: float, ratio: float, places: int = 1) -> tuple[float, float]:
-    """Return the limit of two meshes and its half-width; ``ratio`` is coarse over fine size.
-
-    The band holds the limits of all orders from `LOWEST` up, since two meshes do not determine the order; the
-    limit is its middle. Each value is the mean over ``places`` of the grid; with one the band is `ONE_RUN`
-    times as wide.
-
-    Examples
-    --------
-    >>> value, half = pair_limit(1.1, 1.2, 2.0 ** (4 / 3), places=2)
-    >>> round(value, 6), round(half, 6)
-    (1.05, 0.05)
-    >>> round(pair_limit(1.1, 1.2, 2.0 ** (4 / 3))[1], 6)
-    0.15
-    """
-    half = 0.5 * (fine - coarse) / (ratio**LOWEST - 1)
-    return fine + half, abs(half) * (ONE_RUN if places == 1 else 1.0)
-
-
-def truths(meshes: Sequence[Placed]) -> dict[str, Truth]:
-    """Return the limit from two or more meshes of every quantity that their runs know.
-
-    The uncertainty of a limit is the scatter of the means plus, of a pair, its band, of more meshes Eca and
-    Hoekstra's band less the distance of the finest mesh from the limit; that of the vibration energy is at
-    least the `vibration_floor` of the finest mesh.
-    """
-    sizes = _sizes(meshes)
-    finest = sizes.index(min(sizes))
-    limits = {}
+def target_limits(meshes: Sequence[MeshRuns]) -> dict[str, ExtrapolatedValue]:
+    """Return the limit from two or more meshes, by name, of every target quantity that all runs know."""
+    limits, finest = {}, min(meshes, key=attrgetter("size"))
     for quantity in QUANTITIES:
-        if any(mean(quantity, runs) is None for runs in meshes):
-            continue
-        values = [values_of(quantity, runs) for runs in meshes]
-        truth = limit_of(sizes, values)
-        if quantity.name == "E_vib":
-            truth = replace(truth, uncertainty=max(truth.uncertainty, _floor(meshes[finest])))
-        # the larger of limit and finest value, so that a limit near zero does not inflate the errors
-        size = max(abs(truth.value), abs(fmean(values[finest])))
-        limits[quantity.name] = replace(truth, scale=quantity.scale(size, meshes[finest][0]))
+        limit = extrapolated(meshes, quantity.keys)
+        if limit is not None:
+            # the larger of limit and finest value, so that a limit near zero does not inflate the errors
+            size = max(abs(limit.value), abs(fmean(finest.values(quantity.keys))))
+            limits[quantity.name] = replace(limit, scale=quantity.scale(size, finest.runs[0]))
     return limits
 
 
-def mesh_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, float]]:
-    """Return limit and half-width of two meshes or more, by key, of every number that all their runs know."""
-    sizes, values = _sizes(meshes), [_banded(runs) for runs in meshes]
-    limits = {
-        name: limit_of(sizes, [of_mesh[name] for of_mesh in values])
-        for name in values[0]
-        if all(name in of_mesh for of_mesh in values)
-    }
+def mesh_limits(meshes: Sequence[MeshRuns]) -> tuple[MeshNumbers, MeshNumbers]:
+    """Return limit and half-width, by key, of every banded number that all runs on the meshes know.
+
+    One mesh alone gives the means over its grid offsets without half-widths, and one run gives neither.
+    """
+    banded = [key for key in KEYS if key.banded]
+    if len(meshes) == 1:
+        means = {key.name: mean for key in banded if (mean := meshes[0].mean([key])) is not None}
+        return means if len(meshes[0].runs) > 1 else ALONE, ALONE
+    limits = {key.name: limit for key in banded if (limit := extrapolated(meshes, (key,))) is not None}
     return (
         {name: limit.value for name, limit in limits.items()},
         {name: limit.uncertainty for name, limit in limits.items()},
     )
+
+
+def extrapolated(meshes: Sequence[MeshRuns], keys: Sequence[Key]) -> ExtrapolatedValue | None:
+    """Return the limit, with scale 1, of a sum of keys from two or more meshes; None where a run lacks it.
+
+    The uncertainty is the scatter of the means plus, of a pair, its band, of more meshes Eca and Hoekstra's
+    band less the distance of the finest mesh from the limit; that of the vibration energy is `floored`.
+    """
+    if any(mesh.mean(keys) is None for mesh in meshes):
+        return None
+    limit = limit_of([mesh.size for mesh in meshes], [mesh.values(keys) for mesh in meshes])
+    if tuple(keys) != VIBRATION:
+        return limit
+    finest = min(meshes, key=attrgetter("size"))
+    return replace(limit, uncertainty=floored(limit.uncertainty, finest.runs))
+
+
+def floored(band: float, runs: Sequence[Outcome]) -> float:
+    """Return a half-width, of E_0, of the vibration energy that is no less than the runs on a mesh allow."""
+    return max(band, fmean(map(vibration_floor, runs)))
 
 
 def vibration_floor(run: Outcome) -> float:
@@ -167,36 +179,31 @@ def vibration_floor(run: Outcome) -> float:
     return max(apart, or_none(energy.vibration_floor) or 0.0)
 
 
-def stated_limits(meshes: Sequence[Placed]) -> tuple[dict[str, float], dict[str, float]]:
-    """Return `mesh_limits`, that of the vibration energy with no less half-width than `vibration_floor`."""
-    limits, bands = mesh_limits(meshes)
-    sizes, name = _sizes(meshes), "E_vib_over_E_0"
-    if name in bands:
-        bands[name] = max(bands[name], _floor(meshes[sizes.index(min(sizes))]))
-    return limits, bands
+def standard_error(values: Sequence[float]) -> float:
+    """Return the standard error of the mean over two or four even offsets; 0 for one value alone."""
+    return EVEN[len(values)] * stdev(values) / sqrt(len(values)) if len(values) > 1 else 0.0
 
 
-def _floor(runs: Placed) -> float:
-    """Return the mean `vibration_floor` of the runs on a mesh."""
-    return fmean(map(vibration_floor, runs))
+def pair_limit(fine: float, coarse: float, ratio: float, offsets: int = 1) -> tuple[float, float]:
+    """Return the limit of two meshes and its half-width; ``ratio`` is coarse over fine size.
+
+    The band holds the limits of all orders from `LOWEST` up, since two meshes do not determine the order; the
+    limit is its middle. Each value is the mean over ``offsets`` of the grid; with one the band is `ONE_RUN`
+    times as wide.
+
+    Examples
+    --------
+    >>> value, half = pair_limit(1.1, 1.2, 2.0 ** (4 / 3), offsets=2)
+    >>> round(value, 6), round(half, 6)
+    (1.05, 0.05)
+    >>> round(pair_limit(1.1, 1.2, 2.0 ** (4 / 3))[1], 6)
+    0.15
+    """
+    half = 0.5 * (fine - coarse) / (ratio**LOWEST - 1)
+    return fine + half, abs(half) * (ONE_RUN if offsets == 1 else 1.0)
 
 
-def mesh_means(runs: Placed) -> dict[str, float]:
-    """Return the means over the places of one mesh, by key, of every number that meshes give a limit."""
-    return {name: fmean(values) for name, values in _banded(runs).items()}
-
-
-def _banded(runs: Placed) -> dict[str, list[float]]:
-    """Return the values of the banded keys that all runs know."""
-    values = {key.name: [key.of(run) for run in runs] for key in KEYS if key.banded}
-    return {name: row for name, row in values.items() if not any(isinstance(v, Unknown) for v in row)}
-
-
-def _sizes(meshes: Sequence[Placed]) -> list[float]:
-    return [known(runs[0].cost.tip_size) for runs in meshes]
-
-
-def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Truth:
+def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> ExtrapolatedValue:
     """Return the limit, with scale 1, from the values of several runs on each mesh; ``sizes`` in any unit.
 
     The standard error of the limit by the scatter of those values is the root mean square change of the
@@ -204,21 +211,21 @@ def limit_of(sizes: list[float], values: Sequence[Sequence[float]]) -> Truth:
     the root of the weighted sum of variances.
     """
     means, errors = [fmean(on_mesh) for on_mesh in values], [standard_error(on_mesh) for on_mesh in values]
-    places = min(map(len, values))
-    value, order, extrapolation = _limit(sizes, means, places)
+    offsets = min(map(len, values))
+    value, order, extrapolation = _limit(sizes, means, offsets)
     changes = [
-        _limit(sizes, [v + s * e for v, s, e in zip(means, signs, errors, strict=True)], places)[0] - value
+        _limit(sizes, [v + s * e for v, s, e in zip(means, signs, errors, strict=True)], offsets)[0] - value
         for signs in product((-1.0, 1.0) if any(errors) else (0.0,), repeat=len(means))
     ]
     scatter = sqrt(fmean(change**2 for change in changes))
-    return Truth(value, order, extrapolation + scatter, 1.0, scatter)
+    return ExtrapolatedValue(value, order, extrapolation + scatter, 1.0, scatter)
 
 
-def _limit(sizes: list[float], values: list[float], places: int) -> tuple[float, float | None, float]:
-    """Return limit, order and uncertainty by extrapolation from the mean of ``places`` on each mesh."""
+def _limit(sizes: list[float], values: list[float], offsets: int) -> tuple[float, float | None, float]:
+    """Return limit, order and uncertainty by extrapolation from the mean of ``offsets`` on each mesh."""
     last, first = (values[sizes.index(extreme(sizes))] for extreme in (min, max))
     if len(sizes) == 2:
-        value, half = pair_limit(last, first, max(sizes) / min(sizes), places)
+        value, half = pair_limit(last, first, max(sizes) / min(sizes), offsets)
         return value, None, half
     fitted = limit(sizes, values)
     return fitted.value, fitted.order, fitted.band - abs(fitted.value - last)

@@ -33,18 +33,19 @@ class TargetQuantity:
     keys: tuple[Key, ...]
     floor: float
 
-    def value(self, outcome: Outcome) -> float | None:
-        """Return the sum of what the fidelity knows, None where that is nothing."""
-        values: list[Num] = [key.of(outcome) for key in self.keys]
-        parts = [part for value in values if (part := or_none(value)) is not None]
-        return float(sum(parts)) if parts else None
-
     def scale(self, value: float, outcome: Outcome) -> float:
         """Return the scale that an error is divided by."""
         m, unit = outcome.motion, 1.0
         if self.unit == "rad/s":
             unit = hypot(m.v_n, m.v_t) / sqrt(m.k_squared)
         return max(abs(value), self.floor * unit)
+
+
+def sum_of(keys: Iterable[Key], outcome: Outcome) -> float | None:
+    """Return the sum of those keys that the fidelity of an outcome knows, None where that is none."""
+    values: list[Num] = [key.of(outcome) for key in keys]
+    parts = [part for value in values if (part := or_none(value)) is not None]
+    return float(sum(parts)) if parts else None
 
 
 def _quantity(name: str, unit: str, floor: float, *keys: str) -> TargetQuantity:

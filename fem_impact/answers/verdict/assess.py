@@ -2,44 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import isclose
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from fem_impact.answers.refine.times import LONGER, about_s
-from fem_impact.answers.verdict.change import (
+from fem_impact.answers.refine.budget import LONGER, Budget, about_s
+from fem_impact.answers.refine.extrapolate import MeshRuns
+from fem_impact.answers.refine.loop import Level, RefinementLoop, Stop, levels_of_twins
+from fem_impact.answers.verdict.effect import (
     Answer,
-    Change,
-    Ladder,
+    VibrationEffect,
     largest,
-    modal_change,
+    modal_effect,
     modal_pair,
+    solid_effect,
     unfinished,
+    unsupported,
+    untargeted,
 )
 from fem_impact.answers.verdict.reliability import known_error
 from fem_impact.answers.verdict.screening import Screening, screening
-from fem_impact.answers.verdict.twins import inclined
+from fem_impact.answers.verdict.twins import inclined, twins
 from fem_impact.case.case import Case
 from fem_impact.case.limits import FLAT_FACE, not_reduced
 from fem_impact.errors import RunError, SceneError
 from fem_impact.tables.text import plain
 
 if TYPE_CHECKING:
-    from fem_impact.answers.refine.levels import Mesh
     from fem_impact.scene.types import Scene
 
 
 TOLERANCE = 0.05
-"""Change of e that may be neglected, unless stated."""
+"""VibrationEffect of e that may be neglected, unless stated."""
 BUDGET = 60.0
 """Wall time, s, that the finite elements of a verdict may take, unless stated."""
 FIDELITIES = ("auto", "modal", "solid")
 ANGLES = tuple(np.radians(np.arange(5.0, 81.0, 5.0)))
 """Inclinations among which the worst one is looked for, rad."""
-LEAST_PAIRS = 2
+LEAST_MESHES = 2
 """Meshes that ``solid`` runs whatever the budget: one alone cannot estimate its own error."""
 
 LACKING = "There is no reduced model of {}: finite elements alone answer."
@@ -71,8 +74,8 @@ class Verdict:
     tolerance: float
     fidelity: str
     screening: Screening
-    here: Change
-    elsewhere: Change | None
+    here: VibrationEffect
+    elsewhere: VibrationEffect | None
     not_known: tuple[tuple[float, ...], str]
     over_friction: tuple[float, float] | None
     notes: tuple[str, ...]
@@ -90,7 +93,7 @@ class Verdict:
         return self.here.answer(self.tolerance)
 
     @property
-    def worst(self) -> Change | None:
+    def worst(self) -> VibrationEffect | None:
         """The largest change over all inclinations, None where only this one is known."""
         return None if self.elsewhere is None else largest([self.here, self.elsewhere])
 
@@ -144,8 +147,8 @@ def assess(
     unlike = quick is not None and not known_error(scene).alike
     open_still = quick is None or unlike or quick.answer(tolerance) == "undecided"
     if fidelity == "solid" or (fidelity == "auto" and open_still):
-        least = LEAST_PAIRS if fidelity == "solid" else int(not elsewhere)
-        solid, told, more = _solid(scene, least, tolerance, (budget_s, workers), quick, tell)
+        least = LEAST_MESHES if fidelity == "solid" else int(not elsewhere)
+        solid, told, more = _solid(scene, least, tolerance, Budget(budget_s, workers), quick, tell)
         here, used = (solid, "solid") if solid else (quick, "modal")
         notes += told
         more = f"--fidelity solid {more}" if more and fidelity == "solid" else more
@@ -167,13 +170,13 @@ def assess(
     )
 
 
-def _quick(scene: Scene, tell: Tell) -> tuple[Change | None, list[str]]:
+def _quick(scene: Scene, tell: Tell) -> tuple[VibrationEffect | None, list[str]]:
     """Return what the reduced model says, None where it has no answer; and notes."""
     tell("the reduced model, at this inclination and at others ...")
     pair = modal_pair(scene)
     if failed := unfinished(pair):
         return None, [f"The reduced model has no answer here: {failed}"]
-    return modal_change(scene, pair), []
+    return modal_effect(scene, pair), []
 
 
 def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
@@ -187,90 +190,114 @@ def _check(fidelity: str, tolerance: float, budget_s: float) -> None:
         raise SceneError("must lie above 0 and below 1e6 s.", key="budget", value=f"{budget_s:g} s")
 
 
+@dataclass(frozen=True, slots=True)
+class VerdictJudge:
+    """Decides where the change of e by vibration is known well enough, beside what may be neglected.
+
+    Attributes
+    ----------
+    levels : of a scene and its twin
+    quick : what the reduced model says, None where there is none
+    tolerance : change of e that may be neglected
+    """
+
+    levels: Sequence[Level]
+    quick: VibrationEffect | None
+    tolerance: float
+
+    def failure(self, done: MeshRuns) -> str:
+        """Return why the twins on a mesh say nothing, empty where they do."""
+        return unfinished((done.runs[0], done.runs[1]))
+
+    def decided(self, done: Sequence[MeshRuns], scatter: float = 1.0) -> bool:
+        """Say whether meshes answer; one alone does where the reduced model bears it out."""
+        effect = solid_effect(self.levels, done)
+        return self.supported(done, effect) and effect.answer(self.tolerance) != "undecided"
+
+    def supported(self, done: Sequence[MeshRuns], effect: VibrationEffect) -> bool:
+        """Say whether two meshes ran, or the reduced model, known well enough, agrees with one."""
+        quick = self.quick
+        borne_out = quick is not None and quick.band <= self.tolerance and quick.meets(effect)
+        return len(done) >= LEAST_MESHES or borne_out
+
+    def effect(self, done: Sequence[MeshRuns]) -> tuple[VibrationEffect, list[str]]:
+        """Return the change of e that finished meshes show, with notes on what its band holds.
+
+        Where the reduced model contradicts one mesh, the band holds what both say; where there is no reduced
+        model, the error of one mesh is not known.
+        """
+        effect, quick = solid_effect(self.levels, done), self.quick
+        if self.supported(done, effect):
+            return effect, []
+        if quick is None:
+            note = "One mesh alone does not tell its error, and no reduced model bears it out."
+            return unsupported(effect, self.levels[0]), [note]
+        note = (
+            f"One mesh of finite elements says {effect.value:+.3f} ± {effect.band:.3f}, the reduced model "
+            f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
+        )
+        return effect.widened(quick), [note]
+
+
 def _solid(
-    scene: Scene, least: int, tolerance: float, means: tuple[float, int], quick: Change | None, tell: Tell
-) -> tuple[Change | None, list[str], str]:
+    scene: Scene,
+    least: int,
+    tolerance: float,
+    budget: Budget,
+    quick: VibrationEffect | None,
+    tell: Tell,
+) -> tuple[VibrationEffect | None, list[str], str]:
     """Return what finite elements say, None where the budget allows no mesh or no run gives an e.
 
     Notes on it follow, and the options with which another mesh would run. ``least`` meshes run whatever the
     budget. One mesh alone counts where the reduced model, ``quick``, bears it out.
     """
-    ladder, notes, more = Ladder.of(scene, *means), list[str](), ""
-    if refused := ladder.refused():
+    try:
+        levels = levels_of_twins(*twins(untargeted(scene)))
+    except SceneError as refused:
         if quick is None or least:
-            raise refused
+            raise
         return None, [f"Finite elements have no answer here: {refused}"], ""
-    while not _decided(ladder, tolerance, quick, least):
-        mesh = ladder.following()
-        if mesh is None or not (len(ladder.pairs) < least or ladder.affords(mesh)):
-            told, more = _stopped(ladder, mesh)
-            notes.append(told)
-            break
-        which = COUNT[len(ladder.pairs)]
-        tell(f"finite elements, {which} mesh, about {about_s(ladder.expected_s(mesh))} ...")
-        try:
-            failed = ladder.climb(mesh)
-        except SceneError as error:  # a mesh that folds is found when it is made
-            if quick is None and not ladder.pairs:
-                raise
-            failed = str(error)
-        if failed:
-            notes.append(f"Finite elements give no result on the {which} mesh: {failed}")
-            break
-    return _found(ladder, quick, tolerance, notes), notes, more
+
+    def announce(level: int, seconds: float) -> None:
+        tell(f"finite elements, {COUNT[level]} mesh, about {about_s(seconds)} ...")
+
+    judge, both = VerdictJudge(levels, quick, tolerance), len(levels[0].scenes)
+    loop = RefinementLoop(levels, budget, least=least, first=both, announce=announce)
+    stop = loop.run(judge)
+    if isinstance(stop.error, SceneError) and quick is None and not loop.done:
+        raise stop.error
+    note, more = _stopped(loop, stop)
+    effect, notes = judge.effect(loop.done) if loop.done else (None, [])
+    return effect, [*note, *notes], more
 
 
-def _decided(ladder: Ladder, tolerance: float, quick: Change | None, least: int) -> bool:
-    """Say whether the meshes that ran are enough for an answer."""
-    if not ladder.pairs or len(ladder.pairs) < least:
-        return False
-    change = ladder.change()
-    supported = len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance)
-    return supported and change.answer(tolerance) != "undecided"
-
-
-def _bears_out(quick: Change | None, change: Change, tolerance: float) -> bool:
-    """Say whether the reduced model agrees with one mesh, and is known well enough for that to count."""
-    return quick is not None and quick.band <= tolerance and quick.meets(change)
-
-
-def _found(ladder: Ladder, quick: Change | None, tolerance: float, notes: list[str]) -> Change | None:
-    """Return what the ladder says; the band of one mesh that nothing bears out holds the reduced model's."""
-    if not ladder.pairs:
-        return None
-    change = ladder.change()
-    if len(ladder.pairs) >= LEAST_PAIRS or _bears_out(quick, change, tolerance):
-        return change
-    if quick is None:
-        notes.append("One mesh alone does not tell its error, and no reduced model bears it out.")
-        return ladder.doubted()
-    notes.append(
-        f"One mesh of finite elements says {change.value:+.3f} ± {change.band:.3f}, the reduced model "
-        f"{quick.value:+.3f} ± {quick.band:.3f}: the band holds both."
-    )
-    return change.widened(quick)
-
-
-def _stopped(ladder: Ladder, mesh: Mesh | None) -> tuple[str, str]:
-    """Return why no other mesh runs, and the options with which one would."""
-    if mesh is None:
-        return "No finer mesh is tried: none of the family has finer cells at the contact.", ""
-    more, limit_s, spent_s = ladder.expected_s(mesh), ladder.budget.limit_s, ladder.budget.spent_s
+def _stopped(loop: RefinementLoop, stop: Stop) -> tuple[list[str], str]:
+    """Return a note on why no other mesh runs, and the options with which one would."""
+    if stop.because == "decided":
+        return [], ""
+    if stop.because == "finest":
+        return ["No finer mesh is tried: none of the family has finer cells at the contact."], ""
+    which = COUNT[len(loop.done)]
+    if stop.because == "failed":
+        return [f"Finite elements give no result on the {which} mesh: {stop.error}"], ""
+    limit_s, spent_s = loop.budget.limit_s, loop.budget.spent_s
+    more = loop.budget.forecast_s(loop.finer[0].scenes)
     left, enough = max(limit_s - spent_s, 0.0), about_s(spent_s + LONGER * more)
-    told = (
-        f"A {COUNT[len(ladder.pairs)]} mesh{', finer,' if ladder.pairs else ''} would take about "
+    note = (
+        f"A {which} mesh{', finer,' if loop.done else ''} would take about "
         f"{about_s(more)} more, and {plain(left, 2)} s are left of the budget of {limit_s:g} s. "
         f'For it give --budget "{enough}".'
     )
-    return told, f'--budget "{enough}"'
+    return [note], f'--budget "{enough}"'
 
 
-def _over_angles(scene: Scene, off: float) -> tuple[Change | None, tuple[tuple[float, ...], str]]:
+def _over_angles(scene: Scene, off: float) -> tuple[VibrationEffect | None, tuple[tuple[float, ...], str]]:
     """Return the largest change of the reduced model over other inclinations, and where it has no answer.
 
     ``off`` is its error at the scene's own inclination, as far as finite elements show it.
     """
-    changes, missing, why = list[Change](), list[float](), ""
+    changes, missing, why = list[VibrationEffect](), list[float](), ""
     for angle in (float(angle) for angle in ANGLES if not isclose(angle, scene.impact.angle)):
         try:
             one = inclined(scene, angle)
@@ -282,7 +309,7 @@ def _over_angles(scene: Scene, off: float) -> tuple[Change | None, tuple[tuple[f
             missing.append(angle)
             why = why or failed
         else:
-            changes.append(modal_change(one, pair).at_least(off))
+            changes.append(modal_effect(one, pair).at_least(off))
     return (largest(changes) if changes else None), (tuple(missing), why)
 
 
@@ -295,5 +322,5 @@ def _over_friction(scene: Scene) -> tuple[float, float] | None:
     for f in (surface.friction_low, surface.friction, surface.friction_high):
         one = replace(scene, surface=replace(surface, state="custom", friction=f))
         pair = modal_pair(one)
-        values += [] if unfinished(pair) else [modal_change(one, pair).value]
+        values += [] if unfinished(pair) else [modal_effect(one, pair).value]
     return (min(values), max(values)) if values else None

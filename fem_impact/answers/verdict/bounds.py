@@ -97,14 +97,14 @@ def sliding_heat(case: DroppedRod, known: Range) -> float:
     return float(work.max()) / (0.5 * case.speed**2)
 
 
-def largest_loss_whatever(case: DroppedRod, known: Range) -> float:
+def upper_bound_loss(case: DroppedRod, known: Range) -> float:
     """Return the largest loss of the first impact for any friction and restitution, fraction of E_0."""
     body = case.body(np.linspace(*known.d_c, 2001))
     return float(pinned_loss(*case.velocity, **body, mass=2.0 / case.speed**2).max())
 
 
 @dataclass(frozen=True, slots=True)
-class Tests:
+class CarriedTests:
     """Results of n tests that are carried over to another case, (n,) float64 each.
 
     Attributes
@@ -153,8 +153,8 @@ class Carried:
         return 1.0 - self.total
 
 
-def _own(s: MeasuredSet) -> Tests:
-    """Return the `Tests` of a set, with the arms of its rod's real geometry."""
+def _own(s: MeasuredSet) -> CarriedTests:
+    """Return the `CarriedTests` of a set, with the arms of its rod's real geometry."""
     rod = Projectile(s.length, s.diameter, s.tip, s.tip_radius, DENSITY)
     arms = rod.arms(s.alpha)
     centre = impulse_centre(**s.motion, d_d=arms.d_d, k2=rod.k2)
@@ -163,11 +163,11 @@ def _own(s: MeasuredSet) -> Tests:
     mu = impulse_ratio(*(s.motion[name] for name in ("v_n", "v_t", "V_n", "V_t")))
     body: dict[str, Any] = {"d_c": centre.d_c, "d_d": arms.d_d, "k2": rod.k2}
     excess = np.maximum(mu / critical_ratio(s.motion["v_n"], s.motion["v_t"], e=e, **body), 1.0)
-    return Tests(e, mu, excess, (centre.d_c - arms.d_c) / s.length)
+    return CarriedTests(e, mu, excess, (centre.d_c - arms.d_c) / s.length)
 
 
-def measured_on(surface: str) -> dict[str, Tests]:
-    """Return the `Tests` of every set on one surface, by its id.
+def measured_on(surface: str) -> dict[str, CarriedTests]:
+    """Return the `CarriedTests` of every set on one surface, by its id.
 
     Where mu exceeds mu_c the tip did not slide throughout: its friction is at least the mean of the others.
     """
@@ -179,7 +179,7 @@ def measured_on(surface: str) -> dict[str, Tests]:
     }
 
 
-def carry(tests: Tests, case: DroppedRod) -> Carried:
+def carry(tests: CarriedTests, case: DroppedRod) -> Carried:
     """Predict the losses of a case from each test (Eq 23-25 with e_m = -1)."""
     v_n, v_t = case.velocity
     body = case.body(case.arms.d_c + tests.offset * case.rod.length)

@@ -36,8 +36,8 @@ LIKE = log(1.5)
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
-    """One scene computed by both models: the change of e by vibration, and shares of E_0 by `COMPARED`."""
+class ModelDiscrepancy:
+    """One scene by both models: the change of e by vibration, and shares of E_0 by `COMPARED`."""
 
     name: str
     scene: Scene
@@ -85,7 +85,7 @@ def known_error(scene: Scene) -> KnownError:
     ratio = screening(scene).ratio
     same = [name for name in stored() if _materials(_stored(name)) == _materials(scene)]
     near = [name for name in same if abs(log(screening(_stored(name)).ratio / ratio)) <= LIKE]
-    counted = [beside(name) for name in near or stored()]
+    counted = [discrepancy(name) for name in near or stored()]
     return KnownError(
         max(abs(one.modal - one.solid) for one in counted),
         {
@@ -114,7 +114,7 @@ def _stored(name: str) -> Scene:
 
 
 @cache
-def beside(name: str) -> Beside:
+def discrepancy(name: str) -> ModelDiscrepancy:
     """Return a stored scene computed by both models."""
     scene, settings = _stored(name), summary()["scenes"][name]["settings"]
     stiff = next(one for one in settings if one["name"].endswith("without vibration"))["value"]
@@ -122,7 +122,7 @@ def beside(name: str) -> Beside:
     coarse = max(meshes, key=lambda one: one["tip_size_m"])["value"]
     fine = min(meshes, key=lambda one: one["tip_size_m"])["value"]
     whole, twin = (simulate(one, "modal") for one in (scene, twins(scene)[1]))
-    return Beside(
+    return ModelDiscrepancy(
         name,
         scene,
         known(whole.restitution.edge.e) - known(twin.restitution.edge.e),

@@ -7,7 +7,7 @@ from math import degrees, inf, isclose
 from typing import Any
 
 from fem_impact.answers.verdict.assess import Verdict
-from fem_impact.answers.verdict.change import Answer, Change
+from fem_impact.answers.verdict.effect import Answer, VibrationEffect
 from fem_impact.answers.verdict.screening import Screening
 from fem_impact.outcome.keys import Unknown, known, or_none
 from fem_impact.outcome.record import Outcome, installed_versions
@@ -56,7 +56,7 @@ def _may(v: Verdict) -> str:
     )
 
 
-def doubt(change: Change) -> str:
+def doubt(change: VibrationEffect) -> str:
     """Return e of both twins where one of them is out of the range of a plain impact, else nothing."""
     free, stiff = (known(run.restitution.edge.e) for run in (change.free, change.stiff))
     if all(-ROUND_OFF <= e <= 1 + RESIDUAL_LIMIT for e in (free, stiff)):
@@ -105,14 +105,14 @@ def _rest(v: Verdict) -> str:
     return f"{', '.join(listed)} ({kind}); {thick}{_heating(here)}"
 
 
-def _half(here: Change, name: str) -> str:
+def _half(here: VibrationEffect, name: str) -> str:
     """Return the half-width of a share in per cent, if it is known; for one body that of all plastic work."""
     total = here.errors.get("plastic") if name.startswith("plastic_") else None
     error = here.errors.get(name, total)
     return "" if error is None else f" ± {100 * error:.2g}"
 
 
-def _heating(here: Change) -> str:
+def _heating(here: VibrationEffect) -> str:
     """Return what can heat the contact."""
     energy = here.free.energy
     skin, friction = energy.skin, or_none(energy.friction) or 0.0
@@ -292,7 +292,7 @@ def _or_null(half: float) -> float | None:
     return half if half < inf else None
 
 
-def _change_entry(change: Change) -> dict[str, Any]:
+def _change_entry(change: VibrationEffect) -> dict[str, Any]:
     return {
         "angle_rad": change.angle,
         "change_of_e": change.value,

@@ -8,12 +8,12 @@ import numpy as np
 from scipy.special import stdtrit
 
 from fem_impact.answers.verdict.bounds import (
+    CarriedTests,
     Range,
-    Tests,
     carry,
-    largest_loss_whatever,
     measured_on,
     sliding_heat,
+    upper_bound_loss,
     worst_losses,
 )
 from fem_impact.answers.verdict.drop import DroppedRod, outside_of, warnings_of, weights_of
@@ -116,7 +116,7 @@ def _share(values: dict[str, Floats], weights: dict[str, float]) -> dict[str, fl
     return {"mean": mean, "low": low, "high": high, **extremes}
 
 
-def _range(case: DroppedRod, tests: dict[str, Tests], weights: dict[str, float]) -> Range:
+def _range(case: DroppedRod, tests: dict[str, CarriedTests], weights: dict[str, float]) -> Range:
     """Return the ranges of e and d_c over the tests of this surface; outside the measured cases all e."""
     outside = bool(outside_of(case))
     e = np.concatenate([t.e for t in tests.values()])
@@ -159,7 +159,7 @@ def _worst(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
 
 def _heat(case: DroppedRod, known: Range, energy: float) -> dict[str, Any]:
     """Return the upper bound of friction heat, and the lower one of a rigid rod with Coulomb friction."""
-    certain = largest_loss_whatever(case, known)
+    certain = upper_bound_loss(case, known)
     worst = worst_losses(case, known)
     rigid = max(sliding_heat(case, known), worst.tangential.share if worst else 0.0)
     return {

@@ -9,7 +9,7 @@ from statistics import fmean
 from typing import Any
 
 from fem_impact.answers.refine.extrapolate import limit, pair_limit
-from fem_impact.answers.refine.levels import FAMILY, Mesh, family, placed
+from fem_impact.answers.refine.levels import FAMILY, MeshLevel, at_offsets, family
 from fem_impact.answers.report import Request, Sheet, StudyReport
 from fem_impact.figures.panels import Panel, Picture, Series
 from fem_impact.jobs.job import Job
@@ -22,7 +22,7 @@ from fem_impact.tables.table import Cell, Table
 
 Row = dict[str, Any]
 
-QUICK = (Mesh(-2), *FAMILY[:-1])
+QUICK = (MeshLevel(-2), *FAMILY[:-1])
 """Meshes of the quick study: a coarser one for the finest, since a limit takes three."""
 
 SETS = ("t3-machined", "t3-contaminated", "t5b", "t6-17")
@@ -52,7 +52,7 @@ def jobs_of(name: str, quick: bool) -> list[list[Job]]:
     return [
         [
             Job(f"{name}-{1e3 * mesh.sizes(plain)[0]:.3f}-{scene.accuracy.grid_shift:g}", scene)
-            for scene in placed(plain, mesh)[:positions]
+            for scene in at_offsets(plain, mesh)[:positions]
         ]
         for mesh in meshes
     ]

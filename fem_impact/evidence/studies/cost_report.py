@@ -164,10 +164,10 @@ def _best(cost: CostStudy, name: str) -> Group:
     """Return the best several meshes for a quantity; their band is bold where it meets `WANTED`."""
     group = best_group(cost.settings, (name,), WANTED)
     assert group is not None  # sets with one mesh are left out
-    truth = cost.truth[name]
-    both = group.band[name] * truth.scale + truth.uncertainty
-    off = abs((group.value[name] or 0.0) - truth.value) / both if both else 0.0
-    value = f"{group.value[name] or 0.0:.4f} ± {group.band[name] * truth.scale:.4f}"
+    limit = cost.limits[name]
+    both = group.band[name] * limit.scale + limit.uncertainty
+    off = abs((group.value[name] or 0.0) - limit.value) / both if both else 0.0
+    value = f"{group.value[name] or 0.0:.4f} ± {group.band[name] * limit.scale:.4f}"
     met = group.band[name] <= WANTED
     band = f"**{_percent(group.band[name])}**" if met else _percent(group.band[name])
     sizes = group.name.removeprefix("solid ").replace(" mm extrapolated", "")
@@ -215,7 +215,7 @@ def _savings(costs: Mapping[str, CostStudy]) -> str:
     ratios = [full.cpu_s / default.cpu_s for _, default, full in both]
     changed = {
         name: max(
-            100 * abs((full.value[name] or 0.0) - (default.value[name] or 0.0)) / cost.truth[name].scale
+            100 * abs((full.value[name] or 0.0) - (default.value[name] or 0.0)) / cost.limits[name].scale
             for cost, default, full in both
         )
         for name in TARGETED
@@ -270,7 +270,7 @@ def _setting_sheet(costs: Mapping[str, CostStudy]) -> Sheet:
     rows = [
         (
             name,
-            *(f"{cost.truth[of].value:.3g} ± {cost.truth[of].uncertainty:.1g}" for of in TARGETED),
+            *(f"{cost.limits[of].value:.3g} ± {cost.limits[of].uncertainty:.1g}" for of in TARGETED),
             *(_setting_cell(cost.settings, column) for column in columns),
         )
         for name, cost in costs.items()

@@ -361,10 +361,11 @@ def modes_less_elements(curve: DataFrame, kind: str) -> str:
 def how_sure(points: DataFrame) -> str:
     """Return how many points have a band as narrow as wanted, and how many are gaps."""
     close = points.band_as_wanted == "yes"
+    doubted = points.doubted & ~close
     residuals = points.residual_over_E_0.dropna().astype(float).abs()
     return (
         f"Two meshes give vibration of {close.sum()} of {len(points)} points within {CLOSE:.0%} of itself or "
-        f"{LEAST:g} of E_0; in {(close & points.doubted).sum()} of them its two counts, by modes and without "
+        f"{LEAST:g} of E_0; in {doubted.sum()} of the others its two counts, by modes and without "
         f"them, differ by more. {(points.reason != '').sum()} points have no value or no band. The largest "
         f"residual of their ledgers is {max(residuals, default=0.0):.1g} of E_0."
     )

@@ -12,7 +12,7 @@ from itertools import chain, takewhile
 from typing import TYPE_CHECKING, Any
 
 from fem_impact.answers.refine.extrapolate import vibration_floor
-from fem_impact.evidence.studies.pairs import resized, shifted, with_limits
+from fem_impact.evidence.studies.pairs import resized, shifted, vibration_band, with_limits
 from fem_impact.evidence.studies.rods import DroppedRod
 from fem_impact.jobs.job import Failure, Job
 from fem_impact.jobs.run import JobResults
@@ -160,9 +160,24 @@ def limited(levels: Sequence[Sequence[Result]]) -> Result:
     """
     if isinstance(levels[1][0], Failure):
         return levels[1][0]
-    finer = takewhile(lambda runs: all(value(run, VIBRATION) is not None for run in runs), levels[2:])
-    *_, coarse, fine = (*levels[:2], *finer)
+    coarse, fine = _finest_two(levels)
     return with_limits(fine, coarse)
+
+
+def is_settled(levels: Sequence[Sequence[Result]]) -> bool:
+    """Return whether no finer mesh is called for: the meshes alone give vibration as closely as wanted.
+
+    The stated band also holds the distance of the two counts of vibration, which a finer mesh may not lower.
+    """
+    coarse, fine = _finest_two(levels)
+    band = vibration_band(fine, coarse)
+    return band is not None and band <= wanted_band(limited(levels))
+
+
+def _finest_two(levels: Sequence[Sequence[Result]]) -> Sequence[Sequence[Result]]:
+    """Return the runs on the finest mesh that knows vibration, after those on the mesh before it."""
+    finer = takewhile(lambda runs: all(value(run, VIBRATION) is not None for run in runs), levels[2:])
+    return (*levels[:2], *finer)[-2:]
 
 
 def estimate(result: Result, key: str) -> tuple[float | None, float | None]:
@@ -192,7 +207,7 @@ def more_jobs(runs: DataFrame, results: JobResults) -> list[Job]:
     levels, rod_runs = mesh_levels(runs), mesh_levels(runs, "rod_run")
     jobs: list[Job] = []
     for at in range(2, len(levels)):
-        if is_close(limited(levels[:at])):
+        if is_settled(levels[:at]):
             break
         jobs += [run.job() for run in rod_runs[at]]
         if any(job.name not in results for job in jobs):

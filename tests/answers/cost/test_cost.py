@@ -25,8 +25,16 @@ from fem_impact.answers.cost.judge import (
     worst,
 )
 from fem_impact.answers.cost.measure import judge_stored, measure
-from fem_impact.answers.refine.extrapolate import EVEN, LOWEST, mesh_limits, pair_limit, stated_limits, truths
-from fem_impact.answers.refine.levels import FAMILY, ONE_PLACE, Mesh, ladder, on_mesh, placed
+from fem_impact.answers.cost.settings import ONE_OFFSET, settings_of
+from fem_impact.answers.refine.extrapolate import (
+    EVEN,
+    LOWEST,
+    MeshRuns,
+    mesh_limits,
+    pair_limit,
+    target_limits,
+)
+from fem_impact.answers.refine.levels import FAMILY, MeshLevel, at_offsets, on_mesh
 from fem_impact.answers.refine.quantities import TARGETED, chosen
 from fem_impact.case.measured import yardsticks
 from fem_impact.errors import RunError, UsageError
@@ -48,7 +56,11 @@ def cost(fake, tmp_path):
 
 
 def runs_on(mesh):
-    return [run(scene) for scene in placed(SCENE, mesh)]
+    return [run(scene) for scene in at_offsets(SCENE, mesh)]
+
+
+def limits_of(meshes):
+    return target_limits([MeshRuns.of(runs) for runs in meshes])
 
 
 def by_name(cost, words):
@@ -58,10 +70,10 @@ def by_name(cost, words):
 
 
 def test_the_ladder_has_every_kind_of_setting():
-    names = [setting.name for setting in ladder(SCENE)]
+    names = [setting.name for setting in settings_of(SCENE)]
     assert len(set(names)) == len(names)
     assert names[:3] == ["rigid", "modal", "solid 0.594 mm"]
-    assert [setting.name for setting in ladder(SCENE) if setting.kind == "extrapolated"] == [
+    assert [setting.name for setting in settings_of(SCENE) if setting.kind == "extrapolated"] == [
         f"solid {sizes} mm extrapolated, {places} places"
         for sizes in ("0.594 and 0.297", "0.594 and 0.148", "0.297 and 0.148", "0.594, 0.297 and 0.148")
         for places in (2, 4)
@@ -69,12 +81,12 @@ def test_the_ladder_has_every_kind_of_setting():
     for effect in ("vibration", "friction", "rod-plasticity", "rate-hardening"):
         assert f"solid 0.594 mm without {effect}" in names
     assert "solid 0.594 mm with an elastic barrier" in names
-    for setting in ladder(SCENE):
+    for setting in settings_of(SCENE):
         assert len(setting.runs) == (len(setting.meshes) or 1)
         for mesh, jobs in zip(setting.meshes, setting.runs, strict=False):
             size = 0.019 / 8 / 2 ** (3 + mesh.finer)
             places = [job.scene.accuracy.grid_shift for job in jobs]
-            most = [0.0] if setting.kind in ONE_PLACE else [0.0, 0.5, 0.25, 0.75][: setting.places]
+            most = [0.0] if setting.kind in ONE_OFFSET else [0.0, 0.5, 0.25, 0.75][: setting.places]
             assert places == ([0.0, 0.5] if mesh == FAMILY[-1] else most)
             for key in ("tip_size", "barrier_size"):
                 sizes = [getattr(job.scene.accuracy, key) for job in jobs]
@@ -84,17 +96,19 @@ def test_the_ladder_has_every_kind_of_setting():
 
 def test_a_rigid_barrier_has_no_grid_to_place():
     stiff = replace(SCENE, effects=("vibration", "friction", "barrier-rigid"))
-    assert [scene.accuracy.grid_shift for scene in placed(stiff, FAMILY[0])] == [0.0]
-    assert [len(setting.runs[0]) for setting in ladder(stiff) if setting.kind == "mesh"] == [1] * len(FAMILY)
+    assert [scene.accuracy.grid_shift for scene in at_offsets(stiff, FAMILY[0])] == [0.0]
+    assert [len(setting.runs[0]) for setting in settings_of(stiff) if setting.kind == "mesh"] == [1] * len(
+        FAMILY
+    )
 
 
-def test_elements_and_steps_are_rungs_of_their_own():
-    numerics = [setting for setting in ladder(SCENE) if setting.kind == "numerics"]
-    (full,) = (setting.runs[0][0].scene for setting in ladder(SCENE) if setting.kind == "full")
+def test_elements_and_steps_are_settings_of_their_own():
+    numerics = [setting for setting in settings_of(SCENE) if setting.kind == "numerics"]
+    (full,) = (setting.runs[0][0].scene for setting in settings_of(SCENE) if setting.kind == "full")
     assert replace(SCENE.accuracy, mass_scaling=1.0, fine_zone="even") == full.accuracy
-    rungs = {setting.name: setting.runs[0][0].scene.accuracy for setting in numerics}
+    stated = {setting.name: setting.runs[0][0].scene.accuracy for setting in numerics}
     plain = on_mesh(SCENE, FAMILY[0]).accuracy
-    assert rungs == {
+    assert stated == {
         "solid 0.594 mm fully integrated": replace(plain, element="full"),
         "solid 0.594 mm mean dilatation": replace(plain, element="bbar"),
         "solid 0.594 mm with half the default step": replace(plain, step=0.5 * plain.step),
@@ -103,30 +117,30 @@ def test_elements_and_steps_are_rungs_of_their_own():
 
 def test_limit_and_order_are_found(cost):
     for name, key in (("e", "e_edge"), ("mu", "mu"), ("E_vib", "E_vib_over_E_0")):
-        assert cost.truth[name].value == pytest.approx(LIMIT[key], rel=1e-4)
-        assert cost.truth[name].order == pytest.approx(1, abs=0.02)
+        assert cost.limits[name].value == pytest.approx(LIMIT[key], rel=1e-4)
+        assert cost.limits[name].order == pytest.approx(1, abs=0.02)
         finest = SLOPE[key] * (0.019 / 128 / TIP)
-        rest = cost.truth[name].uncertainty - cost.truth[name].scatter
+        rest = cost.limits[name].uncertainty - cost.limits[name].scatter
         assert rest == pytest.approx(0.25 * abs(finest), rel=0.01)
-    assert cost.truth["mu"].scatter == 0
-    assert EVEN[2] * WIGGLE * 0.019 / 128 / TIP < cost.truth["e"].scatter < 15 * EVEN[2] * WIGGLE
+    assert cost.limits["mu"].scatter == 0
+    assert EVEN[2] * WIGGLE * 0.019 / 128 / TIP < cost.limits["e"].scatter < 15 * EVEN[2] * WIGGLE
 
 
 def test_errors_hold_distance_and_the_limits_own_uncertainty(cost):
-    beyond = cost.truth["e"].uncertainty
+    beyond = cost.limits["e"].uncertainty
     coarse = next(s for s in cost.settings if s.name == "solid 0.594 mm")
     away = SLOPE["e_edge"] * (0.019 / 32 / TIP)
     finest = 0.3 + SLOPE["e_edge"] * (0.019 / 128 / TIP)
     assert coarse.error["e"] == pytest.approx((away + beyond) / finest, rel=1e-3)
     modal = by_name(cost, "modal")
-    assert modal.error["mu"] == pytest.approx((0.05 + cost.truth["mu"].uncertainty) / 0.5, rel=1e-3)
+    assert modal.error["mu"] == pytest.approx((0.05 + cost.limits["mu"].uncertainty) / 0.5, rel=1e-3)
     assert by_name(cost, "rigid").error["E_vib"] is None
 
 
 def test_a_mesh_is_the_mean_of_its_places_and_their_spread_its_scatter(cost):
     h = 0.019 / 128 / TIP
     two, four = (next(s for s in cost.settings if s.name == f"solid {mm} mm") for mm in (0.148, 0.297))
-    scale = cost.truth["e"].scale
+    scale = cost.limits["e"].scale
     assert two.value["e"] == pytest.approx(LIMIT["e_edge"] + SLOPE["e_edge"] * h, rel=1e-9)
     assert two.scatter["e"] * scale == pytest.approx(EVEN[2] * WIGGLE * h, rel=1e-9)
     assert two.scatter["mu"] == 0
@@ -159,14 +173,14 @@ def test_two_places_of_each_mesh_take_half_the_time_and_scatter_more(cost):
 @pytest.mark.parametrize("order", [LOWEST, 1.0, 2.0, 40.0])
 def test_the_band_of_a_pair_holds_the_limit_whatever_the_order_from_three_quarters_up(ratio, order):
     fine, coarse = (1 + 0.2 * size**order for size in (1, ratio))
-    value, half = pair_limit(fine, coarse, ratio, places=4)
+    value, half = pair_limit(fine, coarse, ratio, offsets=4)
     assert abs(value - 1) <= half * (1 + 1e-12)
     assert (order == LOWEST) == (value - 1 == pytest.approx(half, rel=1e-9))
 
 
 @pytest.mark.parametrize("ratio", [1.5, 2.0, 3.0])
 def test_a_lower_order_falls_out_of_the_band_of_a_pair(ratio):
-    value, half = pair_limit(1.2, 1 + 0.2 * ratio**0.6, ratio, places=4)
+    value, half = pair_limit(1.2, 1 + 0.2 * ratio**0.6, ratio, offsets=4)
     assert abs(value - 1) > half
 
 
@@ -174,10 +188,10 @@ def test_the_scatter_of_both_meshes_is_carried_into_the_band(cost):
     two, four = EVEN[2], EVEN[4] / 6**0.5
     h, weight = 0.019 / 128 / TIP, 0.5 / (2**LOWEST - 1)
     scatter = WIGGLE * h * (((1 + weight) * two) ** 2 + (weight * 2 * four) ** 2) ** 0.5
-    pair, scale = by_name(cost, "solid 0.297 and 0.148 mm extrapolated, 4"), cost.truth["e"].scale
+    pair, scale = by_name(cost, "solid 0.297 and 0.148 mm extrapolated, 4"), cost.limits["e"].scale
     assert pair.scatter["e"] * scale == pytest.approx(scatter, rel=1e-6)
     assert pair.band["e"] * scale == pytest.approx(weight * SLOPE["e_edge"] * h + scatter, rel=1e-6)
-    beyond = abs(pair.value["e"] - cost.truth["e"].value) + cost.truth["e"].uncertainty
+    beyond = abs(pair.value["e"] - cost.limits["e"].value) + cost.limits["e"].uncertainty
     assert pair.error["e"] == pytest.approx(min(pair.band["e"], beyond / scale))
     assert all(bool(one.band) == (one.kind == "extrapolated") for one in cost.settings)
     assert any(one.error[name] == one.band[name] for one in cost.settings for name in one.band)
@@ -206,16 +220,16 @@ def test_the_band_of_coarse_meshes_that_agree_by_chance_reaches_to_the_limit_of_
         mesh: [altered(run, E_vib_over_E_0=E, E_vib_check_over_E_0=E) for run in runs_on(mesh)]
         for mesh, E in values.items()
     }
-    truth, finest = (truths([on[mesh] for mesh in meshes]) for meshes in (FAMILY, FAMILY[1:]))
-    groups = {one.name: one for one in ladder(SCENE) if one.kind == "extrapolated"}
+    limits, finest = (limits_of([on[mesh] for mesh in meshes]) for meshes in (FAMILY, FAMILY[1:]))
+    groups = {one.name: one for one in settings_of(SCENE) if one.kind == "extrapolated"}
     coarse, fine = (
-        judge(one, [on[mesh] for mesh in one.meshes], truth, finest)
+        judge(one, [MeshRuns.of(on[mesh]) for mesh in one.meshes], limits, finest)
         for one in (
             groups[f"solid {sizes} mm extrapolated, 4 places"]
             for sizes in ("0.594 and 0.297", "0.297 and 0.148")
         )
     )
-    scale, limit = truth["E_vib"].scale, finest["E_vib"]
+    scale, limit = limits["E_vib"].scale, finest["E_vib"]
     assert coarse.value["E_vib"] == pytest.approx(0.010)
     assert coarse.band["E_vib"] * scale == pytest.approx(limit.value - 0.010)
     assert fine.band["E_vib"] * scale == pytest.approx(limit.uncertainty)
@@ -225,13 +239,14 @@ def test_the_band_of_the_vibration_is_no_less_than_its_two_counts_allow():
     """However well two meshes agree; the other quantities do not know of it."""
     meshes = [runs_on(mesh) for mesh in FAMILY[1:]]
     apart = [[altered(run, E_vib_check_over_E_0=0.03) for run in runs] for runs in meshes]
-    plain, doubtful = truths(meshes), truths(apart)
+    plain, doubtful = limits_of(meshes), limits_of(apart)
     finest = apart[1][0].energy.vibration
     assert plain["E_vib"].uncertainty < 0.002
     assert doubtful["E_vib"].uncertainty == pytest.approx(0.03 - finest)
     assert doubtful["e"] == plain["e"]
-    assert stated_limits(apart)[1]["E_vib_over_E_0"] == pytest.approx(0.03 - finest)
-    assert stated_limits(apart)[1]["e_edge"] == mesh_limits(apart)[1]["e_edge"]
+    (_, narrow), (_, floored) = (mesh_limits(list(map(MeshRuns.of, runs))) for runs in (meshes, apart))
+    assert floored["E_vib_over_E_0"] == pytest.approx(0.03 - finest)
+    assert floored["e_edge"] == narrow["e_edge"]
 
 
 def test_an_effect_is_judged_on_its_own_mesh_and_never_chosen(cost):
@@ -249,7 +264,7 @@ def test_front_and_choice(cost):
     assert errors == sorted(errors, reverse=True)
     for one in cost.settings:
         beaten = [b for b in best if b.cpu_s <= one.cpu_s and worst(b, TARGETED) <= worst(one, TARGETED)]
-        assert beaten or one.kind in ONE_PLACE or one.error["E_vib"] is None
+        assert beaten or one.kind in ONE_OFFSET or one.error["E_vib"] is None
     assert cheapest(cost.settings, ["e"], 0.2).name == "rigid"
     assert cheapest(cost.settings, TARGETED, 0.2).name == "modal"
     assert cheapest(cost.settings, TARGETED, 1e-6) is None
@@ -281,7 +296,7 @@ def test_what_is_stored_is_not_computed_again(fake, tmp_path):
     ]
     found = measure(SCENE, tmp_path, NullMeter(), FAMILY, second)
     assert second.names == [f"t5b: solid 0.148 mm, grid at {place}" for place in ("0", "0.5")]
-    assert found.truth["e"].order is not None
+    assert found.limits["e"].order is not None
 
 
 def test_what_never_ran_cannot_be_judged(tmp_path):
@@ -290,7 +305,7 @@ def test_what_never_ran_cannot_be_judged(tmp_path):
 
 
 def test_two_meshes_assume_an_order_and_say_none():
-    found = truths([runs_on(Mesh(finer)) for finer in (0, 1)])["E_vib"]
+    found = limits_of([runs_on(MeshLevel(finer)) for finer in (0, 1)])["E_vib"]
     assert found.order is None
     assert abs(found.value - LIMIT["E_vib_over_E_0"]) <= found.uncertainty
     finest = SLOPE["E_vib_over_E_0"] * (0.019 / 128 / TIP)
@@ -303,7 +318,7 @@ def test_two_meshes_that_agree_by_chance_prove_nothing():
     same = [fine, [altered(run, tip_size_m=2 * run.cost.tip_size) for run in fine]]
     weight = 0.5 / (2**LOWEST - 1)
     both = ((1 + weight) ** 2 + weight**2) ** 0.5
-    assert truths(same)["e"].uncertainty == pytest.approx(EVEN[2] * 0.01 * both)
+    assert limits_of(same)["e"].uncertainty == pytest.approx(EVEN[2] * 0.01 * both)
 
 
 def test_the_scatter_of_a_limit_is_that_of_its_means():
@@ -317,9 +332,9 @@ def test_the_scatter_of_a_limit_is_that_of_its_means():
             [altered(run, e_edge=run.restitution.edge.e + error * by) for run in runs]
             for runs, error, by in zip(meshes, errors, generator.normal(size=3), strict=True)
         ]
-        ends.append(truths(moved)["e"].value - LIMIT["e_edge"])
+        ends.append(limits_of(moved)["e"].value - LIMIT["e_edge"])
     off = float(np.sqrt(np.mean(np.square(ends))))
-    assert 0.5 * off < truths(meshes)["e"].scatter < 2 * off
+    assert 0.5 * off < limits_of(meshes)["e"].scatter < 2 * off
 
 
 def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
@@ -343,7 +358,7 @@ def test_a_failed_run_is_told_and_too_few_meshes_refused(monkeypatch, tmp_path):
 def test_documents(cost, tmp_path):
     write_cost(cost, tmp_path)
     held = json.loads((tmp_path / "cost.json").read_text())
-    assert held["quantities"]["e"]["limit"] == cost.truth["e"].value
+    assert held["quantities"]["e"]["limit"] == cost.limits["e"].value
     assert len(held["settings"]) == len(cost.settings)
     assert held["machine"]["csr_ns_per_element_step"] > 0
     rows = list(csv.DictReader((tmp_path / "cost.csv").read_text().splitlines()))

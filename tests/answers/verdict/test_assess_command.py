@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from fem_impact.answers.verdict.bounds import (
     Range,
     carry,
-    largest_loss_whatever,
     measured_on,
     sliding_heat,
+    upper_bound_loss,
     worst_losses,
 )
 from fem_impact.answers.verdict.drop import DroppedRod, weights_of
@@ -112,7 +112,7 @@ def test_the_bounds_grow_with_what_is_not_known():
     case = short_rod()
     arm = float(case.arms.d_c)
     narrow, wide = Range((0.3, 0.4), (arm, arm + 1e-4)), Range((0.0, 1.0), (arm - 2e-3, arm + 2e-3))
-    for bound in (largest_loss_whatever, sliding_heat, lambda c, k: worst_losses(c, k).total.share):
+    for bound in (upper_bound_loss, sliding_heat, lambda c, k: worst_losses(c, k).total.share):
         assert bound(case, narrow) < bound(case, wide)
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from fem_impact.answers.verdict.assess import assess
-from fem_impact.answers.verdict.change import modal_pair
 from fem_impact.answers.verdict.chart import COLUMNS, Points, chart, collapse, points
+from fem_impact.answers.verdict.effect import modal_pair
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.outcome.keys import known
 from fem_impact.scene.shipped import load

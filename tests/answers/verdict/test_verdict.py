@@ -10,19 +10,20 @@ import pytest
 from own_bodies import taper, write
 from wide_contact import WIDE
 
-from fem_impact.answers.refine import budget as lanes
-from fem_impact.answers.refine.levels import FAMILY, ladder, on_mesh
-from fem_impact.answers.refine.loop import OwnLadder
+from fem_impact.answers.cost.settings import settings_of
+from fem_impact.answers.refine import budget as budgets
+from fem_impact.answers.refine import levels as levels_module
+from fem_impact.answers.refine.levels import FAMILY
+from fem_impact.answers.refine.loop import levels_of_twins
 from fem_impact.answers.verdict import assess as assess_module
-from fem_impact.answers.verdict import change as change_module
 from fem_impact.answers.verdict.assess import assess
-from fem_impact.answers.verdict.change import Change, Ladder, modal_change, modal_pair
 from fem_impact.answers.verdict.dropped import dropped
-from fem_impact.answers.verdict.reliability import beside, known_error, stored
+from fem_impact.answers.verdict.effect import VibrationEffect, modal_effect, modal_pair
+from fem_impact.answers.verdict.reliability import discrepancy, known_error, stored
 from fem_impact.answers.verdict.screening import screening
 from fem_impact.answers.verdict.sentences import basis, box, case_sentence, document, doubt
 from fem_impact.answers.verdict.twins import inclined, twins
-from fem_impact.answers.wanted_error import settle
+from fem_impact.answers.wanted_error import RefinementPlan, settle
 from fem_impact.case.case import Case
 from fem_impact.case.cells import ERROR, expected_cells
 from fem_impact.case.plates import half_space_error
@@ -166,7 +167,7 @@ def test_an_inclined_scene_turns_rod_and_velocity_together():
     ],
 )
 def test_the_answer_is_open_where_the_band_straddles_the_tolerance(value, band, said):
-    change = Change(0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
+    change = VibrationEffect(0.0, value, band, 0.0, 0.0, None, None, "", "", "", "", {})
     assert change.answer(0.05) == said
 
 
@@ -179,7 +180,7 @@ def test_the_change_of_e_is_that_of_two_runs(short):
 
 def test_the_known_error_is_that_of_scenes_of_like_ratio():
     error = known_error(load("t4"))
-    own = beside("t4")
+    own = discrepancy("t4")
     assert error.compared == ("t4",)
     assert error.change_of_e == abs(own.modal - own.solid) > 0.02
     long = known_error(load("t2"))
@@ -190,7 +191,7 @@ def test_a_scene_unlike_all_gets_the_largest_error_of_all():
     error = known_error(aluminium())
     assert not error.alike
     assert len(error.compared) == len(stored()) == 13
-    assert error.change_of_e == max(abs(one.modal - one.solid) for one in map(beside, stored()))
+    assert error.change_of_e == max(abs(one.modal - one.solid) for one in map(discrepancy, stored()))
     assert "none of which has a like T1/tau and these materials" in error.sentence
     other = known_error(replace_all(load("t5b"), {"projectile.material": "alumina"}))  # T1/tau is near
     assert other == error
@@ -235,7 +236,7 @@ def meshed(monkeypatch, shifts):
             runs.append(run if moved is not None else cut_short(run))
         return runs
 
-    monkeypatch.setattr(lanes, "side_by_side", stand_in)
+    monkeypatch.setattr(budgets, "side_by_side", stand_in)
     return asked
 
 
@@ -268,7 +269,7 @@ def test_what_finite_elements_show_of_the_reduced_models_error_counts_at_other_i
 
 
 def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
-    meshed(monkeypatch, [0.0, *(0.008,) * 4])
+    meshed(monkeypatch, [0.0, 0.008, 0.0, 0.008])
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert found.answer == "undecided"
     assert any("No finer mesh is tried" in note for note in found.notes)
@@ -276,12 +277,20 @@ def test_meshes_that_disagree_leave_the_answer_open(monkeypatch):
 
 def test_one_mesh_that_the_reduced_model_contradicts_does_not_decide(monkeypatch):
     """An aluminium rod's coarse mesh said no, with a band in which no finer mesh lay."""
-    asked = meshed(monkeypatch, [-0.4, *(0.0,) * 4])
+    asked = meshed(monkeypatch, [-0.4, 0.0, None])
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
-    assert len(asked) > 1  # the first mesh alone says no beyond its band
+    assert len(asked) == 3  # the first mesh alone says no beyond its band
     assert found.answer == "undecided"
     assert abs(found.here.value) + found.here.band >= 0.39  # the band holds both meshes
     assert "the band holds both" in found.here.source
+
+
+def test_the_finest_two_meshes_count(monkeypatch):
+    """However far off the coarsest one is."""
+    asked = meshed(monkeypatch, [-0.4, 0.0, 0.001])
+    found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
+    assert (found.answer, len(asked)) == ("yes", 3)
+    assert f"meshes of {asked[1] * 1e3:.3g} mm and {asked[2] * 1e3:.3g} mm" in found.here.source
 
 
 def test_a_scene_like_none_that_was_computed_both_ways_is_not_left_to_the_reduced_model(monkeypatch):
@@ -307,7 +316,7 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
     def folded(*_):
         raise SceneError("cannot be meshed: cell 7 is folded.", key="projectile")
 
-    monkeypatch.setattr(lanes, "side_by_side", folded)
+    monkeypatch.setattr(budgets, "side_by_side", folded)
     found = assess(load("t5b"), tolerance=0.02, budget_s=1e5)
     assert (found.fidelity, found.answer) == ("modal", "undecided")
     assert any("on the first mesh" in note and "cell 7 is folded" in note for note in found.notes)
@@ -316,8 +325,14 @@ def test_a_mesh_that_folds_leaves_what_the_reduced_model_says(monkeypatch):
 
 def test_a_scene_without_a_mesh_is_left_to_the_reduced_model_or_refused(monkeypatch):
     refused = SceneError("needs a mesh of 1.6e+06 cells.", key="barrier.thickness")
-    monkeypatch.setattr(change_module, "can_be_made", lambda scene: False)
-    monkeypatch.setattr(lanes, "planned_s", lambda *_: (_ for _ in ()).throw(refused))
+
+    class Refusing(Case):
+        @classmethod
+        def of(cls, scene, fidelity="solid"):
+            raise refused
+
+    monkeypatch.setattr(levels_module, "Case", Refusing)
+    levels_module.mesh_levels.cache_clear()
     found = assess(load("t5b"), tolerance=0.02)
     assert (found.fidelity, found.more) == ("modal", "")
     assert f"Finite elements have no answer here: {refused}" in found.notes
@@ -326,31 +341,29 @@ def test_a_scene_without_a_mesh_is_left_to_the_reduced_model_or_refused(monkeypa
 
 
 def test_a_mesh_that_cannot_be_made_is_passed_over(monkeypatch):
-    ladder = Ladder.of(load("t5b"), 1.0, 2)
-    assert ladder.following() == FAMILY[0]
-    ladder.meshes.append(FAMILY[0])
-    assert ladder.following() == FAMILY[1]
-    (second,) = {on_mesh(scene, FAMILY[1]).accuracy for scene in twins(load("t5b"))}
-    monkeypatch.setattr(change_module, "can_be_made", lambda scene: scene.accuracy != second)
-    assert ladder.following() == FAMILY[2]
+    second = FAMILY[1].sizes(load("t5b"))[0]
+    monkeypatch.setattr(
+        levels_module, "can_be_made", lambda scene: abs(scene.accuracy.tip_size / second - 1) > 1e-6
+    )
+    levels_module.mesh_levels.cache_clear()
+    sizes = [level.size for level in levels_of_twins(*twins(load("t5b")))]
+    levels_module.mesh_levels.cache_clear()
+    assert sizes == pytest.approx([2 * second, second / 2, second / 4])
 
 
 def test_the_first_mesh_is_the_coarsest_that_can_be_made():
     """Meshes follow the cells of the section that touches, which is small on a sphere-cone."""
     for name in ("sphere-cone", "ogive", "tube"):
-        ladder = Ladder.of(load(name), 1.0, 2)
-        assert Case.of(on_mesh(load(name), ladder.following())).size.rod > 0
+        first = levels_of_twins(*twins(load(name)))[0]
+        assert all(Case.of(scene).size.rod > 0 for scene in first.scenes)
 
 
 @pytest.mark.parametrize("scene", [load("t5b"), WIDE])
 def test_finer_meshes_follow_down_to_a_quarter_of_the_first(scene):
     """Meshes finer than a scene's own can be made, though none that is coarser can under a wide contact."""
-    ladder, edges = Ladder.of(scene, 1.0, 2), []
-    while (mesh := ladder.following()) is not None:
-        edges.append(ladder._edge(mesh))
-        ladder.meshes.append(mesh)
-    assert edges == sorted(edges, reverse=True)
-    assert edges[-1] <= 0.25 * edges[0] * (1 + 1e-9)
+    sizes = [level.size for level in levels_of_twins(*twins(scene))]
+    assert sizes == sorted(set(sizes), reverse=True)
+    assert sizes[-1] <= 0.25 * sizes[0] * (1 + 1e-9)
 
 
 def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_out():
@@ -361,7 +374,7 @@ def test_a_spin_that_lifts_the_contact_point_at_some_inclinations_leaves_them_ou
 
 def test_a_spin_that_lifts_the_contact_point_is_refused_before_any_work():
     lifted = replace_all(load("t5b"), {"impact.omega": "150 rad/s"})
-    for work in (lambda: assess(lifted), lambda: ladder(lifted), lambda: Case.of(lifted)):
+    for work in (lambda: assess(lifted), lambda: settings_of(lifted), lambda: Case.of(lifted)):
         with pytest.raises(SceneError, match=r"impact\.omega = .* lifts the contact point off the barrier"):
             work()
 
@@ -511,7 +524,7 @@ def solid_alone(monkeypatch, moved, check=0.02):
             made.append(replace(run, restitution=replace(run.restitution, edge=edge), energy=energy))
         return made
 
-    monkeypatch.setattr(lanes, "side_by_side", stand_in)
+    monkeypatch.setattr(budgets, "side_by_side", stand_in)
     return asked
 
 
@@ -547,7 +560,7 @@ def test_the_band_of_the_reduced_model_holds_what_a_half_space_under_a_thin_plat
     thin, thick = (
         replace_all(load("plate-10mm"), {"barrier.thickness": thickness}) for thickness in ("8 mm", "12 mm")
     )
-    change, plain = (modal_change(scene, modal_pair(scene)) for scene in (thin, thick))
+    change, plain = (modal_effect(scene, modal_pair(scene)) for scene in (thin, thick))
     told = known_error(thin).change_of_e
     share = (change.band - told) / known(change.free.restitution.edge.e)
     assert share == pytest.approx(half_space_error(Case.of(thin).bodies), rel=1e-12)
@@ -597,7 +610,7 @@ def test_a_mesh_that_the_solid_model_cannot_hold_is_refused_before_any_run(strik
 
 def test_shares_of_the_reduced_model_carry_its_known_errors(short):
     errors = known_error(load("t5b"))
-    own = beside("t5b")
+    own = discrepancy("t5b")
     assert (
         errors.shares["friction"] >= abs(own.shares_modal["friction"] - own.shares_solid["friction"]) > 0.05
     )
@@ -616,7 +629,7 @@ def test_headline_and_shares_name_what_they_rest_on(monkeypatch):
     assert "one mesh of finite elements, and the reduced model within" in takes
     assert "by one mesh of finite elements" in rest
     assert not any("meshes" in line for line in (may, takes, rest))
-    quick = modal_change(load("t5b"), modal_pair(load("t5b")))
+    quick = modal_effect(load("t5b"), modal_pair(load("t5b")))
     assert abs(found.here.E_vib - quick.E_vib) + quick.E_vib_band <= found.here.E_vib_band
 
 
@@ -673,4 +686,4 @@ def test_a_face_that_lands_flat_keeps_to_the_budget_and_a_wanted_error():
     flat = replace_all(load("t5b"), {"impact.angle": "0 deg", "impact.v_t": "0 m/s"})
     with pytest.raises(RunError, match=r"no reduced model of a flat face .* A first mesh would take about"):
         assess(flat, budget_s=0.01)
-    assert isinstance(settle(replace_all(flat, {"accuracy": "5 %"}), budget_s=5.0), OwnLadder)
+    assert isinstance(settle(replace_all(flat, {"accuracy": "5 %"}), budget_s=5.0), RefinementPlan)

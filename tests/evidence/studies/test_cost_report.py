@@ -4,7 +4,7 @@ import pytest
 
 from fem_impact.answers.cost.judge import Judged
 from fem_impact.answers.cost.measure import CostStudy
-from fem_impact.answers.refine.extrapolate import Truth
+from fem_impact.answers.refine.extrapolate import ExtrapolatedValue
 from fem_impact.evidence.studies.cost_report import FRONT, paper_report, scene_report
 from fem_impact.figures import still, style
 from fem_impact.figures.live import live
@@ -34,8 +34,8 @@ def setting(kind, cpu_s, error, band=None):
 
 
 def study(settings, scene="t5b"):
-    truth = dict.fromkeys(NAMES, Truth(0.5, 1.0, 0.01, 0.5))
-    return CostStudy(load(scene), truth, sorted(settings, key=lambda one: one.cpu_s), [], {})
+    limits = dict.fromkeys(NAMES, ExtrapolatedValue(0.5, 1.0, 0.01, 0.5))
+    return CostStudy(load(scene), limits, sorted(settings, key=lambda one: one.cpu_s), [], {})
 
 
 @pytest.fixture

@@ -12,12 +12,21 @@ from wide_contact import WIDE
 import fem_impact.run.simulate
 from fem_impact.answers import wanted_error as to_target
 from fem_impact.answers.cost.measure import affordable, measure
-from fem_impact.answers.refine import budget as lanes
-from fem_impact.answers.refine import levels as settings
-from fem_impact.answers.refine.levels import FAMILY, FEW, RUNGS, Mesh, family, ladder, on_mesh, placed, rungs
-from fem_impact.answers.refine.loop import ALONE, OwnLadder, achieved_error
-from fem_impact.answers.refine.times import LONGER
-from fem_impact.answers.wanted_error import settle
+from fem_impact.answers.cost.settings import settings_of
+from fem_impact.answers.refine import budget as budgets
+from fem_impact.answers.refine import levels as levels_module
+from fem_impact.answers.refine.budget import LONGER
+from fem_impact.answers.refine.extrapolate import ALONE, MeshRuns
+from fem_impact.answers.refine.levels import (
+    FAMILY,
+    FEW_OFFSETS,
+    MESH_LEVELS,
+    at_offsets,
+    family,
+    mesh_levels,
+    on_mesh,
+)
+from fem_impact.answers.wanted_error import RefinementPlan, achieved_error, settle
 from fem_impact.case.case import Case
 from fem_impact.cli.run import print_outcome
 from fem_impact.errors import RunError, SceneError, UsageError
@@ -47,7 +56,7 @@ def fake(monkeypatch):
 
 def test_a_scene_far_from_every_measured_one_gets_a_ladder_of_its_own():
     chosen = settle(FAR, budget_s=30.0)
-    assert isinstance(chosen, OwnLadder)
+    assert isinstance(chosen, RefinementPlan)
     assert "nearest scene with a measured cost" in chosen.sentence and "30 s" in chosen.sentence
     with pytest.raises(SceneError, match="cannot be judged"):
         settle(FAR, "rigid")
@@ -62,7 +71,7 @@ def test_the_ladder_ends_where_the_band_is_narrow_enough(fake, tmp_path):
     assert stated.mesh_band["e_edge"] > 0
     assert (tmp_path / "outcome.json").exists()
     finer = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=1e9)
-    assert finer.validity.accuracy_setting.startswith(f"{len(RUNGS)} meshes")
+    assert finer.validity.accuracy_setting.startswith(f"{len(MESH_LEVELS)} meshes")
     assert finer.validity.achieved_error > 1e-5  # not reached, and said
 
 
@@ -90,7 +99,7 @@ def test_a_run_that_knows_no_e_ends_the_ladder(monkeypatch):
 
 def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
-    monkeypatch.setattr(lanes, "perf_counter", lambda: float(next(seconds)))
+    monkeypatch.setattr(budgets, "perf_counter", lambda: float(next(seconds)))
     outcome = to_target.simulate(replace(FAR, "accuracy", "0.001 %"), budget_s=60.0)
     stated = outcome.validity
     assert stated.accuracy_setting.startswith("1 mesh of its own")
@@ -98,7 +107,7 @@ def test_the_ladder_stops_before_its_time_is_over(fake, monkeypatch):
 
 
 def asked(monkeypatch, budget_s, workers=1):
-    """Return the ladder of `FAR` in a budget, the mesh and place of each of its runs, and its outcome."""
+    """Return the plan for `FAR` in a budget, the mesh and place of each of its runs, and its outcome."""
     places = []
 
     def noted(scene, *rest):
@@ -113,8 +122,8 @@ def asked(monkeypatch, budget_s, workers=1):
 @pytest.fixture
 def on_plan(monkeypatch):
     """Let runs take what they are planned to take, and the clock stand still."""
-    monkeypatch.setattr(lanes, "pace", lambda *_: 1.0)
-    monkeypatch.setattr(lanes, "perf_counter", lambda: 0.0)
+    monkeypatch.setattr(budgets, "calibration_factor", lambda *_: 1.0)
+    monkeypatch.setattr(budgets, "perf_counter", lambda: 0.0)
 
 
 def test_a_budget_below_two_meshes_is_told_before_the_coarsest_runs_once(on_plan, monkeypatch):
@@ -148,9 +157,9 @@ def test_a_budget_below_two_places_of_two_meshes_takes_one_place_each(on_plan, m
 
 def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monkeypatch):
     """A rod that leaves earlier than planned leaves time for a second place, or for a finer mesh."""
-    whole = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in placed(FAR, mesh, FEW))
+    whole = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in at_offsets(FAR, mesh, FEW_OFFSETS))
     assert {place for _, place in asked(monkeypatch, 0.5 * whole)[1]} == {0.0}
-    monkeypatch.setattr(lanes, "pace", lambda *_: 0.4)
+    monkeypatch.setattr(budgets, "calibration_factor", lambda *_: 0.4)
     _, places, outcome = asked(monkeypatch, 0.5 * whole)
     assert [place for _, place in places] == [0.0, 0.5, 0.0, 0.5]
     assert outcome.validity.achieved_error <= FAR.accuracy.target
@@ -161,7 +170,9 @@ def test_what_the_first_run_took_decides_how_far_the_ladder_climbs(on_plan, monk
 def scattered(monkeypatch):
     """Let e scatter, and return the error of the coarsest two meshes at two places each."""
     monkeypatch.setattr(cost_fakes, "WIGGLE", 0.01)
-    return achieved_error([[run(one) for one in placed(FAR, mesh, FEW)] for mesh in FAMILY[:2]])
+    return achieved_error(
+        [MeshRuns.of(run(one) for one in at_offsets(FAR, mesh, FEW_OFFSETS)) for mesh in FAMILY[:2]]
+    )
 
 
 def test_other_places_run_where_only_the_scatter_is_in_the_way(on_plan, scattered, monkeypatch):
@@ -193,7 +204,8 @@ def test_an_error_that_is_not_reached_tells_what_more_would_cost(on_plan, monkey
     """The budget that is advised lets the next mesh run."""
     monkeypatch.setitem(globals(), "FAR", replace(FAR, "accuracy", "0.001 %"))
     two, three = (
-        sum(Case.of(one).size.time for mesh in FAMILY[:n] for one in placed(FAR, mesh, FEW)) for n in (2, 3)
+        sum(Case.of(one).size.time for mesh in FAMILY[:n] for one in at_offsets(FAR, mesh, FEW_OFFSETS))
+        for n in (2, 3)
     )
     outcome = asked(monkeypatch, 1.01 * two)[2]
     (told,) = [text for text in outcome.validity.warnings if "not reached" in text]
@@ -224,7 +236,7 @@ def test_a_finer_mesh_that_fails_leaves_what_the_coarser_ones_say(on_plan, monke
 
 def test_runs_that_exceed_the_budget_say_so(fake, monkeypatch):
     seconds = iter(range(0, 10000, 40))
-    monkeypatch.setattr(lanes, "perf_counter", lambda: float(next(seconds)))
+    monkeypatch.setattr(budgets, "perf_counter", lambda: float(next(seconds)))
     over, _ = to_target.simulate(FAR, budget_s=1.0).validity.warnings[-2:]
     assert over == "The runs for the wanted error took 40 s, more than the budget of 1 s."
 
@@ -234,25 +246,27 @@ def test_a_mesh_that_cannot_be_made_gives_way_to_a_finer_one(fake):
     assert family(FAR) == FAMILY
     with pytest.raises(SceneError, match="leaves the tip as coarse as the rod"):
         Case.of(on_mesh(WIDE, FAMILY[0]))
-    assert family(WIDE) == RUNGS[1:]
+    assert family(WIDE) == MESH_LEVELS[1:]
     outcome = to_target.simulate(replace(WIDE, "accuracy", "0.001 %"), budget_s=1e9)
     assert outcome.validity.accuracy_setting.startswith("3 meshes of its own")
     assert outcome.cost.tip_size == pytest.approx(family(WIDE)[-1].sizes(WIDE)[0])
-    assert [len(placed(WIDE, mesh)) for mesh in family(WIDE)] == [4, 4, 2]
+    assert [len(at_offsets(WIDE, mesh)) for mesh in family(WIDE)] == [4, 4, 2]
 
 
 def test_a_mesh_whose_sizes_no_scene_may_state_is_left_out(monkeypatch):
     """Those of a contact so narrow that its finest cells would be under 0.01 mm."""
-    monkeypatch.setattr(Mesh, "sizes", lambda mesh, scene: (2e-5 / 2**mesh.finer,) * 2)
-    monkeypatch.setattr(settings, "can_be_made", lambda scene: True)
-    assert rungs.__wrapped__(FAR) == RUNGS[:3]
+    monkeypatch.setattr(levels_module, "_sizes", lambda scene, finer: (2e-5 / 2**finer,) * 2)
+    monkeypatch.setattr(levels_module, "can_be_made", lambda scene: True)
+    assert mesh_levels.__wrapped__(FAR) == MESH_LEVELS[:3]
 
 
 @pytest.mark.parametrize(("stated", "taken"), [(6, 8), (8, 8), (12, 12)])
 def test_meshes_have_the_cells_across_that_a_scene_states_and_eight_at_least(stated, taken):
     scene = replace(load("t5b"), "accuracy.across", stated)
-    assert {on_mesh(scene, mesh).accuracy.across for mesh in RUNGS} == {taken}
-    assert RUNGS[1].sizes(scene)[0] == pytest.approx(8 / taken * RUNGS[1].sizes(load("t5b"))[0], rel=0.35)
+    assert {on_mesh(scene, mesh).accuracy.across for mesh in MESH_LEVELS} == {taken}
+    assert MESH_LEVELS[1].sizes(scene)[0] == pytest.approx(
+        8 / taken * MESH_LEVELS[1].sizes(load("t5b"))[0], rel=0.35
+    )
 
 
 def test_a_cost_study_has_no_setting_that_cannot_be_made(fake, tmp_path):
@@ -260,15 +274,15 @@ def test_a_cost_study_has_no_setting_that_cannot_be_made(fake, tmp_path):
     assert not study.failures
     assert sum(one.kind == "mesh" for one in study.settings) == len(FAMILY)
     assert {one.kind for one in study.settings} >= {"numerics", "effect", "extrapolated"}
-    for setting in ladder(WIDE):
+    for setting in settings_of(WIDE):
         for job in (one for runs in setting.runs for one in runs if one.fidelity == "solid"):
             assert Case.of(job.scene).size.time > 0
 
 
 def test_a_cost_study_runs_what_its_budget_holds(fake, tmp_path):
     scene = load("t5b")
-    whole = ladder(scene)
-    two = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in placed(scene, mesh))
+    whole = settings_of(scene)
+    two = sum(Case.of(one).size.time for mesh in FAMILY[:2] for one in at_offsets(scene, mesh))
     kept = affordable(whole, 1.01 * two)
     assert [one.name for one in kept if one.kind == "mesh"] == [
         one.name for one in whole if one.kind == "mesh"
