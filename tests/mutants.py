@@ -88,15 +88,15 @@ MUTANTS = (
     Mutant(
         "friction of the reduced model moved by the last speed of its contact, not by its place",
         "fem_impact/modal/march.py",
-        "meet(law, flow, springs, furrow, depth, place, place - before)",
-        "meet(law, flow, springs, furrow, depth, place, dt * (rigid[V_T] + rigid[SPIN] * arm[3]))",
+        "meet(law, flow, springs, groove, depth, place, place - before)",
+        "meet(law, flow, springs, groove, depth, place, dt * (rigid[AT.V_t] + rigid[AT.Omega] * arm[3]))",
         "tests/modal/test_modal.py::test_friction_takes_energy_whatever_the_step",
     ),
     Mutant(
         "gravity half a step ahead in the flight of the reduced model",
         "fem_impact/modal/march.py",
-        "rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[SURFACE_N])",
-        "rigid[HEIGHT] += dt * (rigid[V_N] + dt * g_n - rigid[SURFACE_N])",
+        "rigid[AT.height] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.surface_n])",
+        "rigid[AT.height] += dt * (rigid[AT.V_n] + dt * g_n - rigid[AT.surface_n])",
         "tests/modal/test_modal_limits.py::test_the_ledger_closes_with_gravity",
     ),
     Mutant(

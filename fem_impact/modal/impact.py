@@ -12,22 +12,13 @@ import numpy as np
 from fem_impact.arrays import Array
 from fem_impact.case.case import Case
 from fem_impact.fem.kernels import compiled_before
-from fem_impact.modal.march import drop
+from fem_impact.modal.march import integrate_impact
 from fem_impact.modal.motion import (
-    AWAY_N,
-    AWAY_T,
-    BASE_N,
-    BASE_SPIN,
-    BASE_T,
-    FLOWED,
-    HARDEST,
+    AT,
     MOST_CONTACTS,
     MOST_ROWS,
     NOTHING,
-    RUBBED,
-    SHEARED,
-    WORK_G,
-    WORK_P,
+    SUM,
     Bounds,
     ModalEnd,
     Modes,
@@ -116,7 +107,7 @@ def solve(
     """
     if progress is not None:
         progress(setting_up(case.max_time, case.scene.id))
-        if not compiled_before("march.drop"):
+        if not compiled_before("march.integrate_impact"):
             progress(compiling(case.max_time, COMPILE))
     rod, law = modal_rod(case.bodies, case.slots.vibrating), contact_law(case.contact)
     flow = flow_law(case.contact, case.slots.rod_law, case.slots.barrier_law)
@@ -129,9 +120,9 @@ def solve(
     bounds = Bounds(dt, horizon(case.scene.projectile), case.max_time, widest)
     # compiles, or fetches what was compiled before, so that times are times of the impact
     record = np.zeros((MOST_ROWS if recorded else 0, 15))
-    drop(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
+    integrate_impact(start, law, flow, modes, rod.others, bounds._replace(horizon=0.0), contacts, record[:0])
     wall, cpu = time.perf_counter(), time.process_time()
-    end = drop(start, law, flow, modes, rod.others, bounds, contacts, record)
+    end = integrate_impact(start, law, flow, modes, rod.others, bounds, contacts, record)
     wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
     return _result(case, rod, end, E_0, contacts, bounds, record, (wall, cpu))
 
@@ -149,12 +140,12 @@ def _result(
     """Return the result of a march that ``took`` wall and processor time, s."""
     scene, motion, tally = case.scene, end.motion.rigid[:3], end.tally
     energies = 0.5 * (end.motion.rate**2 + (rod.omega * end.motion.q) ** 2)
-    skin, friction = tally[SHEARED] + tally[RUBBED], tally[RUBBED]
-    plastic = tally[FLOWED] + tally[SHEARED]
-    base_n, base_t, base_spin = end.motion.rigid[[BASE_N, BASE_T, BASE_SPIN]]
+    skin, friction = tally[SUM.shear] + tally[SUM.friction], tally[SUM.friction]
+    plastic = tally[SUM.flow] + tally[SUM.shear]
+    base_n, base_t, base_spin = end.motion.rigid[[AT.V_bn, AT.V_bt, AT.Omega_b]]
     barrier = 0.5 * (scene.barrier.mass or 0.0) * float(base_n**2 + base_t**2)
     barrier += 0.5 * (scene.barrier.inertia or 0.0) * float(base_spin**2)
-    given = barrier + tally[WORK_P]
+    given = barrier + tally[SUM.plate]
     spent = _kinetic(rod, *motion) + energies.sum() + friction + plastic + sum(end.held) + given
     fell = fall(case.slots.gravity, end.time, contacts[: end.touches, :2])
     V_n, V_t = motion[0] + fell * cos(scene.impact.angle), motion[1] + fell * sin(scene.impact.angle)
@@ -171,16 +162,16 @@ def _result(
         plastic=plastic,
         skin=skin,
         stored=sum(end.held),
-        plate=tally[WORK_P],
+        plate=tally[SUM.plate],
         barrier=barrier,
         V_bn=base_n,
         V_bt=base_t,
         Omega_b=base_spin,
-        away=(float(end.motion.rigid[AWAY_N]), float(end.motion.rigid[AWAY_T])),
-        residual=E_0 + tally[WORK_G] - spent,
-        fallen=tally[WORK_G] + kinetic - _kinetic(rod, *motion),
+        away=(float(end.motion.rigid[AT.away_n]), float(end.motion.rigid[AT.away_t])),
+        residual=E_0 + tally[SUM.gravity] - spent,
+        fallen=tally[SUM.gravity] + kinetic - _kinetic(rod, *motion),
         contacts=contacts[: end.touches],
-        force=tally[HARDEST],
+        force=tally[SUM.force],
         finished=end.over,
         separated=end.over or (end.struck != NOTHING and not any(end.held)),
         reason=_reason(rod, end, bounds),
@@ -219,14 +210,15 @@ def contact_rate(law: ContactLaw, flow: FlowLaw, start: Start, modes: Modes, wid
     The tip of a thin rod gives way to its many modes as if it were light; on a contact that grows wide under
     the weight of the whole rod it swings faster than any of them.
     """
-    light = 2 * (1 / start.mass + start.lightness) + start.ease * (start.deep**2 + start.beside**2)
-    light += (start.centre_t**2 + (start.centre_n - start.radius) ** 2) / (start.mass * start.k2)
-    light += float(np.sum(modes.along_t**2 + modes.along_n**2))
+    inverse_mass = 2 * (1 / start.mass + start.inverse_barrier_mass)
+    inverse_mass += start.inverse_barrier_inertia * (start.centre_depth**2 + start.centre_offset**2)
+    inverse_mass += (start.centre_t**2 + (start.centre_n - start.radius) ** 2) / (start.mass * start.k2)
+    inverse_mass += float(np.sum(modes.along_t**2 + modes.along_n**2))
     if flow.yields:
         stiffness = 2 * widest * max(flow.normal, flow.shear)
     else:
         stiffness = widest * max(1.5 * law.stiffness / sqrt(law.R), law.shear)
-    return sqrt(stiffness * light)
+    return sqrt(stiffness * inverse_mass)
 
 
 def _start(case: Case, rod: ModalRod) -> Start:

@@ -2,7 +2,7 @@
 
 Each step kicks with the force at the present place and then flies exactly, gravity included, so a flight
 without contact is exact for any step, and the work of a force is the trapezoidal sum of it over its path.
-A contact that does not yield is Hertz' with friction; one that yields is a `fem_impact.modal.furrow`.
+A contact that does not yield is Hertz' with friction; one that yields is a `fem_impact.modal.groove`.
 """
 
 from __future__ import annotations
@@ -11,49 +11,16 @@ import numpy as np
 
 from fem_impact.arrays import Array
 from fem_impact.fem.kernels import allocating_kernel, inlined
-from fem_impact.modal.furrow import Furrow, held_by, let_go, meets, plough, smooth
+from fem_impact.modal.groove import Groove, meets, move_apart, slide, smooth, stored_energy
 from fem_impact.modal.motion import (
-    ALONG,
-    AWAY_N,
-    AWAY_T,
-    BASE_N,
-    BASE_ROW,
-    BASE_SPIN,
-    BASE_T,
-    F_N_ROW,
-    F_T_ROW,
-    FLOW_ROW,
-    FLOWED,
-    GRAVITY_ROW,
-    HARDEST,
-    HEIGHT,
-    HELD_ROW,
+    AT,
     LOOK,
     MOST_CONTACTS,
     NOTHING,
-    PEAK,
-    PLATE_ROW,
-    RATE_ROW,
-    RIGID_ROW,
-    RUB_ROW,
-    RUBBED,
-    SPIN,
-    SPIN_ROW,
+    ROW,
     SPRINGS,
-    STRAIN_ROW,
-    SURFACE_N,
-    SURFACE_T,
-    T_ROW,
+    SUM,
     TIP,
-    TURN,
-    V_N,
-    V_N_ROW,
-    V_T,
-    V_T_ROW,
-    WORK_G,
-    WORK_N,
-    WORK_P,
-    WORK_T,
     Bounds,
     ModalEnd,
     ModalState,
@@ -129,7 +96,7 @@ def reach_to(
     now: ModalState, t: float, n: float, along_t: Array, along_n: Array
 ) -> tuple[float, float, float, float]:
     """Return cosine and sine of the rod's turn, and the arm (t, n), m, from its mass centre to a point."""
-    c, s = np.cos(now.rigid[TURN]), np.sin(now.rigid[TURN])
+    c, s = np.cos(now.rigid[AT.turn]), np.sin(now.rigid[AT.turn])
     for i in range(len(now.q)):
         t += along_t[i] * now.q[i]
         n += along_n[i] * now.q[i]
@@ -141,7 +108,7 @@ def strikes(now: ModalState, others: Others) -> int:
     """Return the place of a point that strikes beside the followed one, or `NOTHING`."""
     for i in range(len(others.t)):
         arm_n = reach_to(now, others.t[i], others.n[i], others.along_t[i], others.along_n[i])[3]
-        if now.rigid[HEIGHT] + arm_n - others.radius[i] < 0.0:
+        if now.rigid[AT.height] + arm_n - others.radius[i] < 0.0:
             return i
     return NOTHING
 
@@ -152,14 +119,14 @@ def fly(
 ) -> float:
     """Move on by a step of free flight; return the work of gravity, J/kg."""
     (rigid, q, rate), (cosine, sine) = now, turns
-    lift = g_n * (rigid[V_N] + 0.5 * dt * g_n) + g_t * (rigid[V_T] + 0.5 * dt * g_t)
-    rigid[HEIGHT] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[SURFACE_N])
-    rigid[ALONG] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[SURFACE_T])
-    rigid[AWAY_N] += dt * (rigid[V_N] + 0.5 * dt * g_n - rigid[BASE_N])
-    rigid[AWAY_T] += dt * (rigid[V_T] + 0.5 * dt * g_t - rigid[BASE_T])
-    rigid[TURN] += dt * rigid[SPIN]
-    rigid[V_N] += dt * g_n
-    rigid[V_T] += dt * g_t
+    lift = g_n * (rigid[AT.V_n] + 0.5 * dt * g_n) + g_t * (rigid[AT.V_t] + 0.5 * dt * g_t)
+    rigid[AT.height] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.surface_n])
+    rigid[AT.along] += dt * (rigid[AT.V_t] + 0.5 * dt * g_t - rigid[AT.surface_t])
+    rigid[AT.away_n] += dt * (rigid[AT.V_n] + 0.5 * dt * g_n - rigid[AT.V_bn])
+    rigid[AT.away_t] += dt * (rigid[AT.V_t] + 0.5 * dt * g_t - rigid[AT.V_bt])
+    rigid[AT.turn] += dt * rigid[AT.Omega]
+    rigid[AT.V_n] += dt * g_n
+    rigid[AT.V_t] += dt * g_t
     for i in range(len(q)):
         a, b = q[i], rate[i]
         q[i] = cosine[i] * a + sine[i] * b / omega[i]
@@ -179,22 +146,23 @@ def push(
 ) -> None:
     """Change the motion by an impulse at the followed point, N s, and book its work on both bodies."""
     (c, s, arm_t, arm_n), (rigid, _, rate) = arm, now
-    w_n, w_t = rigid[V_N] - rigid[SPIN] * arm_t, rigid[V_T] + rigid[SPIN] * arm_n
+    inverse_mass, inverse_inertia = start.inverse_barrier_mass, start.inverse_barrier_inertia
+    w_n, w_t = rigid[AT.V_n] - rigid[AT.Omega] * arm_t, rigid[AT.V_t] + rigid[AT.Omega] * arm_n
     # arm from the barrier's mass centre to the same point
-    deep_t, deep_n = rigid[AWAY_T] + arm_t, rigid[AWAY_N] + arm_n
-    turned = start.ease * (deep_t * p_n - deep_n * p_t)
-    w_n -= 2 * (rigid[BASE_N] - rigid[BASE_SPIN] * deep_t) - p_n * start.lightness - turned * deep_t
-    w_t -= 2 * (rigid[BASE_T] + rigid[BASE_SPIN] * deep_n) - p_t * start.lightness + turned * deep_n
-    rigid[BASE_N] -= p_n * start.lightness
-    rigid[BASE_T] -= p_t * start.lightness
-    rigid[BASE_SPIN] += turned
-    rigid[SURFACE_N] = rigid[BASE_N] - rigid[BASE_SPIN] * deep_t
-    rigid[SURFACE_T] = rigid[BASE_T] + rigid[BASE_SPIN] * deep_n
-    rigid[V_N] += p_n / start.mass
-    rigid[V_T] += p_t / start.mass
-    rigid[SPIN] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
-    w_n += rigid[V_N] - rigid[SPIN] * arm_t
-    w_t += rigid[V_T] + rigid[SPIN] * arm_n
+    lever_t, lever_n = rigid[AT.away_t] + arm_t, rigid[AT.away_n] + arm_n
+    turned = inverse_inertia * (lever_t * p_n - lever_n * p_t)
+    w_n -= 2 * (rigid[AT.V_bn] - rigid[AT.Omega_b] * lever_t) - p_n * inverse_mass - turned * lever_t
+    w_t -= 2 * (rigid[AT.V_bt] + rigid[AT.Omega_b] * lever_n) - p_t * inverse_mass + turned * lever_n
+    rigid[AT.V_bn] -= p_n * inverse_mass
+    rigid[AT.V_bt] -= p_t * inverse_mass
+    rigid[AT.Omega_b] += turned
+    rigid[AT.surface_n] = rigid[AT.V_bn] - rigid[AT.Omega_b] * lever_t
+    rigid[AT.surface_t] = rigid[AT.V_bt] + rigid[AT.Omega_b] * lever_n
+    rigid[AT.V_n] += p_n / start.mass
+    rigid[AT.V_t] += p_t / start.mass
+    rigid[AT.Omega] += (arm_n * p_t - arm_t * p_n) / (start.mass * start.k2)
+    w_n += rigid[AT.V_n] - rigid[AT.Omega] * arm_t
+    w_t += rigid[AT.V_t] + rigid[AT.Omega] * arm_n
     for i in range(len(rate)):
         on_n = c * modes.along_n[i] - s * modes.along_t[i]
         on_t = c * modes.along_t[i] + s * modes.along_n[i]
@@ -202,8 +170,8 @@ def push(
         w_n += on_n * (2 * rate[i] + gained)
         w_t += on_t * (2 * rate[i] + gained)
         rate[i] += gained
-    tally[WORK_N] += 0.5 * p_n * w_n
-    tally[WORK_T] += 0.5 * p_t * w_t
+    tally[SUM.work_n] += 0.5 * p_n * w_n
+    tally[SUM.work_t] += 0.5 * p_t * w_t
 
 
 @inlined
@@ -212,8 +180,8 @@ def followed(
 ) -> tuple[tuple[float, float, float, float], float, float]:
     """Return the arm of the followed point as `push` takes it, its depth and its place along t, m."""
     c, s, arm_t, arm_n = reach_to(now, start.centre_t, start.centre_n, modes.along_t, modes.along_n)
-    place = now.rigid[ALONG] + arm_t - start.centre_t - start.radius * now.rigid[TURN]
-    return (c, s, arm_t, arm_n - start.radius), start.radius - now.rigid[HEIGHT] - arm_n, place
+    place = now.rigid[AT.along] + arm_t - start.centre_t - start.radius * now.rigid[AT.turn]
+    return (c, s, arm_t, arm_n - start.radius), start.radius - now.rigid[AT.height] - arm_n, place
 
 
 @inlined
@@ -225,7 +193,7 @@ def ahead(
     turns: tuple[Array, Array],
     bounds: Bounds,
     flow: FlowLaw,
-    furrow: Furrow,
+    groove: Groove,
 ) -> tuple[int, int]:
     """Fly on until something strikes or to the horizon; return the steps and what strikes.
 
@@ -236,7 +204,7 @@ def ahead(
         fly(now, modes.omega, turns, bounds.step, 0.0, 0.0)
         steps += 1
         _, depth, place = followed(now, start, modes)
-        if meets(furrow, depth, place, flow) if flow.yields else depth > 0.0:
+        if meets(groove, depth, place, flow) if flow.yields else depth > 0.0:
             return steps, TIP
         if steps % LOOK == 0:
             struck = strikes(now, others)
@@ -250,7 +218,7 @@ def meet(
     law: ContactLaw,
     flow: FlowLaw,
     springs: Springs,
-    furrow: Furrow,
+    groove: Groove,
     depth: float,
     place: float,
     moved: float,
@@ -260,7 +228,7 @@ def meet(
     The first is 0 where nothing touches, and below 0 where friction on a steep flank holds a leaving tip.
     """
     if flow.yields:
-        return plough(furrow, depth, place, flow)
+        return slide(groove, depth, place, flow)
     F, a = press(depth, law)
     return (F, -grip(springs, moved, F, a, law)) if F > 0.0 else (0.0, 0.0)
 
@@ -281,16 +249,17 @@ def enter(
     """
     mid, works = ModalState(now.rigid.copy(), now.q, now.rate.copy()), tally.copy()
     push(mid, start, modes, arm, 0.5 * p[0], 0.5 * p[1], works)
-    V_n, V_t, spin = mid.rigid[V_N], mid.rigid[V_T], mid.rigid[SPIN]
-    row[V_N_ROW], row[V_T_ROW], row[SPIN_ROW] = V_n, V_t, spin
-    row[RIGID_ROW] = 0.5 * start.mass * (V_n**2 + V_t**2 + start.k2 * spin**2)
-    row[RATE_ROW], row[STRAIN_ROW] = 0.5 * np.sum(mid.rate**2), 0.5 * np.sum((modes.omega * mid.q) ** 2)
-    if start.lightness > 0.0:
-        row[BASE_ROW] = 0.5 * (mid.rigid[BASE_N] ** 2 + mid.rigid[BASE_T] ** 2) / start.lightness
-    if start.ease > 0.0:
-        row[BASE_ROW] += 0.5 * mid.rigid[BASE_SPIN] ** 2 / start.ease
-    row[PLATE_ROW], row[GRAVITY_ROW] = tally[WORK_P], tally[WORK_G]
-    return works[WORK_N], works[WORK_T]
+    V_n, V_t, spin = mid.rigid[AT.V_n], mid.rigid[AT.V_t], mid.rigid[AT.Omega]
+    row[ROW.V_n], row[ROW.V_t], row[ROW.Omega] = V_n, V_t, spin
+    row[ROW.rigid] = 0.5 * start.mass * (V_n**2 + V_t**2 + start.k2 * spin**2)
+    row[ROW.vibration], row[ROW.strain] = 0.5 * np.sum(mid.rate**2), 0.5 * np.sum((modes.omega * mid.q) ** 2)
+    if start.inverse_barrier_mass > 0.0:
+        row[ROW.barrier] = 0.5 * (mid.rigid[AT.V_bn] ** 2 + mid.rigid[AT.V_bt] ** 2)
+        row[ROW.barrier] /= start.inverse_barrier_mass
+    if start.inverse_barrier_inertia > 0.0:
+        row[ROW.barrier] += 0.5 * mid.rigid[AT.Omega_b] ** 2 / start.inverse_barrier_inertia
+    row[ROW.plate], row[ROW.gravity] = tally[SUM.plate], tally[SUM.gravity]
+    return works[SUM.work_n], works[SUM.work_t]
 
 
 @inlined
@@ -304,10 +273,10 @@ def enter_contact(
     yields: bool,
 ) -> None:
     """Fill a row of the record with time, s, forces n, t, N, and energies of the contact, J."""
-    row[T_ROW], row[F_N_ROW], row[F_T_ROW] = time, force[0], force[1]
-    row[HELD_ROW] = held[0] + held[1]
-    row[FLOW_ROW] = works[0] + works[1] if yields else 0.0
-    row[RUB_ROW] = works[2] if yields else -work_t - held[1]
+    row[ROW.time], row[ROW.force_n], row[ROW.force_t] = time, force[0], force[1]
+    row[ROW.contact] = held[0] + held[1]
+    row[ROW.plastic] = works[0] + works[1] if yields else 0.0
+    row[ROW.friction] = works[2] if yields else -work_t - held[1]
 
 
 @inlined
@@ -322,7 +291,7 @@ def thinned(record: Array, rows: int, every: int) -> tuple[int, int]:
 
 
 @allocating_kernel
-def drop(
+def integrate_impact(
     start: Start,
     law: ContactLaw,
     flow: FlowLaw,
@@ -342,54 +311,54 @@ def drop(
     turns = np.cos(modes.omega * dt), np.sin(modes.omega * dt)
     rigid = np.zeros(13)
     rigid[:4] = start.v_n, start.v_t, start.omega, start.radius - start.centre_n
-    rigid[AWAY_N:] = rigid[HEIGHT] + start.deep, -start.centre_t - start.beside
+    rigid[AT.away_n :] = rigid[AT.height] + start.centre_depth, -start.centre_t - start.centre_offset
     now = ModalState(rigid, np.zeros(k), np.zeros(k))
-    springs, furrow = springs_over(bounds.reach), smooth(bounds.reach)
+    springs, groove = springs_over(bounds.reach), smooth(bounds.reach)
     gap, before, pressed, wait = max(MERGE_GAP, 1.5 * dt), 0.0, False, 0.0
     time, last, steps, count, struck, late = 0.0, 0.0, 0, 0, NOTHING, False
     depth, force = 0.0, (0.0, 0.0)
     while time - last < bounds.horizon:
         arm, depth, place = followed(now, start, modes)
-        force = meet(law, flow, springs, furrow, depth, place, place - before)
+        force = meet(law, flow, springs, groove, depth, place, place - before)
         struck = strikes(now, others) if steps % LOOK == LOOK - 1 else NOTHING
         touches = force[0] != 0.0
         late = touches and time > bounds.latest
         if len(record) and steps % every == 0:
             row = record[rows]
             work = enter(row, now, start, modes, arm, (dt * force[0], dt * force[1]), tally)
-            held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
-            enter_contact(row, time, force, held, furrow.works, work[1], flow.yields)
+            held = stored_energy(groove, flow) if flow.yields else stored(depth, force[0], springs, law)
+            enter_contact(row, time, force, held, groove.works, work[1], flow.yields)
             rows, every = thinned(record, rows + 1, every)
         if touches:
             span = 0.5 * dt if late or struck != NOTHING else dt  # a half brings v to the time of the places
             p_n, p_t = span * force[0], span * force[1]
             push(now, start, modes, arm, p_n, p_t, tally)
-            rigid[HEIGHT] += p_n * start.give  # a plate sinks away under the force
-            tally[WORK_P] += p_n * force[0] * start.give
-            tally[HARDEST] = max(tally[HARDEST], force[0])
-            count = book(contacts, count, time, p_n, p_t, dt * tally[HARDEST], gap)
-            tally[PEAK], last = max(tally[PEAK], depth), time
+            rigid[AT.height] += p_n * start.plate_mobility  # a plate sinks away under the force
+            tally[SUM.plate] += p_n * force[0] * start.plate_mobility
+            tally[SUM.force] = max(tally[SUM.force], force[0])
+            count = book(contacts, count, time, p_n, p_t, dt * tally[SUM.force], gap)
+            tally[SUM.depth], last = max(tally[SUM.depth], depth), time
         else:
             springs.shift[:] = 0.0
-            let_go(furrow, depth, place)
+            move_apart(groove, depth, place)
         if late or struck != NOTHING:
             break
         if pressed and not touches:
             flight = ModalState(rigid.copy(), now.q.copy(), now.rate.copy())
-            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, furrow)
+            flown, struck = ahead(flight, start, modes, others, turns, bounds, flow, groove)
             steps += flown
             if struck != TIP:
                 wait = flown * dt
                 break
         pressed, before = touches, place
-        tally[WORK_G] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
+        tally[SUM.gravity] += start.mass * fly(now, modes.omega, turns, dt, start.g_t, start.g_n)
         time += dt
         steps += 1
-    held = held_by(furrow, flow) if flow.yields else stored(depth, force[0], springs, law)
+    held = stored_energy(groove, flow) if flow.yields else stored(depth, force[0], springs, law)
     if flow.yields:
-        tally[FLOWED : RUBBED + 1] = furrow.works
+        tally[SUM.flow : SUM.friction + 1] = groove.works
     else:
         # the normal spring gives back what it stores by itself, the tangential ones out of friction
-        tally[RUBBED] = -tally[WORK_T] - held[1]
+        tally[SUM.friction] = -tally[SUM.work_t] - held[1]
     over = struck in (NOTHING, TIP) and not late
     return ModalEnd(now, tally, held, time, steps, count, struck, wait, over, rows)

@@ -12,19 +12,76 @@ MOST_CONTACTS = 200
 SPRINGS = 100
 LOOK = 8  # steps between looks at the rod's other points
 
-# of the rigid motion: m/s, m/s, rad/s, m and m from the barrier's surface under the contact, rad; the
-# velocities of the barrier's mass centre, m/s, its spin, rad/s, and velocities of its surface, m/s; the rod's
-# mass centre from the barrier's, m
-V_N, V_T, SPIN, HEIGHT, ALONG, TURN, BASE_N, BASE_T, BASE_SPIN, SURFACE_N, SURFACE_T, AWAY_N, AWAY_T = range(
-    13
-)
-# of the tally: m, N; J of the forces, gravity and a plate; J of flow, of the sheared skin, of friction
-PEAK, HARDEST, WORK_N, WORK_T, WORK_G, WORK_P, FLOWED, SHEARED, RUBBED = range(9)
 NOTHING, TIP = -1, -2  # of what strikes
-# of a row of the record: s, N, m/s, rad/s; J of the rod's rigid motion, its modes' motion and strain, flow,
-# friction, what the contact holds, the barrier's motion, a plate, gravity's work
-T_ROW, F_N_ROW, F_T_ROW, V_N_ROW, V_T_ROW, SPIN_ROW = range(6)
-RIGID_ROW, RATE_ROW, STRAIN_ROW, FLOW_ROW, RUB_ROW, HELD_ROW, BASE_ROW, PLATE_ROW, GRAVITY_ROW = range(6, 15)
+
+
+class MotionIndex(NamedTuple):
+    """Where each number of the rigid motion stands in its array (13,); n is the barrier's normal.
+
+    Velocities, m/s and rad/s, of the rod's mass centre and of the barrier's (``b``); the height of the rod's
+    mass centre over the barrier's surface under the contact and its way along it, m; the rod's turn, rad; the
+    velocity of that surface, m/s; the rod's mass centre from the barrier's, m.
+    """
+
+    V_n: int = 0
+    V_t: int = 1
+    Omega: int = 2
+    height: int = 3
+    along: int = 4
+    turn: int = 5
+    V_bn: int = 6
+    V_bt: int = 7
+    Omega_b: int = 8
+    surface_n: int = 9
+    surface_t: int = 10
+    away_n: int = 11
+    away_t: int = 12
+
+
+class TallyIndex(NamedTuple):
+    """Where each sum of a march stands in its array (9,).
+
+    The largest depth, m, and force, N; works, J, of the normal and the tangential force, of gravity, on a
+    plate, of normal flow, of shear flow under the contact, and of friction.
+    """
+
+    depth: int = 0
+    force: int = 1
+    work_n: int = 2
+    work_t: int = 3
+    gravity: int = 4
+    plate: int = 5
+    flow: int = 6
+    shear: int = 7
+    friction: int = 8
+
+
+class RowIndex(NamedTuple):
+    """Where each number stands in a row (15,) of the record.
+
+    Time, s, forces, N, velocities of the rod, m/s and rad/s; energies, J, of its rigid motion, of the motion
+    and the strain of its modes; plastic work, friction, what the contact holds, the barrier's motion, what a
+    plate took, and the work of gravity, J.
+    """
+
+    time: int = 0
+    force_n: int = 1
+    force_t: int = 2
+    V_n: int = 3
+    V_t: int = 4
+    Omega: int = 5
+    rigid: int = 6
+    vibration: int = 7
+    strain: int = 8
+    plastic: int = 9
+    friction: int = 10
+    contact: int = 11
+    barrier: int = 12
+    plate: int = 13
+    gravity: int = 14
+
+
+AT, SUM, ROW = MotionIndex(), TallyIndex(), RowIndex()
 MOST_ROWS = 2048
 """Rows of a record; where a run has more, every second one is dropped."""
 
@@ -32,9 +89,9 @@ MOST_ROWS = 2048
 class Start(NamedTuple):
     """Rigid rod at first contact: kg, m2, m, m/s, rad/s, m/s2 along t and n.
 
-    ``lightness`` is 1 / the barrier's mass, 1/kg; ``give`` is 1 / the impedance of a plate that bends,
-    m/(N s); both are 0 for a massive barrier. ``ease`` is 1 / the moment of inertia, 1/(kg m2), of a free
-    barrier about its mass centre, ``deep``, m, under the struck point and ``beside``, m, up the slope of it.
+    ``inverse_barrier_mass``, 1/kg, and ``plate_mobility``, m/(N s), 1 / the impedance of a plate that bends,
+    are 0 for a massive barrier. ``inverse_barrier_inertia``, 1/(kg m2), is that of a free barrier about its
+    mass centre, ``centre_depth``, m, under the struck point and ``centre_offset``, m, up the slope of it.
     """
 
     mass: float
@@ -47,11 +104,11 @@ class Start(NamedTuple):
     omega: float
     g_t: float
     g_n: float
-    lightness: float = 0.0
-    give: float = 0.0
-    ease: float = 0.0
-    deep: float = 0.0
-    beside: float = 0.0
+    inverse_barrier_mass: float = 0.0
+    plate_mobility: float = 0.0
+    inverse_barrier_inertia: float = 0.0
+    centre_depth: float = 0.0
+    centre_offset: float = 0.0
 
 
 class Modes(NamedTuple):
@@ -113,7 +170,7 @@ class ModalEnd(NamedTuple):
     Attributes
     ----------
     motion : then
-    tally : (9,) largest depth and force, works, see `PEAK` to `RUBBED`
+    tally : (9,) largest depth and force, works, see `TallyIndex`
     held : energy in the contact and in its springs, J, 0 but for a run that was cut off
     time, steps, touches : s, number of steps, of contacts
     struck : place in `Others` of the point that strikes first, or `NOTHING`; after ``wait``, s

@@ -7,23 +7,7 @@ from pathlib import Path
 from fem_impact.case.case import Case
 from fem_impact.files.atomic import write_text
 from fem_impact.modal.impact import ModalResult
-from fem_impact.modal.motion import (
-    BASE_ROW,
-    F_N_ROW,
-    F_T_ROW,
-    FLOW_ROW,
-    GRAVITY_ROW,
-    HELD_ROW,
-    PLATE_ROW,
-    RATE_ROW,
-    RIGID_ROW,
-    RUB_ROW,
-    SPIN_ROW,
-    STRAIN_ROW,
-    T_ROW,
-    V_N_ROW,
-    V_T_ROW,
-)
+from fem_impact.modal.motion import ROW
 from fem_impact.run.common import rod_flows
 from fem_impact.tables.history import HISTORY
 from fem_impact.tables.table import Table
@@ -39,28 +23,28 @@ def write_history(case: Case, result: ModalResult, path: Path) -> None:
     first row's.
     """
     record, barrier = result.record, case.scene.barrier
-    zero = 0.0 * record[:, T_ROW]
-    plastic = record[:, FLOW_ROW]
+    zero = 0.0 * record[:, ROW.time]
+    plastic = record[:, ROW.plastic]
     in_rod = rod_flows(case)
     columns = dict.fromkeys(HISTORY, zero) | {
-        "time_s": record[:, T_ROW],
-        "force_n_N": record[:, F_N_ROW],
-        "force_t_N": record[:, F_T_ROW],
-        "contact_nodes": (record[:, F_N_ROW] > 0).astype(int),
-        "E_kinetic_rod_J": record[:, RIGID_ROW] + record[:, RATE_ROW],
-        "E_strain_rod_J": record[:, STRAIN_ROW],
+        "time_s": record[:, ROW.time],
+        "force_n_N": record[:, ROW.force_n],
+        "force_t_N": record[:, ROW.force_t],
+        "contact_nodes": (record[:, ROW.force_n] > 0).astype(int),
+        "E_kinetic_rod_J": record[:, ROW.rigid] + record[:, ROW.vibration],
+        "E_strain_rod_J": record[:, ROW.strain],
         "E_plastic_rod_J": plastic if in_rod else zero,
         "E_plastic_barrier_J": zero if in_rod else plastic,
-        "E_kinetic_barrier_J": record[:, BASE_ROW],
-        "W_friction_J": record[:, RUB_ROW],
-        "E_gravity_J": -record[:, GRAVITY_ROW],
-        "V_n_m_per_s": record[:, V_N_ROW] + barrier.v_n,
-        "V_t_m_per_s": record[:, V_T_ROW] + barrier.v_t,
-        "Omega_rad_per_s": record[:, SPIN_ROW],
-        CONTACT: record[:, HELD_ROW],
+        "E_kinetic_barrier_J": record[:, ROW.barrier],
+        "W_friction_J": record[:, ROW.friction],
+        "E_gravity_J": -record[:, ROW.gravity],
+        "V_n_m_per_s": record[:, ROW.V_n] + barrier.v_n,
+        "V_t_m_per_s": record[:, ROW.V_t] + barrier.v_t,
+        "Omega_rad_per_s": record[:, ROW.Omega],
+        CONTACT: record[:, ROW.contact],
     }
     if case.slots.plate:
-        columns["W_plate_J"] = record[:, PLATE_ROW]
+        columns["W_plate_J"] = record[:, ROW.plate]
     total = sum((column for name, column in columns.items() if name.endswith("_J")), zero)
     columns["residual_J"] = total[:1] - total
     write_text(

@@ -7,23 +7,10 @@ import numpy as np
 import pytest
 
 from fem_impact.case.case import Case
-from fem_impact.modal.furrow import indent
+from fem_impact.modal.groove import indent
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import drop
-from fem_impact.modal.motion import (
-    ALONE,
-    FLOWED,
-    HARDEST,
-    MOST_CONTACTS,
-    PEAK,
-    RIGID,
-    RUBBED,
-    SHEARED,
-    WORK_N,
-    WORK_T,
-    Bounds,
-    Start,
-)
+from fem_impact.modal.march import integrate_impact
+from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, SUM, Bounds, Start
 from fem_impact.physics.contact_law import ContactLaw, contact_law, restitution
 from fem_impact.physics.flow_law import FlowLaw
 from fem_impact.scene.shipped import load
@@ -60,11 +47,11 @@ def strike(contact, v_n, v_t=0.0, omega=0.0, steps=1000, flows=None):
     bounds = Bounds(
         60e-6 / v_n**0.2 / steps, 1e-4, 1e-3, reach(contact, flows, 0.5 * MASS * (v_n**2 + v_t**2))
     )
-    end = drop(start, contact, flows, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
+    end = integrate_impact(start, contact, flows, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
     assert end.over
     if flows.yields:
         return end.motion.rigid[:3], end.tally, contacts[: end.touches]
-    works, most = end.tally[[WORK_N, WORK_T]], end.tally[[PEAK, HARDEST]]
+    works, most = end.tally[[SUM.work_n, SUM.work_t]], end.tally[[SUM.depth, SUM.force]]
     return end.motion.rigid[:3], works, most, contacts[: end.touches]
 
 
@@ -113,10 +100,10 @@ def test_the_works_of_a_yielding_contact_add_up(v_t, f):
     motion, tally, _ = strike(law(f, limit=2.8 * 300e6), 2.0, v_t, flows=flow(f))
     before = 0.5 * MASS * (4.0 + v_t**2)
     after = 0.5 * MASS * (motion[0] ** 2 + motion[1] ** 2 + 0.4 * R**2 * motion[2] ** 2)
-    spent = tally[FLOWED] + tally[SHEARED] + tally[RUBBED]
+    spent = tally[SUM.flow] + tally[SUM.shear] + tally[SUM.friction]
     assert after + spent == pytest.approx(before, rel=1e-4)
     assert 0.1 < motion[0] / 2.0 < 0.7
-    assert min(tally[FLOWED], tally[SHEARED], tally[RUBBED]) > -1e-5 * before
+    assert min(tally[SUM.flow], tally[SUM.shear], tally[SUM.friction]) > -1e-5 * before
 
 
 def test_a_yielding_contact_is_the_same_to_both_sides():
@@ -126,7 +113,7 @@ def test_a_yielding_contact_is_the_same_to_both_sides():
 
 
 def test_a_tip_that_ploughs_is_held_by_more_than_friction_and_one_that_does_not_by_friction():
-    """Low friction slides throughout; the furrow's front adds its slope."""
+    """Low friction slides throughout; the groove's front adds its slope."""
     contact, f = law(0.05, limit=840e6), 0.05
     ploughing, flat = flow(f), flow(f)._replace(ploughs=False)
     held = [strike(contact, 2.0, -4.0, flows=flows)[2][0] for flows in (ploughing, flat)]

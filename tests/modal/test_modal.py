@@ -202,7 +202,7 @@ def test_energy_and_momentum(v_n, v_t, omega, f, frequency, along, plastic):
     impulse = found.contacts[:, 2:].sum(axis=0)
     gained = 0.178 * np.array([found.V_n + v_n, found.V_t + v_t])
     assert impulse == pytest.approx(gained, abs=3e-3 * abs(gained).max())
-    if not plastic:  # a furrow's front holds the tip by its slope too
+    if not plastic:  # a groove's front holds the tip by its slope too
         assert abs(impulse[1]) <= f * impulse[0] * (1 + 1e-9) + 1e-12
 
 

@@ -9,7 +9,7 @@ import pytest
 from fem_impact.case.case import Case
 from fem_impact.errors import SceneError
 from fem_impact.modal.impact import solve
-from fem_impact.modal.motion import F_N_ROW
+from fem_impact.modal.motion import ROW
 from fem_impact.modal.rod import modal_rod
 from fem_impact.outcome.keys import Unknown
 from fem_impact.run.modal import reduce
@@ -53,7 +53,7 @@ def test_a_tip_that_leaves_a_steep_furrow_is_held_down_by_its_flank(mass):
     """Friction there points down and the normal force falls below zero: the contact is not over."""
     result = solve(Case.of(replace_all(load("t5b"), STEEP | {"barrier.mass": mass}), "modal"), recorded=True)
     assert result.finished
-    assert result.record[:, F_N_ROW].min() < -1e-3 * result.record[:, F_N_ROW].max()
+    assert result.record[:, ROW.force_n].min() < -1e-3 * result.record[:, ROW.force_n].max()
     assert abs(result.residual) < 2e-5 * result.E_0
     given = result.rod.mass * (result.V_t + 32.0 * np.sin(radians(60.0)))
     assert result.contacts[:, 3].sum() == pytest.approx(given, rel=1e-3)

@@ -46,7 +46,7 @@ def test_compiling_is_taken_from_each_clock_by_itself():
     assert 0.0 <= cpu < 0.05 and 0.0 <= wall < 0.05
 
 
-@pytest.mark.parametrize("helper", ["plastic_return.py", "patch.py", "hexmodes.py", "furrow.py"])
+@pytest.mark.parametrize("helper", ["plastic_return.py", "patch.py", "hexmodes.py", "groove.py"])
 def test_a_changed_helper_of_any_room_has_its_own_cache(helper, monkeypatch):
     """A kernel that inlines a helper of another file is compiled anew when that file changes."""
     before, read = kernels._cache_folder(), Path.read_bytes

@@ -19,7 +19,7 @@ from fem_impact.evidence.references.oblique import ObliqueRod, oblique_rod
 from fem_impact.evidence.studies.rods import DroppedRod, length_of
 from fem_impact.modal.furrow import indent
 from fem_impact.modal.impact import reach
-from fem_impact.modal.march import drop
+from fem_impact.modal.march import integrate_impact
 from fem_impact.modal.motion import ALONE, MOST_CONTACTS, RIGID, Bounds, Start
 from fem_impact.modal.rod import modal_rod
 from fem_impact.physics.contact_law import ContactLaw, contact_law
@@ -38,7 +38,7 @@ def contact_time(law: ContactLaw, flow: FlowLaw, mass: float, speed: float) -> f
     start = Start(mass, 1.0, 0.0, 0.0, 0.0, 0.0, -speed, 0.0, 0.0, 0.0)
     bounds = Bounds(STEP, FREE, LATEST, reach(law, flow, 0.5 * mass * speed**2))
     contacts = np.zeros((MOST_CONTACTS, 4))
-    drop(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
+    integrate_impact(start, law, flow, RIGID, ALONE, bounds, contacts, np.zeros((0, 15)))
     return float(contacts[0, 1] - contacts[0, 0])
 
 

@@ -1,4 +1,4 @@
-"""The yielding contact: a row of cells across the furrow that a round tip presses and ploughs into a surface.
+"""The yielding contact: a row of cells across the groove that a round tip presses and ploughs into a surface.
 
 Cell x of the surface carries a normal force q and a tangential force T a metre of the row. It is an elastic
 spring (Popov & Hess 2015, doi:10.1007/978-3-642-53876-6) on a bed that flows. With the tip at depth d and
@@ -28,32 +28,62 @@ from fem_impact.physics.flow_law import FULLY_PLASTIC, REPRESENTATIVE, RUN_IN, S
 CELLS = 512  # of the ring that follows the tip
 ACROSS = 40  # cells over the largest half length of the contact
 
-LOW, HIGH, PLACE, DEPTH, WIDEST, SLID, CARRIED, RIDGE, TOP = range(9)  # of `Furrow.now`
-FLOW, SKIN, RUB = range(3)  # works, J: normal flow, shear flow under the contact, friction
+
+class StateIndex(NamedTuple):
+    """Where each number stands in ``Groove.state`` (9,).
+
+    The first and last cell visited; the tip's last place and depth, the widest contact radius, the way slid,
+    m; the volume carried before the tip over its width, m2; the ridge's height under the tip and the highest
+    ever, m.
+    """
+
+    first: int = 0
+    last: int = 1
+    place: int = 2
+    depth: int = 3
+    widest: int = 4
+    slid: int = 5
+    carried: int = 6
+    ridge: int = 7
+    top: int = 8
 
 
-class Furrow(NamedTuple):
-    """A furrow: (CELLS,) depth, m, normal force, N/m, tangential spring's shift, m; what stands once.
+class WorkIndex(NamedTuple):
+    """Where each work, J, stands in ``Groove.works`` (3,): normal flow, shear flow, friction."""
 
-    ``now`` (9,) are the first and last cell visited; the tip's last place and depth, the widest contact
-    radius, the way slid, m; the volume carried before the tip over its width, m2; the ridge's height under
-    the tip and the highest ever, m. ``size`` is a cell's, m; ``works`` (3,) J.
+    flow: int = 0
+    shear: int = 1
+    friction: int = 2
+
+
+AT, WORK = StateIndex(), WorkIndex()
+
+
+class Groove(NamedTuple):
+    """The groove that a tip leaves, cell by cell along its way.
+
+    Attributes
+    ----------
+    depth, normal, shift : (CELLS,) depth, m, normal force, N/m, and shift of the tangential spring, m
+    state : (9,) what stands once, see `StateIndex`
+    works : (3,) J, see `WorkIndex`
+    size : of a cell, m
     """
 
     depth: Array
     normal: Array
     shift: Array
-    now: Array
+    state: Array
     works: Array
     size: float
 
 
 @allocating_kernel
-def smooth(reach: float) -> Furrow:
-    """Return a surface without a furrow for contacts of at most a half length ``reach``, m."""
-    now = np.zeros(9)
-    now[HIGH] = -1.0
-    return Furrow(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), now, np.zeros(3), reach / ACROSS)
+def smooth(reach: float) -> Groove:
+    """Return a surface without a groove for contacts of at most a half length ``reach``, m."""
+    state = np.zeros(9)
+    state[AT.last] = -1.0
+    return Groove(np.zeros(CELLS), np.zeros(CELLS), np.zeros(CELLS), state, np.zeros(3), reach / ACROSS)
 
 
 @inlined
@@ -67,30 +97,30 @@ def hardness(widest: float, law: FlowLaw) -> float:
 
 
 @inlined
-def window(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> tuple[int, int]:
+def window(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[int, int]:
     """Return first and last cell that the tip may touch; cells not visited before become smooth."""
-    now, size = furrow.now, furrow.size
-    half = sqrt(2 * law.R1 * max(depth + now[TOP], 0.0))
+    state, size = groove.state, groove.size
+    half = sqrt(2 * law.R1 * max(depth + state[AT.top], 0.0))
     first, last = int(np.floor((place - half) / size)), int(np.floor((place + half) / size)) + 1
     first = max(first, last - CELLS // 2)
-    if now[HIGH] < now[LOW]:
-        now[LOW], now[HIGH] = first, first - 1
-    for c in range(int(now[HIGH]) + 1, last + CELLS // 4):
-        clear(furrow, c)
-        now[HIGH] = c
-    now[LOW] = max(now[LOW], now[HIGH] - CELLS + 1)
-    for c in range(int(now[LOW]) - 1, first - CELLS // 4, -1):
-        clear(furrow, c)
-        now[LOW] = c
-    now[HIGH] = min(now[HIGH], now[LOW] + CELLS - 1)
+    if state[AT.last] < state[AT.first]:
+        state[AT.first], state[AT.last] = first, first - 1
+    for c in range(int(state[AT.last]) + 1, last + CELLS // 4):
+        clear(groove, c)
+        state[AT.last] = c
+    state[AT.first] = max(state[AT.first], state[AT.last] - CELLS + 1)
+    for c in range(int(state[AT.first]) - 1, first - CELLS // 4, -1):
+        clear(groove, c)
+        state[AT.first] = c
+    state[AT.last] = min(state[AT.last], state[AT.first] + CELLS - 1)
     return first, last
 
 
 @inlined
-def clear(furrow: Furrow, cell: int) -> None:
+def clear(groove: Groove, cell: int) -> None:
     """Make a cell smooth."""
     at = cell % CELLS
-    furrow.depth[at], furrow.normal[at], furrow.shift[at] = 0.0, 0.0, 0.0
+    groove.depth[at], groove.normal[at], groove.shift[at] = 0.0, 0.0, 0.0
 
 
 @inlined
@@ -112,55 +142,56 @@ def flowed(q: float, T: float, Q: float, S: float, law: FlowLaw) -> tuple[float,
 
 
 @inlined
-def strengths(furrow: Furrow, law: FlowLaw) -> tuple[float, float]:
+def strengths(groove: Groove, law: FlowLaw) -> tuple[float, float]:
     """Return H and K, Pa, of the contact as it is."""
-    H = hardness(furrow.now[WIDEST], law)
+    H = hardness(groove.state[AT.widest], law)
     slid = min(law.skin, STUCK * H)
-    return H, slid + (STUCK * H - slid) * exp(-furrow.now[SLID] / (RUN_IN * furrow.now[WIDEST]))
+    way = groove.state[AT.slid] / (RUN_IN * groove.state[AT.widest])
+    return H, slid + (STUCK * H - slid) * exp(-way)
 
 
 @inlined
 def press_cell(
-    furrow: Furrow, i: int, D: float, moved: float, up: float, H: float, K: float, law: FlowLaw
+    groove: Groove, i: int, D: float, moved: float, up: float, H: float, K: float, law: FlowLaw
 ) -> tuple[float, float]:
     """Press a cell to D, m, move the tip along it, m, and return its normal and tangential force, N/m.
 
     ``up`` is how high the ridge stands there, m. Flow, shear and friction are booked.
     """
-    g, normal, shift, _, works, size = furrow
+    g, normal, shift, _, works, size = groove
     before, sheared = g[i], law.shear * shift[i]
     trial, b = sheared + law.shear * moved, sqrt(2 * law.R2 * max(g[i] + up, 0.0))
     q, stuck = flowed(law.normal * (D - g[i]), trial, 2 * b * H, 2 * b * K, law)
     g[i] = max(g[i], D - q / law.normal)
-    works[FLOW] += 0.5 * (normal[i] + q) * (g[i] - before) * size
+    works[WORK.flow] += 0.5 * (normal[i] + q) * (g[i] - before) * size
     limit = min(law.friction * q, 2 * b * law.skin)
     T = min(max(stuck, -limit), limit)
     mean = 0.5 * (sheared + T) * size / law.shear
-    works[SKIN] += mean * (trial - stuck)
-    works[RUB if law.friction * q <= 2 * b * law.skin else SKIN] += mean * (stuck - T)
+    works[WORK.shear] += mean * (trial - stuck)
+    works[WORK.friction if law.friction * q <= 2 * b * law.skin else WORK.shear] += mean * (stuck - T)
     normal[i], shift[i] = q, T / law.shear
     return q, T
 
 
 @inlined
-def release_cell(furrow: Furrow, i: int, law: FlowLaw) -> None:
+def release_cell(groove: Groove, i: int, law: FlowLaw) -> None:
     """Free a cell that the tip has left."""
-    furrow.works[RUB] += 0.5 * law.shear * furrow.shift[i] ** 2 * furrow.size
-    furrow.normal[i], furrow.shift[i] = 0.0, 0.0
+    groove.works[WORK.friction] += 0.5 * law.shear * groove.shift[i] ** 2 * groove.size
+    groove.normal[i], groove.shift[i] = 0.0, 0.0
 
 
 @inlined
-def plough(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> tuple[float, float]:
+def slide(groove: Groove, depth: float, place: float, law: FlowLaw) -> tuple[float, float]:
     """Move the tip to a depth and place, m, and return its normal and tangential force, N."""
-    g, now, size = furrow.depth, furrow.now, furrow.size
-    sunk, moved = depth - now[DEPTH], place - now[PLACE]
-    now[DEPTH], now[PLACE] = depth, place
+    g, state, size = groove.depth, groove.state, groove.size
+    sunk, moved = depth - state[AT.depth], place - state[AT.place]
+    state[AT.depth], state[AT.place] = depth, place
     middle = place if law.ploughs else 0.0  # a tip that is flattened takes its cells along
-    first, last = window(furrow, depth, middle, law)
-    now[WIDEST] = max(now[WIDEST], sqrt(2 * law.R * max(depth, 0.0)))
-    if now[WIDEST] == 0.0:
+    first, last = window(groove, depth, middle, law)
+    state[AT.widest] = max(state[AT.widest], sqrt(2 * law.R * max(depth, 0.0)))
+    if state[AT.widest] == 0.0:
         return 0.0, 0.0
-    H, K = strengths(furrow, law)
+    H, K = strengths(groove, law)
     F_n, F_t, ridge, front, touched = 0.0, 0.0, 0.0, 0, False
     way = 1 if moved > 0.0 else -1
     for step in range(last - first + 1):
@@ -168,70 +199,70 @@ def plough(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> tuple[fl
         i, x = c % CELLS, (c + 0.5) * size - middle
         D = depth - 0.5 * x**2 / law.R1
         if D <= g[i]:
-            release_cell(furrow, i, law)
+            release_cell(groove, i, law)
             continue
         s, before = x / law.R1 if law.ploughs else 0.0, g[i]
         ahead = s * moved > 0.0
-        q, T = press_cell(furrow, i, D, moved - s * sunk, now[RIDGE] if ahead else 0.0, H, K, law)
+        q, T = press_cell(groove, i, D, moved - s * sunk, state[AT.ridge] if ahead else 0.0, H, K, law)
         F_n += (q - T * s) * size
         F_t -= (T + q * s) * size
         if ahead:
-            now[CARRIED] += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
+            state[AT.carried] += min(max(g[i] - before - max(sunk, 0.0), 0.0), s * moved) * size
             ridge, front, touched = max(ridge, -g[i]), c, True
-    now[RIDGE] = ridge
-    now[SLID] += abs(moved) if F_n > 0.0 else 0.0
+    state[AT.ridge] = ridge
+    state[AT.slid] += abs(moved) if F_n > 0.0 else 0.0
     if touched:
-        heap(furrow, front, way, law)
+        pile_up(groove, front, way, law)
     return F_n, F_t
 
 
 @inlined
-def heap(furrow: Furrow, front: int, way: int, law: FlowLaw) -> None:
+def pile_up(groove: Groove, front: int, way: int, law: FlowLaw) -> None:
     """Fill the gap between tip and surface before the ``front`` cell with what is carried there."""
-    g, now, size = furrow.depth, furrow.now, furrow.size
+    g, state, size = groove.depth, groove.state, groove.size
     c = front + way
-    while now[LOW] <= c <= now[HIGH]:
-        x = (c + 0.5) * size - now[PLACE]
-        gap = g[c % CELLS] - (now[DEPTH] - 0.5 * x**2 / law.R1)
+    while state[AT.first] <= c <= state[AT.last]:
+        x = (c + 0.5) * size - state[AT.place]
+        gap = g[c % CELLS] - (state[AT.depth] - 0.5 * x**2 / law.R1)
         if gap > 0.0:
-            if gap * size > now[CARRIED]:
+            if gap * size > state[AT.carried]:
                 break
-            now[CARRIED] -= gap * size
+            state[AT.carried] -= gap * size
             g[c % CELLS] -= gap
-            now[TOP] = max(now[TOP], -g[c % CELLS])
+            state[AT.top] = max(state[AT.top], -g[c % CELLS])
         c += way
 
 
 @inlined
-def meets(furrow: Furrow, depth: float, place: float, law: FlowLaw) -> bool:
+def meets(groove: Groove, depth: float, place: float, law: FlowLaw) -> bool:
     """Return whether a tip at a depth and place, m, touches."""
-    if depth + furrow.now[TOP] <= 0.0:
+    if depth + groove.state[AT.top] <= 0.0:
         return False
     middle = place if law.ploughs else 0.0
-    first, last = window(furrow, depth, middle, law)
+    first, last = window(groove, depth, middle, law)
     for c in range(first, last + 1):
-        x = (c + 0.5) * furrow.size - middle
-        if depth - 0.5 * x**2 / law.R1 > furrow.depth[c % CELLS]:
+        x = (c + 0.5) * groove.size - middle
+        if depth - 0.5 * x**2 / law.R1 > groove.depth[c % CELLS]:
             return True
     return False
 
 
 @inlined
-def let_go(furrow: Furrow, depth: float, place: float) -> None:
+def move_apart(groove: Groove, depth: float, place: float) -> None:
     """Move the tip without contact."""
-    furrow.now[DEPTH], furrow.now[PLACE] = depth, place
-    furrow.normal[:] = 0.0
-    furrow.shift[:] = 0.0
+    groove.state[AT.depth], groove.state[AT.place] = depth, place
+    groove.normal[:] = 0.0
+    groove.shift[:] = 0.0
 
 
 @inlined
-def held_by(furrow: Furrow, law: FlowLaw) -> tuple[float, float]:
+def stored_energy(groove: Groove, law: FlowLaw) -> tuple[float, float]:
     """Return the elastic energies, J, of the cells' normal and tangential springs."""
     normal, tangential = 0.0, 0.0
     for i in range(CELLS):
-        normal += furrow.normal[i] ** 2
-        tangential += furrow.shift[i] ** 2
-    return 0.5 * furrow.size * normal / law.normal, 0.5 * furrow.size * law.shear * tangential
+        normal += groove.normal[i] ** 2
+        tangential += groove.shift[i] ** 2
+    return 0.5 * groove.size * normal / law.normal, 0.5 * groove.size * law.shear * tangential
 
 
 @allocating_kernel
@@ -248,11 +279,11 @@ def indent(law: FlowLaw, reach: float, flexibility: float, energy: float) -> tup
     tuple of float
         Depth, m, force, N, and work of the flow, J.
     """
-    furrow, depth, force, work = smooth(reach), 0.0, 0.0, 0.0
+    groove, depth, force, work = smooth(reach), 0.0, 0.0, 0.0
     step = 1e-4 * reach**2 / law.R1
     while work + 0.5 * flexibility * force**2 < energy:
         depth += step
         before = force
-        force = plough(furrow, depth, 0.0, law)[0]
+        force = slide(groove, depth, 0.0, law)[0]
         work += 0.5 * (before + force) * step
-    return depth, force, furrow.works[FLOW]
+    return depth, force, groove.works[WORK.flow]
